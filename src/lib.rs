@@ -149,8 +149,7 @@ pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;
-pub use campaign::run_options::{RunOptions, Selected};
-pub use campaign::runner::{run_studies, run_study};
+pub use campaign::runner::{RunOptions, Selected, run_studies, run_study};
 pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
 pub use case::tier::Tier;
@@ -165,7 +164,7 @@ pub use judge::score::score;
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
-pub use record::origins::Origins;
+pub use record::provenance::Origins;
 pub use record::provenance::Provenance;
 pub use record::store::RecordStore;
 pub use record::{ErrorRow, Record, Status, WallSample};

@@ -1,11 +1,10 @@
 //! Runs one case: from its inputs to its record.
 
-use crate::campaign::cpu_clock::{process_seconds, thread_seconds};
-use crate::campaign::deadline::Deadline;
+use crate::campaign::clock::{Deadline, process_seconds, thread_seconds};
 use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
 use crate::measure::record::{record_of, record_of_critical_step, record_of_stopped_search};
-use crate::record::machines::Machine;
+use crate::record::provenance::Machine;
 use crate::record::{Record, Status, WallSample};
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
@@ -134,7 +133,7 @@ fn run_case_on(
     Ok(record)
 }
 
-/// Runs a case alone once more, only to time it: nothing is held against its references.
+/// Runs a case alone once more, only to time it: no errors are computed.
 ///
 /// # Errors
 /// When the case's parameters are impossible.

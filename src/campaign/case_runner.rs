@@ -1,8 +1,10 @@
-//! Runs the cases of a study, each by whom it is given to: this program, or an attached solver.
+//! Runs the cases of a study, each by whom it is given to: this program, or an attached solver; and times them alone.
 
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
+use crate::campaign::run_report::{Progress, RunError};
 use crate::campaign::stop;
-use crate::case::Case;
+use crate::case::work_estimate::estimated_work;
+use crate::case::{Case, Task};
 use crate::foreign::attachment::{Attachment, Wish};
 use crate::record::store::RecordStore;
 use crate::record::{Record, Status, WallSample};
@@ -10,6 +12,12 @@ use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::run::Kernel;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+/// Repeats of a case that takes long end here: their spread is small, and they would make the study
+/// wait for what it knows.
+const REPEATS_OF_LONG_CASES: usize = 3;
+/// Seconds beyond which the repeats of a case took long.
+const LONG_REPEATS: f64 = 0.1;
 
 /// A study with its attached solvers, ready to run.
 pub struct CaseRunner<'a> {
@@ -59,8 +67,7 @@ impl<'a> CaseRunner<'a> {
         run_case(case, &self.study.references, Kernel::Fastest, true, &|_, _| true)
     }
 
-    /// Wall times of a case alone, which says no more than it did: nothing is held against its references again. None
-    /// where it was stopped.
+    /// Wall times of a case alone; its errors are not computed again. None where it was stopped.
     ///
     /// # Errors
     /// When the case's parameters are impossible.
@@ -111,4 +118,79 @@ impl<'a> CaseRunner<'a> {
 pub fn is_stopped(record: &Record) -> bool {
     let is_it = |failure: &Failure| matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut);
     matches!(&record.status, Status::Failed(failure) if is_it(failure))
+}
+
+/// Whether the wall time of a case is not known yet as well as its study asks.
+fn wants_timing(record: &Record, repeats: usize) -> bool {
+    let wall = record.wall_alone();
+    let is_long = wall.iter().sum::<f64>() > LONG_REPEATS;
+    let enough = if is_long { repeats.min(REPEATS_OF_LONG_CASES) } else { repeats };
+    let is_solved = record.case.task == Task::Solve;
+    is_solved && record.status == Status::Ok && wall.len() < enough
+}
+
+/// Times the cases of records alone, in rounds over all of them, until each has the study's number
+/// of samples: what drifts on the machine meets every case alike.
+///
+/// # Errors
+/// When a case cannot be run or its times not be kept.
+pub fn time_study(
+    study: &Study,
+    records: &mut [Record],
+    store: Option<&RecordStore>,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Result<(), RunError> {
+    let runner = CaseRunner::of(study);
+    let mut is_timed = false;
+    for _ in 0..study.timing_repeats {
+        for record in &mut *records {
+            if stop::is_asked() || !wants_timing(record, study.timing_repeats) {
+                continue;
+            }
+            let timed = runner
+                .time_alone(&record.case, store)
+                .map_err(|source| RunError::Case { label: record.case.label(), source })?;
+            if timed.is_empty() {
+                continue;
+            }
+            record.wall.extend(timed);
+            is_timed = true;
+            tell(Progress::Advanced(estimated_work(&record.case)));
+        }
+    }
+    if let Some(store) = store.filter(|_| is_timed) {
+        for record in &*records {
+            store.write_wall(record)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::record::WallSample;
+
+    fn record(task: &str) -> Record {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\ntask = \"{task}\"\noutput = {{ time_factors = [0.001] }}\n\
+             sweep = [{{ method = [\"GIMP\"], cells = [2], time_step = [{{ stable = 0.8 }}] }}]\n"
+        );
+        records_of(&text).remove(0)
+    }
+
+    #[test]
+    fn what_is_solved_is_timed_as_often_as_asked_and_what_takes_long_three_times() {
+        let mut solved = record("solve");
+        solved.wall.clear();
+        for (seconds, repeats) in [(0.001, 12), (0.06, 3), (0.022, 5)] {
+            solved.wall.clear();
+            while wants_timing(&solved, 12) {
+                solved.wall.push(WallSample { seconds, alone: true, ..WallSample::default() });
+            }
+            assert_eq!(solved.wall.len(), repeats, "{seconds} s");
+        }
+        assert!(!wants_timing(&record("stability"), 12), "a search has no time of its own");
+    }
 }

@@ -2,12 +2,8 @@
 
 pub mod case_run;
 pub mod case_runner;
-pub mod costs;
-pub mod cpu_clock;
-pub mod deadline;
-pub mod run_options;
+mod clock;
 pub mod run_report;
 pub mod runner;
 pub mod shares;
 pub mod stop;
-pub mod timing;

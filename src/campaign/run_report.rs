@@ -1,7 +1,7 @@
 //! What the runner tells: while it works, at its end, and where it could not go on.
 
 use crate::case::Case;
-use crate::record::origins::Origins;
+use crate::record::provenance::Origins;
 use crate::record::whole_file::StoreError;
 use crate::record::{Record, Status};
 use crate::study::check::Study;

@@ -1,46 +1,52 @@
 //! Runs cases side by side and keeps each record as soon as it is there.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
-use crate::campaign::run_options::{RunOptions, Selected};
-use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport, Tally};
-use crate::campaign::shares::shares_of;
+use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport};
+use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
 use crate::case::Case;
+use crate::case::tier::Tier;
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::record::Record;
-use crate::record::store::{Found, RecordStore, Standing};
+use crate::record::store::{Found, RecordStore};
 use crate::study::check::Study;
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::cmp::Reverse;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::mpsc::channel;
 
 /// Work between two words about a case, ns: what a person sees move.
 const LONGEST_SILENCE: u64 = 100_000_000;
 
-/// One case to run; of a million of them it is no more than that.
-#[derive(Clone, Copy)]
-struct Job<'a> {
-    case: &'a Case,
-    /// Number of its study.
-    number: usize,
+/// How to run a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOptions {
+    /// Cases at the same time.
+    pub jobs: usize,
+    /// How much of the study.
+    pub tier: Tier,
+    /// Which share of it.
+    pub shard: Option<Shard>,
+    /// Whether finished records are taken up.
+    pub resume: bool,
+    /// Whether records are only kept on disk and not in the report: any number of cases takes the same memory.
+    pub only_on_disk: bool,
 }
 
-/// Who runs the cases of a study, and where their records are kept.
-struct Desk<'a> {
-    runner: CaseRunner<'a>,
-    store: Option<&'a RecordStore>,
+impl RunOptions {
+    /// A whole tier, every case anew.
+    pub fn whole(tier: Tier, jobs: usize) -> Self {
+        Self { jobs, tier, shard: None, resume: false, only_on_disk: false }
+    }
 }
 
-impl<'a> Desk<'a> {
-    fn of(selected: &Selected<'a>) -> Self {
-        Self { runner: CaseRunner::of(selected.study), store: selected.store }
-    }
-
-    fn longest(&self, case: &Case) -> LongestCase {
-        let study = self.runner.study();
-        LongestCase { study: study.name.clone(), case: case.clone(), case_seconds: study.case_seconds }
-    }
+/// A study to run, and where its records are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Selected<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its store; without one nothing is kept.
+    pub store: Option<&'a RecordStore>,
 }
 
 /// Runs the cases of a study and keeps each record as soon as it is there.
@@ -63,7 +69,8 @@ pub fn run_studies(
     run_studies_thinned(studies, options, &|_, _| {}, tell)
 }
 
-/// The same; `thin` drops what is not to be held in the reports of the record of a study. What is on disk is whole.
+/// Runs studies as [`run_studies`] does; `thin` drops from the records in the reports what is not needed. Those on disk stay
+/// whole.
 pub fn run_studies_thinned(
     studies: &[Selected<'_>],
     options: &RunOptions,
@@ -71,43 +78,72 @@ pub fn run_studies_thinned(
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
     let selected = cases_of(studies, options);
-    let found: Vec<Begun<'_>> =
+    let mut begun: Vec<Begun<'_>> =
         studies.iter().zip(selected).map(|(study, cases)| begun(study, cases, options)).collect();
-    let desks: Vec<Desk<'_>> = studies.iter().map(Desk::of).collect();
-    let missing = |begun: &Begun<'_>| begun.cases.iter().filter(|(_, found)| !found.is_finished()).count();
-    let mut jobs: Vec<Job<'_>> = Vec::with_capacity(found.iter().map(missing).sum());
-    for (number, begun) in found.iter().enumerate() {
-        let without = begun.cases.iter().filter(|(_, found)| !found.is_finished());
-        jobs.extend(without.map(|(case, _)| Job { case, number }));
+    let runners: Vec<CaseRunner<'_>> = studies.iter().map(|one| CaseRunner::of(one.study)).collect();
+    let mut jobs: Vec<Job<'_>> = Vec::new();
+    for (study, begun) in begun.iter().enumerate() {
+        let missing = begun.cases.iter().enumerate().filter(|(_, (_, outcome))| outcome.is_none());
+        jobs.extend(missing.map(|(place, (case, _))| Job { case, study, place }));
     }
-    let resumed = found.iter().map(|begun| begun.report.resumed).sum();
-    let mut gathered = Gathered::of(studies.len());
-    gathered.only_on_disk = options.only_on_disk;
-    let mut gathered = run_jobs(&desks, &jobs, resumed, options.jobs, gathered, &Listener { thin, tell });
-    gathered.ended.sort_by_key(|(place, _)| *place);
-    let mut results = gathered.ended.into_iter().peekable();
-    let mut place = 0;
-    let reports = found.into_iter().zip(gathered.tallies);
-    reports
-        .map(|(begun, tally)| {
-            let mut report = begun.report;
-            report.tally.join(tally);
-            for (_, found) in begun.cases {
-                if let Found::Finished(record) = found {
-                    report.records.push(*record);
-                    continue;
+    // The longest first, so that the last ones to finish are short.
+    jobs.sort_by_cached_key(|job| Reverse(estimated_work(job.case)));
+    let threads = options.jobs.clamp(1, jobs.len().max(1));
+    let longest = |job: &Job<'_>| LongestCase {
+        study: studies[job.study].study.name.clone(),
+        case: job.case.clone(),
+        case_seconds: studies[job.study].study.case_seconds,
+    };
+    tell(Progress::Planned {
+        cases: jobs.len(),
+        resumed: begun.iter().map(|begun| begun.report.resumed).sum(),
+        work: work_of(jobs.iter().map(|job| job.case)),
+        jobs: threads,
+        longest: jobs.first().map(|job| Box::new(longest(job))),
+    });
+    let (next, stopped) = (&AtomicUsize::new(0), &AtomicBool::new(false));
+    let (jobs, runners) = (&jobs, &runners);
+    let (send, outcomes) = channel();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            let send = send.clone();
+            scope.spawn(move || {
+                while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let (runner, store) = (&runners[job.study], studies[job.study].store);
+                    let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
+                    let mut outcome = if is_over {
+                        None
+                    } else {
+                        run_and_keep(runner, store, job.case, threads == 1, stopped, tell)
+                    };
+                    if let Some(Ok(record)) = &mut outcome {
+                        thin(runner.study(), record);
+                    }
+                    let _ = send.send((*job, outcome));
                 }
-                report.of_another_program += usize::from(found == Found::OfAnotherProgram);
-                match results.next_if(|(at, _)| *at == place).map(|(_, result)| result) {
-                    Some(Ok(record)) => report.records.push(*record),
-                    Some(Err(error)) => report.errors.push(error),
-                    None => {}
-                }
-                place += 1;
+            });
+        }
+        drop(send);
+        for (job, outcome) in outcomes {
+            let Begun { cases, report } = &mut begun[job.study];
+            match &outcome {
+                None => report.tally.left += 1,
+                Some(Ok(record)) => report.tally.add(studies[job.study].study, record),
+                Some(Err(_)) => {}
             }
-            report
-        })
-        .collect()
+            cases[job.place].1 = outcome.filter(|outcome| outcome.is_err() || !options.only_on_disk);
+        }
+    });
+    let report_of = |Begun { cases, mut report }: Begun<'_>| {
+        for outcome in cases.into_iter().filter_map(|(_, outcome)| outcome) {
+            match outcome {
+                Ok(record) => report.records.push(*record),
+                Err(error) => report.errors.push(*error),
+            }
+        }
+        report
+    };
+    begun.into_iter().map(report_of).collect()
 }
 
 /// The cases of each study that are to be run: its tier, or a share of all of them together.
@@ -116,7 +152,7 @@ fn cases_of<'a>(studies: &[Selected<'a>], options: &RunOptions) -> Vec<Vec<&'a C
         studies.iter().map(|selected| selected.study.cases(options.tier)).collect();
     if let Some(shard) = options.shard {
         let all: Vec<&Case> = of_studies.iter().flatten().copied().collect();
-        let mut shares = shares_of(&all, shard.count, shard.parting, &options.costs).into_iter();
+        let mut shares = shares_of(&all, shard.count, shard.parting).into_iter();
         for cases in &mut of_studies {
             cases.retain(|_| shares.next().is_some_and(|share| share == shard.index - 1));
         }
@@ -124,150 +160,67 @@ fn cases_of<'a>(studies: &[Selected<'a>], options: &RunOptions) -> Vec<Vec<&'a C
     of_studies
 }
 
-/// The cases of a study with the records there are of them already, and what these come to.
+/// The record of a case, or why there is none.
+type Outcome = Result<Box<Record>, Box<RunError>>;
+
+/// One case to run; of a million of them it is no more than that.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    case: &'a Case,
+    /// Number of its study.
+    study: usize,
+    /// Its place among the cases of the study.
+    place: usize,
+}
+
+/// The cases of a study, each with its outcome where that is held, and what they come to.
 struct Begun<'a> {
-    cases: Vec<(&'a Case, Found)>,
+    cases: Vec<(&'a Case, Option<Outcome>)>,
     report: RunReport,
 }
 
+/// Takes up the records there are; those that are only to be on disk are counted and left out.
 fn begun<'a>(selected: &Selected<'a>, cases: Vec<&'a Case>, options: &RunOptions) -> Begun<'a> {
-    let mut begun = Begun { cases: Vec::new(), report: RunReport::default() };
+    let mut report = RunReport::default();
     let Some(store) = selected.store.filter(|_| options.resume) else {
-        begun.cases = cases.into_iter().map(|case| (case, Found::Nothing)).collect();
-        return begun;
+        return Begun { cases: cases.into_iter().map(|case| (case, None)).collect(), report };
     };
-    let report = &mut begun.report;
-    let mut by_build: HashMap<u64, (&Case, usize)> = HashMap::new();
+    let (mut open, mut taken_up) = (Vec::new(), Vec::new());
     for case in cases {
-        let found = if options.only_on_disk {
-            match store.standing(case) {
-                Standing::Ok { build } => {
-                    by_build.entry(build).or_insert((case, 0)).1 += 1;
-                    report.resumed += 1;
-                    report.tally.recorded += 1;
-                    continue;
+        if options.only_on_disk && store.is_packed_and_done(case) {
+            report.tally.recorded += 1;
+            taken_up.push(case);
+            continue;
+        }
+        match store.found(case) {
+            Found::Finished(record) => {
+                report.tally.add(selected.study, &record);
+                taken_up.push(case);
+                if !options.only_on_disk {
+                    open.push((case, Some(Ok(record))));
                 }
-                Standing::Read(record) => Found::Finished(record),
-                Standing::OfAnotherProgram => Found::OfAnotherProgram,
-                Standing::Nothing => Found::Nothing,
-            }
-        } else {
-            store.found(case)
-        };
-        if let Found::Finished(record) = &found {
-            report.resumed += 1;
-            report.origins.add(&record.provenance);
-            report.tally.add(selected.study, record);
-            if options.only_on_disk {
                 continue;
             }
+            Found::OfAnotherProgram => report.of_another_program += 1,
+            Found::Nothing => {}
         }
-        begun.cases.push((case, found));
+        open.push((case, None));
     }
-    for (case, records) in by_build.into_values() {
-        if let Some(origin) = store.origin(case) {
-            report.origins.add_many(&origin, records);
-        }
-    }
-    begun
+    report.resumed = taken_up.len();
+    report.origins = store.origins(&taken_up);
+    Begun { cases: open, report }
 }
 
-/// What jobs came to: the results that are held, each with the place of its job, and a tally a study.
-#[derive(Default)]
-struct Gathered {
-    only_on_disk: bool,
-    ended: Vec<(usize, Result<Box<Record>, RunError>)>,
-    tallies: Vec<Tally>,
-}
-
-impl Gathered {
-    fn of(studies: usize) -> Self {
-        Self { tallies: vec![Tally::default(); studies], ..Self::default() }
-    }
-
-    fn take(
-        &mut self,
-        place: usize,
-        job: Job<'_>,
-        study: &Study,
-        result: Option<Result<Box<Record>, RunError>>,
-    ) {
-        let tally = &mut self.tallies[job.number];
-        match result {
-            None => tally.left += 1,
-            Some(Err(error)) => self.ended.push((place, Err(error))),
-            Some(Ok(record)) => {
-                tally.add(study, &record);
-                if !self.only_on_disk {
-                    self.ended.push((place, Ok(record)));
-                }
-            }
-        }
-    }
-}
-
-/// Who hears of the cases as they run.
-struct Listener<'a> {
-    thin: &'a (dyn Fn(&Study, &mut Record) + Sync),
-    tell: &'a (dyn Fn(Progress) + Sync),
-}
-
-/// Runs jobs, the longest first so that the last ones to finish are short. The first result that cannot be kept ends
-/// them all, and so does a signal; a job without a result is one that had not come to its end by then.
-fn run_jobs(
-    desks: &[Desk<'_>],
-    jobs: &[Job<'_>],
-    resumed: usize,
-    threads: usize,
-    gathered: Gathered,
-    Listener { thin, tell }: &Listener<'_>,
-) -> Gathered {
-    let mut order: Vec<usize> = (0..jobs.len()).collect();
-    order.sort_by_cached_key(|index| std::cmp::Reverse(estimated_work(jobs[*index].case)));
-    let threads = threads.clamp(1, jobs.len().max(1));
-    tell(Progress::Planned {
-        cases: jobs.len(),
-        resumed,
-        work: work_of(jobs.iter().map(|job| job.case)),
-        jobs: threads,
-        longest: order.first().map(|index| Box::new(desks[jobs[*index].number].longest(jobs[*index].case))),
-    });
-    let gathered = Mutex::new(gathered);
-    let next = AtomicUsize::new(0);
-    let stopped = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let job = jobs[*index];
-                    let desk = &desks[job.number];
-                    let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
-                    let mut result = if is_over {
-                        None
-                    } else {
-                        run_and_keep(desk, job.case, threads == 1, &stopped, tell)
-                    };
-                    if let Some(Ok(record)) = &mut result {
-                        thin(desk.runner.study(), record);
-                    }
-                    let mut gathered = gathered.lock().unwrap_or_else(PoisonError::into_inner);
-                    gathered.take(*index, job, desk.runner.study(), result);
-                }
-            });
-        }
-    });
-    gathered.into_inner().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Runs a case and keeps its record. A record that cannot be kept stops every other case too; none where
-/// this one was stopped so.
+/// Runs a case and keeps its record. A record that cannot be kept stops every other case too; `None` where this one was
+/// stopped so.
 fn run_and_keep(
-    Desk { runner, store }: &Desk<'_>,
+    runner: &CaseRunner<'_>,
+    store: Option<&RecordStore>,
     case: &Case,
     alone: bool,
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
-) -> Option<Result<Box<Record>, RunError>> {
+) -> Option<Outcome> {
     let estimate = estimated_work(case);
     let told = Cell::new(0_u64);
     let observe = |done: u64, expected: u64| {
@@ -281,7 +234,7 @@ fn run_and_keep(
         !stopped.load(Ordering::Relaxed) && !stop::is_over()
     };
     let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        runner.run_within(case, *store, alone, &observe)
+        runner.run_within(case, store, alone, &observe)
     }));
     tell(Progress::Advanced(estimate - told.get()));
     let record = match solved {
@@ -289,15 +242,15 @@ fn run_and_keep(
             return None;
         }
         Ok(Ok(record)) => record,
-        Ok(Err(source)) => return Some(Err(RunError::Case { label: case.label(), source })),
-        Err(_) => return Some(Err(RunError::Crashed { label: case.label() })),
+        Ok(Err(source)) => return Some(Err(Box::new(RunError::Case { label: case.label(), source }))),
+        Err(_) => return Some(Err(Box::new(RunError::Crashed { label: case.label() }))),
     };
     // What is on disk of a case that was not allowed to begin stays.
     let store = store.filter(|_| !runner.study().holds_back(case));
     if let Some(Err(error)) = store.map(|store| store.write(&record)) {
         // A full disk stays full: what could not be kept is not computed.
         stopped.store(true, Ordering::Relaxed);
-        return Some(Err(error.into()));
+        return Some(Err(Box::new(error.into())));
     }
     // One sentence tells of all that were not allowed to begin.
     if let Some(failure) = record.status.failure().filter(|_| !runner.study().holds_back(case)) {
@@ -310,7 +263,6 @@ fn run_and_keep(
 /// Records of the whole study of a text.
 #[cfg(test)]
 pub(crate) fn records_of(text: &str) -> Vec<Record> {
-    use crate::case::tier::Tier;
     use crate::study::file::StudySource;
 
     let source = StudySource { name: "study.toml".to_owned(), text: text.to_owned() };

@@ -1,7 +1,7 @@
 //! Shares of the cases for several machines: by hash, or by what the cases cost.
 
-use crate::campaign::costs::CostTable;
 use crate::case::Case;
+use crate::case::work_estimate::{estimated_seconds, estimated_work};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -27,11 +27,11 @@ pub struct Shard {
 }
 
 /// The share of each case, from 0 to `count` − 1.
-pub fn shares_of(cases: &[&Case], count: u64, parting: Parting, costs: &CostTable) -> Vec<u64> {
+pub fn shares_of(cases: &[&Case], count: u64, parting: Parting) -> Vec<u64> {
     match parting {
         Parting::Hash => cases.iter().map(|case| case.number() % count).collect(),
         Parting::Cost => {
-            let works: Vec<u64> = cases.iter().map(|case| costs.work(case)).collect();
+            let works: Vec<u64> = cases.iter().map(|case| estimated_work(case)).collect();
             balanced(&works, count)
         }
     }
@@ -69,12 +69,12 @@ pub struct Balance {
 }
 
 /// What shares of cases come to, by estimated seconds.
-pub fn balance_of(cases: &[&Case], shares: &[u64], count: u64, costs: &CostTable) -> Balance {
+pub fn balance_of(cases: &[&Case], shares: &[u64], count: u64) -> Balance {
     let used = shares.iter().max().map_or(0, |most| most + 1).min(count);
     let mut loads = vec![0.0; usize::try_from(used).unwrap_or(0)];
     let mut longest_case = 0.0;
     for (case, share) in cases.iter().zip(shares) {
-        let seconds = costs.seconds(case);
+        let seconds = estimated_seconds(case);
         longest_case = f64::max(longest_case, seconds);
         if let Some(load) = usize::try_from(*share).ok().and_then(|share| loads.get_mut(share)) {
             *load += seconds;

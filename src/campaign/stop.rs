@@ -1,4 +1,4 @@
-//! The word that a run has to end: Ctrl-C, or the signal that a scheduler sends before it kills a job.
+//! Tells that a run has to end: by Ctrl-C, or the signal that a scheduler sends before it kills a job.
 //!
 //! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, an attached solver with all that it has started among
 //! it; what is finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
@@ -19,7 +19,7 @@ static SINCE: OnceLock<Instant> = OnceLock::new();
 /// Whether Ctrl-C came, or the terminal was closed.
 static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// Takes signals as the word to end from now on, and not as the end itself. To call it again changes nothing.
+/// From now on signals ask the run to end instead of ending the program. Calling it again changes nothing.
 ///
 /// # Errors
 /// When the system does not let signals be handled.

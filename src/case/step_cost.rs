@@ -1,9 +1,7 @@
 //! What a step costs, by kind of step: the constants from which times are estimated before anything runs.
 //!
 //! They are nanoseconds of processor time on one of two virtual cores of an AMD EPYC at 3.3 GHz, both of them at work, fitted
-//! there to the cases of the shipped studies. `oedometer plan --calibrate` measures a case of every kind where it is
-//! called and prints its own numbers beside these: a machine of other speed shows as one ratio in every row, a change of
-//! a kernel as one row that departs from the others.
+//! there to the cases of the shipped studies.
 
 use crate::case::Case;
 use oedometer_mpm::method::{Configuration, Memory, Recovery, StrainGradient};

@@ -3,7 +3,7 @@
 use oedometer_soil::wording::words;
 
 /// How much of a study is run: a tier includes those before it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 pub enum Tier {
     /// Seconds.
     Smoke,

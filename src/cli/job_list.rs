@@ -1,6 +1,5 @@
 //! Job lists: the commands that run the shares of a campaign, one a line, for whatever starts them.
 
-use crate::campaign::costs::CostTable;
 use crate::campaign::shares::{Parting, balance_of, shares_of};
 use crate::case::Case;
 use crate::case::tier::Tier;
@@ -29,8 +28,6 @@ pub struct JobList {
     pub parting: Parting,
     /// Whether the studies may start their attached solvers.
     pub allow_solvers: bool,
-    /// File of the costs, where they are parted by those.
-    pub costs: Option<PathBuf>,
 }
 
 impl JobList {
@@ -39,25 +36,18 @@ impl JobList {
         &self,
         all: &[(&Study, Vec<&Case>)],
         wanted: &[(&Study, Vec<&Case>)],
-        costs: &CostTable,
     ) -> BTreeSet<u64> {
         let cases: Vec<&Case> = all.iter().flat_map(|(_, cases)| cases).copied().collect();
-        let shares = shares_of(&cases, self.tasks, self.parting, costs);
+        let shares = shares_of(&cases, self.tasks, self.parting);
         // Both lists have the order of the studies: the wanted ones are met on the way.
         let mut wanted = wanted.iter().flat_map(|(_, cases)| cases).copied().peekable();
-        let is_wanted = |case: &Case| wanted.next_if(|next| std::ptr::eq(*next, case)).is_some();
-        let mut is_wanted = is_wanted;
+        let mut is_wanted = |case: &Case| wanted.next_if(|next| std::ptr::eq(*next, case)).is_some();
         cases.iter().zip(shares).filter(|(case, _)| is_wanted(case)).map(|(_, share)| share + 1).collect()
     }
 
     /// The commands of those shares, a line each.
-    pub fn commands(
-        &self,
-        all: &[(&Study, Vec<&Case>)],
-        wanted: &[(&Study, Vec<&Case>)],
-        costs: &CostTable,
-    ) -> String {
-        let shares = self.shares_with(all, wanted, costs);
+    pub fn commands(&self, all: &[(&Study, Vec<&Case>)], wanted: &[(&Study, Vec<&Case>)]) -> String {
+        let shares = self.shares_with(all, wanted);
         shares.iter().map(|share| self.command("oedometer", &share.to_string()) + "\n").collect()
     }
 
@@ -72,7 +62,6 @@ impl JobList {
         words.extend(["--shard".to_owned(), format!("{share}/{}", self.tasks)]);
         if self.parting == Parting::Cost {
             words.push("--balance".to_owned());
-            words.extend(self.costs.iter().flat_map(|file| ["--costs".to_owned(), quoted_path(file)]));
         }
         if self.allow_solvers {
             words.push("--allow-solvers".to_owned());
@@ -82,10 +71,10 @@ impl JobList {
     }
 
     /// Says how even the shares are, and where no number of them helps.
-    pub fn tell_of_balance(&self, all: &[(&Study, Vec<&Case>)], costs: &CostTable) {
+    pub fn tell_of_balance(&self, all: &[(&Study, Vec<&Case>)]) {
         let cases: Vec<&Case> = all.iter().flat_map(|(_, cases)| cases).copied().collect();
-        let shares = shares_of(&cases, self.tasks, self.parting, costs);
-        let balance = balance_of(&cases, &shares, self.tasks, costs);
+        let shares = shares_of(&cases, self.tasks, self.parting);
+        let balance = balance_of(&cases, &shares, self.tasks);
         let ratio = balance.largest / balance.mean;
         say!(
             "{}: the largest takes {}, {ratio:.2} times the mean",
@@ -141,11 +130,10 @@ mod tests {
             tasks: 8,
             parting: Parting::Cost,
             allow_solvers: false,
-            costs: Some("costs.csv".into()),
         };
         assert_eq!(
             list.command("oedometer", "3"),
-            r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --costs costs.csv --resume"
+            r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --resume"
         );
     }
 }

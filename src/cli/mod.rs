@@ -2,9 +2,7 @@
 //!
 //! Data goes to standard output, everything else to standard error.
 
-pub mod calibrate;
 pub mod commands;
-pub mod cost_files;
 pub mod destination;
 pub mod exit;
 pub mod job_list;

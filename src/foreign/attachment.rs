@@ -3,18 +3,16 @@
 use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::foreign::case_file::{CaseFile, suggested_step};
-use crate::foreign::command::{Filling, words_of};
 use crate::foreign::process::{Ending, Finished, Order};
-use crate::foreign::reading::{ReadResult, mapping_of, read};
-use crate::foreign::repeats::difference;
-use crate::foreign::staging::Staged;
-use crate::foreign::wholeness::states_at_outputs;
+use crate::foreign::reading::{ReadResult, Unread, mapping_of, read};
+use crate::foreign::staging::{Filling, Staged, words_of};
+use crate::foreign::wholeness::{difference, states_at_outputs};
 use crate::foreign::{ending, process};
 use crate::import::mapping::Mapping;
 use crate::import::table::SampledState;
 use crate::measure::record::record_of_attached;
-use crate::record::attached_run::AttachedRun;
-use crate::record::machines::Machine;
+use crate::record::AttachedRun;
+use crate::record::provenance::Machine;
 use crate::record::{Record, Status, WallSample};
 use crate::study::solver::Solver;
 use oedometer_exact::exact_error::ExactError;
@@ -52,7 +50,7 @@ pub struct Attachment<'a> {
 /// How a case is to be run.
 #[derive(Clone, Copy)]
 pub struct Wish<'a> {
-    /// Exact solutions that the result is held against.
+    /// Exact solutions that the result is compared with.
     pub references: &'a [ReferenceKind],
     /// Folder of the case's record, beside which the run is kept; none where nothing is.
     pub place: Option<&'a Path>,
@@ -62,12 +60,8 @@ pub struct Wish<'a> {
     pub is_wanted: &'a dyn Fn() -> bool,
 }
 
-/// What a solver says of its version, or why that is not known.
-#[derive(Default)]
-struct Version {
-    line: Option<String>,
-    trouble: Option<String>,
-}
+/// What a solver says of its version, where it was asked, or why that is not known.
+type Version = Result<Option<String>, String>;
 
 /// What a run left: its states at the outputs, or how it failed.
 type Left = Result<(Vec<SampledState>, ReadResult), Failure>;
@@ -84,45 +78,51 @@ impl<'a> Attachment<'a> {
         self.solver
     }
 
-    /// Runs a case: once to warm up where that is asked for, then the timed runs, each in a fresh folder. The last
-    /// result is taken, and held against the others.
+    /// Runs a case, or takes the result that is there already.
     ///
     /// # Errors
     /// When the exact solutions refuse the case's parameters.
     pub fn run(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
-        if self.solver.is_given() {
-            return Self::record(case, wish, self.given(case), AttachedRun::default(), Vec::new());
-        }
-        let _passed = self.gate.pass();
-        let mut about = AttachedRun {
-            command: self.solver.command.clone(),
-            version: self.version(wish).line.clone(),
-            warmed_up: self.solver.warm_up,
-            notes: self.version(wish).trouble.clone().into_iter().collect(),
-            ..AttachedRun::default()
+        let (mut about, mut wall) = (AttachedRun::default(), Vec::new());
+        let left = if self.solver.is_given() {
+            self.given(case)
+        } else {
+            self.runs(case, wish, &mut about, &mut wall)
         };
-        let mut wall = Vec::new();
+        record(case, wish, left, about, wall)
+    }
+
+    /// Runs a case: once to warm up where that is asked for, then the timed runs, each in a fresh folder. The last
+    /// result is taken, and compared with the others.
+    fn runs(
+        &self,
+        case: &Case,
+        wish: &Wish<'_>,
+        about: &mut AttachedRun,
+        wall: &mut Vec<WallSample>,
+    ) -> Left {
+        let _passed = self.gate.pass();
+        about.command.clone_from(&self.solver.command);
+        about.warmed_up = self.solver.warm_up;
+        match self.version.get_or_init(|| self.told_version(wish)) {
+            Ok(version) => about.version.clone_from(version),
+            Err(trouble) => about.notes.push(trouble.clone()),
+        }
         let mut known: Option<(Vec<SampledState>, ReadResult)> = None;
-        let runs = self.solver.repeats + usize::from(self.solver.warm_up);
-        for number in 0..runs {
+        for number in 0..self.solver.repeats + usize::from(self.solver.warm_up) {
             if !(wish.is_wanted)() {
-                return Self::record(case, wish, Err(ending::of_stopped()), about, wall);
+                return Err(ending::of_stopped());
             }
-            let left = self.run_once(case, wish, &mut about, &mut wall);
-            let (states, result) = match left {
-                Ok(left) => left,
-                Err(failure) => return Self::record(case, wish, Err(failure), about, wall),
-            };
+            let left = self.run_once(case, wish, about, wall)?;
             if number == 0 && self.solver.warm_up {
                 wall.clear();
             }
             if let Some((others, _)) = &known {
-                note_difference(&mut about, difference(others, &states));
+                note_difference(about, difference(others, &left.0));
             }
-            known = Some((states, result));
+            known = Some(left);
         }
-        let nothing = || ending::of_incomplete("the solver was not run");
-        Self::record(case, wish, known.ok_or_else(nothing), about, wall)
+        known.ok_or_else(|| ending::of_incomplete("the solver was not run"))
     }
 
     /// The record of a case whose program may not be started: it was skipped.
@@ -131,25 +131,26 @@ impl<'a> Attachment<'a> {
     /// When the exact solutions refuse the case's parameters.
     pub fn held_back(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
         let about = AttachedRun { command: self.solver.command.clone(), ..AttachedRun::default() };
-        Self::record(case, wish, Err(ending::of_held_back()), about, Vec::new())
+        record(case, wish, Err(ending::of_held_back()), about, Vec::new())
     }
 
-    /// What is there already.
+    /// The result that is there already.
     fn given(&self, case: &Case) -> Left {
+        let name =
+            |typed: &String| self.solver.folder.join(typed.replace("{cells}", &case.cells.to_string()));
+        let paths: Vec<PathBuf> = self.solver.files.iter().map(name).collect();
+        let left = self.taken(case, &paths, |unread| ending::of_given(unread, &self.solver.files));
         // Records and messages name files as the study does.
         let folder = format!("{}/", self.solver.folder.display());
-        let plain = |text: &str| text.replace(&folder, "");
-        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(&plain(why)))?;
-        let name = |typed: &String| typed.replace("{cells}", &case.cells.to_string());
-        let paths: Vec<PathBuf> =
-            self.solver.files.iter().map(|typed| self.solver.folder.join(name(typed))).collect();
-        let result = read(case, mapping, &paths).map_err(|unread| {
-            let failure = ending::of_given(unread, &self.solver.files);
-            Failure { reason: plain(&failure.reason), ..failure }
-        })?;
+        in_plain_words(left, |text| text.replace(&folder, ""))
+    }
+
+    /// The result in files, whole.
+    fn taken(&self, case: &Case, paths: &[PathBuf], failure: impl Fn(Unread) -> Failure) -> Left {
+        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
+        let result = read(case, mapping, paths).map_err(failure)?;
         let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
-        let notes = result.notes.iter().map(|note| plain(note)).collect();
-        Ok((states, ReadResult { notes, ..result }))
+        Ok((states, result))
     }
 
     /// One run in a fresh folder.
@@ -160,7 +161,8 @@ impl<'a> Attachment<'a> {
         about: &mut AttachedRun,
         wall: &mut Vec<WallSample>,
     ) -> Left {
-        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
+        // A mapping that is wrong fails before anything is started.
+        self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
         let text = CaseFile::of(case).text().map_err(|error| ending::of_folder(&error.into()))?;
         let staged = Staged::new(wish.place, &text).map_err(|error| ending::of_folder(&error))?;
         let filling = Filling::of(case, self.solver, &staged.case_file(), &staged.out());
@@ -175,22 +177,16 @@ impl<'a> Attachment<'a> {
             own_seconds: self.own_seconds(&finished),
             machine: Some(Machine::this()),
         });
-        let left = self.left(case, mapping, &finished, &staged, &filling);
+        let left = self.left(case, &finished, &staged, &filling);
         if let Some(sentence) = ending::of_processes(&finished) {
             note(about, sentence);
         }
-        let failed = left.as_ref().err().is_some();
+        let failed = left.is_err();
         if failed {
-            about.last_words = ending::kept_words(&finished);
+            let plain = |line: &String| staged.without_paths(line);
+            about.last_words = ending::kept_words(&finished).iter().map(plain).collect();
         }
-        let plain = |text: &str| staged.without_paths(text);
-        about.last_words = about.last_words.iter().map(|line| plain(line)).collect();
-        let left = left.map_err(|failure| Failure { reason: plain(&failure.reason), ..failure }).map(
-            |(states, result)| {
-                let notes = result.notes.iter().map(|note| plain(note)).collect();
-                (states, ReadResult { notes, ..result })
-            },
-        );
+        let left = in_plain_words(left, |text| staged.without_paths(text));
         // Of a run that nobody wants any more nothing is kept, and what an earlier one left stays.
         let is_stopped = matches!(finished.ending, Ending::Stopped);
         let keep =
@@ -213,22 +209,12 @@ impl<'a> Attachment<'a> {
     }
 
     /// What a run left, the first status that applies.
-    fn left(
-        &self,
-        case: &Case,
-        mapping: &Mapping,
-        finished: &Finished,
-        staged: &Staged,
-        filling: &Filling,
-    ) -> Left {
+    fn left(&self, case: &Case, finished: &Finished, staged: &Staged, filling: &Filling) -> Left {
         if let Some(failure) = ending::of_process(finished, self.solver) {
             return Err(failure);
         }
         let path = PathBuf::from(filling.fill(&self.solver.result));
-        let result = read(case, mapping, &[path])
-            .map_err(|unread| ending::of_reading(unread, self.solver, &staged.contents()))?;
-        let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
-        Ok((states, result))
+        self.taken(case, &[path], |unread| ending::of_reading(unread, self.solver, &staged.contents()))
     }
 
     /// The time that the solver says it took, s: the last that its output names.
@@ -241,53 +227,59 @@ impl<'a> Attachment<'a> {
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
-    /// What the solver says of its version, asked once, within the time of a run.
-    fn version(&self, wish: &Wish<'_>) -> &Version {
-        let ask = || {
-            if self.solver.version.is_empty() {
-                return Version::default();
-            }
-            let words = words_of(self.solver, &self.solver.version, str::to_owned);
-            let seconds = self.solver.timeout.min(VERSION_SECONDS);
-            let timeout = Duration::from_secs_f64(seconds);
-            let folder = &self.solver.folder;
-            let order = Order { words: &words, environment: &[], folder, timeout };
-            let found = process::run(&order, wish.is_wanted);
-            if matches!(found.ending, Ending::TimedOut) {
-                let trouble =
-                    format!("its version is not known: that command did not end within {} s", typed(seconds));
-                return Version { line: None, trouble: Some(trouble) };
-            }
-            let mut lines = found.output.lines().chain(found.errors.lines());
-            let line = lines.find(|line| !line.trim().is_empty());
-            let line = line.map(|line| line.trim().chars().take(LONGEST_VERSION).collect());
-            Version { line, trouble: None }
-        };
-        self.version.get_or_init(ask)
+    /// What the solver says of its version, within the time of a run.
+    fn told_version(&self, wish: &Wish<'_>) -> Version {
+        if self.solver.version.is_empty() {
+            return Ok(None);
+        }
+        let words = words_of(self.solver, &self.solver.version, str::to_owned);
+        let seconds = self.solver.timeout.min(VERSION_SECONDS);
+        let timeout = Duration::from_secs_f64(seconds);
+        let order = Order { words: &words, environment: &[], folder: &self.solver.folder, timeout };
+        let found = process::run(&order, wish.is_wanted);
+        if matches!(found.ending, Ending::TimedOut) {
+            let limit = typed(seconds);
+            return Err(format!("its version is not known: that command did not end within {limit} s"));
+        }
+        let mut lines = found.output.lines().chain(found.errors.lines());
+        let line = lines.find(|line| !line.trim().is_empty());
+        Ok(line.map(|line| line.trim().chars().take(LONGEST_VERSION).collect()))
     }
+}
 
-    fn record(
-        case: &Case,
-        wish: &Wish<'_>,
-        left: Left,
-        mut about: AttachedRun,
-        wall: Vec<WallSample>,
-    ) -> Result<Record, ExactError> {
-        let (status, snapshots) = match left {
-            Ok((states, result)) => {
-                about.sample = Some(result.sample);
-                let more = result.notes.len().saturating_sub(MOST_TAKEN);
-                about.taken = result.notes.into_iter().take(MOST_TAKEN).collect();
-                about.taken.extend((more > 0).then(|| format!("and {more} notes more")));
-                about.result_digest = Some(result.digest);
-                let snapshot = |state| snapshot_of(case, result.sample, state);
-                (Status::Ok, states.into_iter().map(snapshot).collect())
-            }
-            Err(failure) => (Status::Failed(failure), Vec::new()),
-        };
-        let step = suggested_step(case);
-        let record = record_of_attached(case, wish.references, status, snapshots, step, about)?;
-        Ok(Record { wall, ..record })
+/// The record of what a run left.
+fn record(
+    case: &Case,
+    wish: &Wish<'_>,
+    left: Left,
+    mut about: AttachedRun,
+    wall: Vec<WallSample>,
+) -> Result<Record, ExactError> {
+    let (status, snapshots) = match left {
+        Ok((states, result)) => {
+            about.sample = Some(result.sample);
+            let more = result.notes.len().saturating_sub(MOST_TAKEN);
+            about.taken = result.notes.into_iter().take(MOST_TAKEN).collect();
+            about.taken.extend((more > 0).then(|| format!("and {more} notes more")));
+            about.result_digest = Some(result.digest);
+            let snapshot = |state| snapshot_of(case, result.sample, state);
+            (Status::Ok, states.into_iter().map(snapshot).collect())
+        }
+        Err(failure) => (Status::Failed(failure), Vec::new()),
+    };
+    let step = suggested_step(case);
+    let record = record_of_attached(case, wish.references, status, snapshots, step, about)?;
+    Ok(Record { wall, ..record })
+}
+
+/// What a run left, with its sentences changed.
+fn in_plain_words(left: Left, plain: impl Fn(&str) -> String) -> Left {
+    match left {
+        Ok((states, mut result)) => {
+            result.notes = result.notes.iter().map(|note| plain(note)).collect();
+            Ok((states, result))
+        }
+        Err(failure) => Err(Failure { reason: plain(&failure.reason), ..failure }),
     }
 }
 

@@ -13,8 +13,7 @@
 //! | `incomplete` | outputs or places are missing | the adapter's |
 //! | `ok` | none of these | |
 
-use crate::foreign::output_tail::last_lines;
-use crate::foreign::process::{Ending, Finished};
+use crate::foreign::process::{Ending, Finished, last_lines};
 use crate::foreign::reading::Unread;
 use crate::foreign::started_processes::named;
 use crate::study::solver::Solver;
@@ -101,35 +100,29 @@ fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
 
 /// The end of a run whose result cannot be taken.
 pub fn of_reading(unread: Unread, solver: &Solver, contents: &str) -> Failure {
-    let (kind, what) = match unread {
-        Unread::NoFile => (
-            FailureKind::NoResult,
-            format!(
-                "it ended well and left no {}; in {{out}} there is {contents}: the adapter writes it elsewhere, or \
-                 `result` in the study names it otherwise",
-                solver.result
-            ),
-        ),
-        Unread::Unreadable(why) => (
-            FailureKind::Unreadable,
-            format!("{why}; the adapter wrote it wrongly, or the mapping says of it what is not so"),
-        ),
-        Unread::NotFinite(why) => (FailureKind::NotFinite, format!("{why}; an error of the solver")),
-    };
-    Failure::of_attached(kind, what)
+    let no_file = format!(
+        "it ended well and left no {}; in {{out}} there is {contents}: the adapter writes it elsewhere, or `result` in \
+         the study names it otherwise",
+        solver.result
+    );
+    of_unread(unread, no_file, "; the adapter wrote it wrongly, or the mapping says of it what is not so")
 }
 
 /// The end of a result that was there already and cannot be taken.
 pub fn of_given(unread: Unread, files: &[String]) -> Failure {
+    let files = files.join(", ");
+    let no_file = format!(
+        "there is no file {files}: the solver was not run, or `files` in the study names its result otherwise"
+    );
+    of_unread(unread, no_file, "")
+}
+
+/// The end of a result that cannot be taken, with what to say where there is none and whose error it is that it cannot be
+/// read.
+fn of_unread(unread: Unread, no_file: String, whose: &str) -> Failure {
     let (kind, what) = match unread {
-        Unread::NoFile => (
-            FailureKind::NoResult,
-            format!(
-                "there is no file {}: the solver was not run, or `files` in the study names its result otherwise",
-                files.join(", ")
-            ),
-        ),
-        Unread::Unreadable(why) => (FailureKind::Unreadable, why),
+        Unread::NoFile => (FailureKind::NoResult, no_file),
+        Unread::Unreadable(why) => (FailureKind::Unreadable, why + whose),
         Unread::NotFinite(why) => (FailureKind::NotFinite, format!("{why}; an error of the solver")),
     };
     Failure::of_attached(kind, what)

@@ -2,12 +2,9 @@
 
 pub mod attachment;
 pub mod case_file;
-pub mod command;
-pub mod ending;
-pub mod output_tail;
-pub mod process;
+mod ending;
+mod process;
 pub mod reading;
-pub mod repeats;
-pub mod staging;
-pub mod started_processes;
-pub mod wholeness;
+mod staging;
+mod started_processes;
+mod wholeness;

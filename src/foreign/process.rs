@@ -1,11 +1,13 @@
 //! One run of a program: in a folder and a process group of its own, without input, bounded in time and output.
 
-use crate::foreign::output_tail::Listener;
 use crate::foreign::started_processes::{Family, Found, MARK, Mark};
+use std::collections::VecDeque;
 use std::ffi::OsString;
+use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Time between two questions whether the run is still wanted.
@@ -76,7 +78,7 @@ pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
         Ok(child) => child,
         Err(error) => return Finished::not_started(error),
     };
-    let listeners = (child.stdout.take().map(Listener::to), child.stderr.take().map(Listener::to));
+    let listeners = [child.stdout.take().map(Listener::to), child.stderr.take().map(Listener::to)];
     let family = Family::of(&child, mark);
     let end = reaped(child);
     let deadline = start + order.timeout;
@@ -98,27 +100,22 @@ pub fn run(order: &Order<'_>, is_wanted: &dyn Fn() -> bool) -> Finished {
             break (Some(over), end.recv_timeout(GONE).ok());
         }
     };
-    let (output, errors) = listeners;
-    let streams = [&output, &errors];
+    let end_of_streams = || listeners.iter().flatten().all(|listener| listener.ends_within(STREAMS));
     if ending.is_none() {
         // What it started may be about to end with it.
-        let _ = streams.iter().filter_map(|one| one.as_ref()).all(|listener| listener.ends_within(STREAMS));
+        end_of_streams();
         found = family.end();
     }
-    for listener in streams.into_iter().flatten() {
-        listener.ends_within(STREAMS);
-    }
-    let text = |listener: Option<Listener>| listener.map_or_else(String::new, |listener| listener.text());
-    let seconds = reaped.as_ref().map_or_else(|| start.elapsed(), |reaped| reaped.at - start).as_secs_f64();
-    let (cpu_seconds, peak_memory) =
-        reaped.as_ref().map_or((None, None), |reaped| (reaped.cpu_seconds, reaped.peak_memory));
+    end_of_streams();
+    let [output, errors] =
+        listeners.map(|listener| listener.map_or_else(String::new, |listener| listener.text()));
     Finished {
+        seconds: reaped.as_ref().map_or_else(|| start.elapsed(), |reaped| reaped.at - start).as_secs_f64(),
+        cpu_seconds: reaped.as_ref().and_then(|reaped| reaped.cpu_seconds),
+        peak_memory: reaped.as_ref().and_then(|reaped| reaped.peak_memory),
         ending: ending.unwrap_or_else(|| ended(reaped)),
-        seconds,
-        cpu_seconds,
-        peak_memory,
-        output: text(output),
-        errors: text(errors),
+        output,
+        errors,
         found,
     }
 }
@@ -194,6 +191,72 @@ fn reap(child: &mut Child) -> Reaped {
 fn reap(child: &mut Child) -> Reaped {
     let status = child.wait();
     Reaped { at: Instant::now(), status, cpu_seconds: None, peak_memory: None }
+}
+
+/// Bytes that are kept of what a program says on one stream.
+const KEPT_BYTES: usize = 65_536;
+/// Bytes that are read at once.
+const BLOCK: usize = 8192;
+
+/// A stream that is being read.
+struct Listener {
+    kept: Arc<Mutex<VecDeque<u8>>>,
+    ended: Receiver<()>,
+}
+
+impl Listener {
+    /// Reads a stream to its end, in a thread of its own.
+    fn to(mut stream: impl Read + Send + 'static) -> Self {
+        let kept = Arc::new(Mutex::new(VecDeque::new()));
+        let (tell, ended) = channel();
+        let shared = Arc::clone(&kept);
+        std::thread::spawn(move || {
+            let mut block = [0; BLOCK];
+            loop {
+                match stream.read(&mut block) {
+                    Ok(0) => break,
+                    Ok(count) => keep(&shared, &block[..count]),
+                    Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                    Err(_) => break,
+                }
+            }
+            // Nobody listens any more where the program was given up.
+            let _ = tell.send(());
+        });
+        Self { kept, ended }
+    }
+
+    /// Whether the stream comes to its end within a time: it does not while any process holds it open.
+    fn ends_within(&self, time: Duration) -> bool {
+        !matches!(self.ended.recv_timeout(time), Err(RecvTimeoutError::Timeout))
+    }
+
+    /// The end of what was said so far.
+    fn text(&self) -> String {
+        let bytes: Vec<u8> =
+            self.kept.lock().map_or_else(|_| Vec::new(), |kept| kept.iter().copied().collect());
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+}
+
+fn keep(shared: &Mutex<VecDeque<u8>>, block: &[u8]) {
+    if let Ok(mut kept) = shared.lock() {
+        kept.extend(block);
+        let beyond = kept.len().saturating_sub(KEPT_BYTES);
+        kept.drain(..beyond);
+    }
+}
+
+/// The last lines of a text, as a person reads them: without control characters, each of a bounded length.
+pub fn last_lines(text: &str, most: usize, longest: usize) -> Vec<String> {
+    let plain = |line: &str| {
+        let letters = line.chars().filter(|letter| !letter.is_control());
+        let line: String = letters.clone().take(longest).collect();
+        if letters.count() > longest { line + "…" } else { line }
+    };
+    let lines: Vec<String> =
+        text.lines().map(|line| plain(line.trim_end())).filter(|line| !line.is_empty()).collect();
+    lines[lines.len().saturating_sub(most)..].to_vec()
 }
 
 #[cfg(all(test, unix))]

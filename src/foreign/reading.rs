@@ -1,4 +1,4 @@
-//! From the files that a solver left to states, with what they were read as.
+//! Reads the files that a solver left as states, and says what they were read as.
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
@@ -148,8 +148,8 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     Ok(ReadResult { states: run.states, sample, notes: run.notes, digest })
 }
 
-/// Why a result that could be read is none of its case: cut, a quantity gone, another mesh's, beyond all that the load
-/// can bring about. The first that applies.
+/// Why a result that could be read cannot be that of its case: cut, without a quantity, of another mesh, or with a pressure
+/// that the load cannot cause. The first that applies.
 fn unfit(case: &Case, sample: Sample, run: &Run) -> Option<String> {
     if let Some(file) = run.unended.first() {
         return Some(not_ended(file));
@@ -192,7 +192,7 @@ fn distinct(places: &[f64], extent: f64) -> usize {
     sorted.len()
 }
 
-/// Whether a pressure is beyond all that the load can bring about, of a body without weight of its own.
+/// A pressure that the load cannot cause, in a body without self-weight.
 fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
     let most = IMPOSSIBLE * case.column.load.abs();
     if case.column.self_weight || most == 0.0 {

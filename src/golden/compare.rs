@@ -1,7 +1,12 @@
-//! Golden values against present ones.
+//! Compares golden values with present ones: value by value, by case, and by kind of change.
+//!
+//! Accuracy and cost are judged together: a case that is dearer or worse than its golden values, and in nothing better,
+//! is dominated by them; one that pays for one with the other is a trade. A long list of differences says less than one
+//! line a kind, with what its values have in common and its largest change.
 
 use crate::golden::references::REFERENCES;
-use crate::golden::{GoldenFile, parts};
+use crate::golden::{GoldenFile, is_counter, parts};
+use oedometer_convergence::ParetoChange;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -78,7 +83,7 @@ impl Difference {
     }
 }
 
-/// Whether a smaller value is a better one: an error or a counter, and no exact solution or critical step.
+/// Whether a smaller value is better: true of errors and counters, not of exact solutions and critical steps.
 fn is_better_if_smaller(study: &str, name: &str) -> bool {
     study != REFERENCES && !parts(name).1.ends_with("critical step")
 }
@@ -121,7 +126,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
     differences
 }
 
-/// A value that fell is no good news in a case where another one moved.
+/// Marks values that fell in a case in which another one moved: they are no improvement.
 fn tell_apart_what_is_paid_for(differences: &mut [Difference]) {
     let case_of = |one: &Difference| parts(&one.name).0.to_owned();
     let moved = |one: &&Difference| one.change == Change::Moved;
@@ -131,6 +136,155 @@ fn tell_apart_what_is_paid_for(differences: &mut [Difference]) {
             one.change = Change::Smaller;
         }
     }
+}
+
+/// A case that differs from its golden values.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct CaseChange {
+    /// Label of the case.
+    pub case: String,
+    /// Accuracy and cost together.
+    pub change: ParetoChange,
+    /// Largest ratio of a work counter to its golden value; 1 where none changed.
+    pub cost_ratio: f64,
+    /// Errors that grew beyond their tolerance.
+    pub worse: usize,
+    /// Errors that fell beyond their tolerance.
+    pub better: usize,
+    /// Values that are missing, or that nothing is known of.
+    pub unpaired: usize,
+}
+
+impl CaseChange {
+    /// Whether the golden values are to be looked at again and nothing has failed: all that changed
+    /// is better, or cost was traded for accuracy throughout.
+    pub fn is_stale(&self) -> bool {
+        let cheaper = self.cost_ratio < 1.0;
+        let dearer = self.cost_ratio > 1.0;
+        match self.change {
+            ParetoChange::Better => true,
+            ParetoChange::Traded => cheaper && self.better == 0 || dearer && self.worse == 0,
+            ParetoChange::Same | ParetoChange::Dominated | ParetoChange::NotComparable => false,
+        }
+    }
+}
+
+/// The cases of differences, in their order.
+pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
+    let mut changes: Vec<CaseChange> = Vec::new();
+    for difference in differences {
+        let (case, measure) = parts(&difference.name);
+        let place = changes.iter().position(|change| change.case == case).unwrap_or_else(|| {
+            changes.push(CaseChange {
+                case: case.to_owned(),
+                change: ParetoChange::Same,
+                cost_ratio: 1.0,
+                worse: 0,
+                better: 0,
+                unpaired: 0,
+            });
+            changes.len() - 1
+        });
+        let change = &mut changes[place];
+        match (difference.golden, difference.found) {
+            (Some(golden), Some(found)) if is_counter(measure) => {
+                let ratio = found / golden;
+                if (ratio - 1.0).abs() > (change.cost_ratio - 1.0).abs() {
+                    change.cost_ratio = ratio;
+                }
+            }
+            (Some(_), Some(_)) if matches!(difference.change, Change::Stale | Change::Smaller) => {
+                change.better += 1;
+            }
+            (Some(_), Some(_)) => change.worse += 1,
+            _ => change.unpaired += 1,
+        }
+    }
+    for change in &mut changes {
+        let worse = change.worse > 0 || change.cost_ratio > 1.0;
+        let better = change.better > 0 || change.cost_ratio < 1.0;
+        change.change = match (change.unpaired > 0 || !change.cost_ratio.is_finite(), better, worse) {
+            (true, ..) => ParetoChange::NotComparable,
+            (_, false, false) => ParetoChange::Same,
+            (_, true, false) => ParetoChange::Better,
+            (_, true, true) => ParetoChange::Traded,
+            (_, false, true) => ParetoChange::Dominated,
+        };
+    }
+    changes
+}
+
+/// The differences of one kind.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct DifferenceGroup {
+    /// What happened.
+    pub change: Change,
+    /// Values.
+    pub values: usize,
+    /// Cases that they are of.
+    pub cases: usize,
+    /// Words of the cases' labels that all of them share and that not every value of the study has.
+    pub shared_by_cases: Vec<String>,
+    /// Words of the measures that all of them share and that not every value of the study has.
+    pub shared_by_measures: Vec<String>,
+    /// The worst.
+    pub worst: Difference,
+    /// Where most of its error is, as a sentence: of somebody else's result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
+}
+
+/// Words of a value's name, each marked with the side it stands on.
+fn words(name: &str) -> BTreeSet<(NameSide, &str)> {
+    let (case, measure) = parts(name);
+    // Variants stand in brackets behind the label: `(u-p, implicit drag)`.
+    let (label, variants) = case.split_once(" (").unwrap_or((case, ""));
+    let variants = variants.trim_end_matches(')').split(", ").filter(|variant| !variant.is_empty());
+    let of_case = label.split_whitespace().chain(variants).map(|word| (NameSide::Case, word));
+    of_case.chain(measure.split_whitespace().map(|word| (NameSide::Measure, word))).collect()
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum NameSide {
+    Case,
+    Measure,
+}
+
+/// The groups of differences that are in their order, the worst group first. `all` are the names of
+/// every value that was compared.
+pub fn groups_of<'a>(
+    differences: &[Difference],
+    all: impl IntoIterator<Item = &'a str>,
+) -> Vec<DifferenceGroup> {
+    let mut everywhere: BTreeMap<(NameSide, &str), usize> = BTreeMap::new();
+    let mut number = 0;
+    for name in all {
+        number += 1;
+        for word in words(name) {
+            *everywhere.entry(word).or_default() += 1;
+        }
+    }
+    let mut groups = Vec::new();
+    for of_kind in differences.chunk_by(|a, b| a.change == b.change) {
+        let Some(worst) = of_kind.first() else { continue };
+        let mut shared = words(&worst.name);
+        for one in of_kind {
+            let words = words(&one.name);
+            shared.retain(|word| words.contains(word));
+        }
+        shared.retain(|word| everywhere.get(word).is_none_or(|count| *count < number));
+        let of = |side| shared.iter().filter(|word| word.0 == side).map(|word| word.1.to_owned()).collect();
+        groups.push(DifferenceGroup {
+            change: worst.change,
+            values: of_kind.len(),
+            cases: of_kind.iter().map(|one| parts(&one.name).0).collect::<BTreeSet<_>>().len(),
+            shared_by_cases: of(NameSide::Case),
+            shared_by_measures: of(NameSide::Measure),
+            worst: worst.clone(),
+            place: None,
+        });
+    }
+    groups
 }
 
 #[cfg(test)]
@@ -197,5 +351,108 @@ mod tests {
         assert_eq!(fallen("study", step), Change::Moved);
         assert_eq!(fallen("references", "terzaghi seed column | p/q ζ=0.5 T_v=0.02"), Change::Moved);
         assert_eq!(fallen("study", "a | pressure points l2 terzaghi T_v=0.1"), Change::Stale);
+    }
+
+    fn difference(name: &str, golden: f64, found: f64) -> Difference {
+        Difference {
+            name: name.to_owned(),
+            change: if found.abs() < golden.abs() { Change::Stale } else { Change::Moved },
+            golden: Some(golden),
+            found: Some(found),
+            tolerance: 0.0,
+        }
+    }
+
+    fn only(differences: &[Difference]) -> CaseChange {
+        let mut changes = case_changes(differences);
+        assert_eq!(changes.len(), 1);
+        changes.remove(0)
+    }
+
+    #[test]
+    fn accuracy_and_cost_are_judged_together() {
+        let (steps, error, other) = ("a | steps", "a | pressure T_v=0.1", "a | settlement T_v=0.1");
+        let dominated = only(&[difference(steps, 100.0, 120.0), difference(error, 0.1, 0.2)]);
+        assert_eq!((dominated.change, dominated.is_stale()), (ParetoChange::Dominated, false));
+        let worse = only(&[difference(error, 0.1, 0.2)]);
+        assert_eq!((worse.change, worse.is_stale()), (ParetoChange::Dominated, false));
+        let better = only(&[difference(steps, 100.0, 50.0), difference(error, 0.1, 0.05)]);
+        assert_eq!((better.change, better.is_stale()), (ParetoChange::Better, true));
+        let trade = only(&[difference(steps, 100.0, 50.0), difference(error, 0.1, 0.2)]);
+        assert_eq!((trade.change, trade.is_stale()), (ParetoChange::Traded, true));
+        // At the same cost some errors fell and some grew: that is no trade but a change of method.
+        let mixed = only(&[difference(error, 0.1, 0.2), difference(other, 0.1, 0.05)]);
+        assert_eq!((mixed.change, mixed.is_stale()), (ParetoChange::Traded, false));
+    }
+
+    #[test]
+    fn what_has_no_partner_cannot_be_compared() {
+        let missing = Difference { found: None, ..difference("a | pressure T_v=0.1", 0.1, 0.1) };
+        assert_eq!(only(&[missing]).change, ParetoChange::NotComparable);
+        let names: Vec<String> = case_changes(&[
+            difference("a | steps", 1.0, 2.0),
+            difference("b | steps", 1.0, 2.0),
+            difference("a | pressure T_v=1", 1.0, 2.0),
+        ])
+        .into_iter()
+        .map(|change| change.case)
+        .collect();
+        assert_eq!(names, ["a", "b"]);
+    }
+
+    /// Names of a study with two methods, two meshes, two formulations and three measures.
+    fn names() -> Vec<String> {
+        let mut all = Vec::new();
+        for method in ["MPM", "GIMP"] {
+            for cells in [4, 8] {
+                for variant in ["(u-p, implicit drag)", "(implicit drag)"] {
+                    for measure in
+                        ["steps", "pressure points l2 terzaghi T_v=0.1", "settlement surface relative T_v=1"]
+                    {
+                        all.push(format!("{method} implicit cells={cells} {variant} | {measure}"));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// The groups where values are changed by factors.
+    fn groups(factor: impl Fn(&str) -> f64) -> Vec<DifferenceGroup> {
+        let values: BTreeMap<String, f64> = names().into_iter().map(|name| (name, 5.0)).collect();
+        let found = values.iter().map(|(name, value)| (name.clone(), value * factor(name))).collect();
+        let golden = GoldenFile { values: values.clone(), ..GoldenFile::of("study", &[], "test") };
+        groups_of(&compare(&golden, &found), values.keys().map(String::as_str))
+    }
+
+    #[test]
+    fn what_the_values_of_a_group_share_is_told_and_what_all_share_is_not() {
+        let found = groups(|name| match (name.contains("u-p"), name.contains("pressure")) {
+            (true, true) if name.contains("cells=8") && name.starts_with("GIMP") => 1.5,
+            (true, true) => 1.1,
+            _ => 1.0,
+        });
+        assert_eq!(found.len(), 1, "{found:?}");
+        let group = &found[0];
+        assert_eq!((group.change, group.values, group.cases), (Change::Moved, 4, 4));
+        assert_eq!(group.shared_by_cases, ["u-p"], "`implicit` and `implicit drag` are of every case");
+        assert_eq!(group.shared_by_measures, ["T_v=0.1", "l2", "points", "pressure", "terzaghi"]);
+        assert!(group.worst.name.starts_with("GIMP implicit cells=8 (u-p"), "{}", group.worst.name);
+        assert!((group.worst.relative_change().expect("both sides") - 1.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn kinds_are_kept_apart_and_values_without_a_common_word_have_none() {
+        let found = groups(|name| match name {
+            name if name.starts_with("MPM") && name.contains("steps") => 2.0,
+            name if name.starts_with("GIMP") && name.contains("settlement") => 0.5,
+            _ => 1.0,
+        });
+        let kinds: Vec<_> = found.iter().map(|group| (group.change, group.values)).collect();
+        assert_eq!(kinds, [(Change::Moved, 4), (Change::Stale, 4)]);
+        assert_eq!(found[0].shared_by_cases, ["MPM"]);
+        assert_eq!(found[1].shared_by_cases, ["GIMP"]);
+        let everything = groups(|_| 1.1);
+        assert!(everything[0].shared_by_cases.is_empty() && everything[0].shared_by_measures.is_empty());
     }
 }

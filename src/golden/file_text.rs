@@ -45,13 +45,14 @@ fn decimal(value: f64) -> String {
 const ROUNDING: f64 = 10.0;
 
 /// The value rounded to a power of ten that is at most `step`, so that the digits of a file say what the tolerance
-/// compares; exactly as it is where the step is 0 or beyond the powers of ten of a normal number.
+/// compares; as it is where the step is 10 or more.
 fn rounded(value: f64, step: f64) -> f64 {
-    let digits = -step.log10().floor();
-    if !(0.0..=300.0).contains(&digits) {
-        return value;
+    let power = format!("{step:e}").rsplit('e').next().and_then(|power| power.parse::<i32>().ok());
+    match power.and_then(|power| usize::try_from(-power).ok()) {
+        // Without the sign of a zero.
+        Some(digits) => format!("{value:.digits$}").parse().unwrap_or(value) + 0.0,
+        None => value,
     }
-    format!("{value:.0$}", digits as usize).parse().unwrap_or(value) + 0.0
 }
 
 /// A line of the header; tolerances as 1e-12, which TOML's writer spells with eleven zeros.
@@ -187,7 +188,7 @@ mod tests {
         assert_eq!(rounded(0.1 + 0.2, 3e-10 / ROUNDING), 0.3);
         assert_eq!(rounded(-1.234_567_890_123_456e-7, 1e-12 / ROUNDING), -1.234_568e-7);
         assert_eq!(rounded(-1e-17, 1e-12 / ROUNDING).to_bits(), 0.0_f64.to_bits());
-        assert_eq!(rounded(171_843_680.0, 0.0), 171_843_680.0);
+        assert_eq!(rounded(171_843_680.0, 0.5 / ROUNDING), 171_843_680.0);
         let name = "MPM cells=4 | pressure points l2 terzaghi T_v=0.1";
         for size in [0.0, 1e-17, 1e-9, 0.123_456_789_123_456_78, 1.0 / 3.0, 12_345.678_901_234_567, 1e300] {
             let values = BTreeMap::from([(name.to_owned(), size)]);

@@ -57,7 +57,7 @@ pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
     values_of_column(&ColumnParameters::default())
 }
 
-/// The same with the last digit of one input after the other changed: what they move by is round-off.
+/// [`reference_values`] with the last digit of one input after the other changed: what they move by is round-off.
 ///
 /// # Errors
 /// When a solution refuses the column: a fault of this program.
@@ -70,119 +70,129 @@ pub fn perturbed_reference_values() -> Result<Vec<BTreeMap<String, f64>>, ExactE
     perturbed.into_iter().collect()
 }
 
-fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, ExactError> {
-    let mut values = BTreeMap::new();
-    let seed = *seed;
-    let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..seed };
-    // Motions that were chosen have no column; their balances hold them in the tests.
-    for kind in ReferenceKind::ALL.into_iter().filter(|kind| !kind.is_manufactured()) {
-        for (column, parameters) in [("seed column", seed), ("soft water, 200 kPa", soft)] {
-            let reference = Reference::new(kind, &parameters, &TIME_FACTORS)?;
-            note_solution(&mut values, &format!("{kind} {column}"), &reference, &parameters, &TIME_FACTORS)?;
-        }
+/// Values by the names `case | what T_v=time`.
+#[derive(Default)]
+struct Values(BTreeMap<String, f64>);
+
+impl Values {
+    fn note(&mut self, case: &str, what: &str, time_factor: f64, value: f64) {
+        self.0.insert(format!("{case} | {what} T_v={time_factor}"), value);
     }
-    for kind in ReferenceKind::ALL {
-        let parameters = ColumnParameters { loading_time: seed.time(LOADED_AT), ..soft };
-        if matches!(kind, ReferenceKind::DynamicColumn | ReferenceKind::LargeStrain(_)) {
-            let reference = Reference::new(kind, &parameters, &TIMES_OF_GROWTH)?;
-            let name = format!("{kind} growing load");
-            note_solution(&mut values, &name, &reference, &parameters, &TIMES_OF_GROWTH)?;
-        }
+
+    /// Notes a bound by its power of ten: one of 1e-20 is nothing beside any tolerance.
+    fn note_bound(&mut self, case: &str, time_factor: f64, bound: f64) {
+        self.note(case, "power of the tail bound", time_factor, elementary::log10(bound.max(LEAST_BOUND)));
     }
-    note_drainages(&mut values, &ColumnParameters { load: LARGE_LOAD, ..seed })?;
-    for (start, name) in
-        [(Start::Step, "step"), (Start::Mode, "mode"), (Start::StandingWave, "standing wave")]
-    {
-        let column = DynamicColumn::new(&seed, start, &TIME_FACTORS)?;
+
+    /// Notes a solution on the depths at some times.
+    fn note_solution(
+        &mut self,
+        case: &str,
+        kind: ReferenceKind,
+        parameters: &ColumnParameters,
+        time_factors: &[f64],
+    ) -> Result<(), ExactError> {
+        let case = format!("{kind} {case}");
+        let reference = Reference::new(kind, parameters, time_factors)?;
+        for time_factor in time_factors.iter().copied() {
+            let mut note = |what: &str, value| self.note(&case, what, time_factor, value);
+            note("degree", reference.degree_of_consolidation(time_factor)?);
+            let accuracy = reference.accuracy(time_factor)?;
+            note("terms", accuracy.terms as f64);
+            for zeta in DEPTHS {
+                let fields = reference.fields(time_factor, zeta)?;
+                note(&format!("p/q ζ={zeta}"), fields.pressure / parameters.load);
+                note(&format!("σ'/q ζ={zeta}"), fields.effective_stress / parameters.load);
+                let displacement = fields.displacement / parameters.final_settlement();
+                note(&format!("u/(m_v q H) ζ={zeta}"), displacement);
+            }
+            self.note_bound(&case, time_factor, accuracy.tail_bound);
+        }
+        Ok(())
+    }
+
+    /// Notes what Xie & Leo give beside fields, for both drainages.
+    fn note_drainages(&mut self, parameters: &ColumnParameters) -> Result<(), ExactError> {
+        for (drainage, name) in [(Drainage::Top, "top"), (Drainage::TopAndBase, "top and base")] {
+            let solution = XieLeo::drained(parameters, drainage)?;
+            let case = format!("xie-leo drained at {name}");
+            for time_factor in TIME_FACTORS {
+                let mut note = |what: &str, value| self.note(&case, what, time_factor, value);
+                note("settlement/H", solution.settlement(time_factor)? / parameters.height);
+                note("degree", solution.degree_of_consolidation(time_factor)?);
+                for zeta in DEPTHS {
+                    let fields = solution.fields(time_factor, zeta)?;
+                    note(&format!("p/q ζ={zeta}"), fields.pressure / parameters.load);
+                    note(&format!("u/H ζ={zeta}"), fields.displacement / parameters.height);
+                    note(&format!("J ζ={zeta}"), solution.volume_ratio(time_factor, zeta)?);
+                }
+                self.note_bound(&case, time_factor, solution.accuracy(time_factor)?.tail_bound);
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes displacements and velocities of both phases in the column with inertia.
+    fn note_waves(&mut self, seed: &ColumnParameters) -> Result<(), ExactError> {
+        let starts = [(Start::Step, "step"), (Start::Mode, "mode"), (Start::StandingWave, "standing wave")];
         let (length, rate) = (seed.final_settlement(), seed.final_settlement() / seed.time(1.0));
-        for time_factor in TIME_FACTORS {
-            for zeta in DEPTHS {
-                let fields = column.dynamic_fields(time_factor, zeta)?;
-                let mut note = |what: &str, value: f64| {
-                    values
-                        .insert(format!("dynamic-column {name} | {what} ζ={zeta} T_v={time_factor}"), value);
-                };
-                note("u_w/(m_v q H)", fields.water_displacement / length);
-                note("v_s/(m_v q c_v/H)", fields.velocities.solid / rate);
-                note("v_w/(m_v q c_v/H)", fields.velocities.water / rate);
-            }
-        }
-    }
-    for (base, name) in [(Base::Rough, "rough"), (Base::Smooth, "smooth")] {
-        let layer = CosineLayer::new(&seed, 1.0, base, Water::Compressible)?;
-        for time_factor in TIME_FACTORS {
-            let state = layer.at(time_factor)?;
-            for (x, y) in [(0.0, 0.9), (0.3, 0.5), (0.5, 0.1)] {
-                let fields = state.fields(x, y)?;
-                let mut note = |what: &str, value: f64| {
-                    values
-                        .insert(format!("cosine-layer {name} | {what} x={x} y={y} T_v={time_factor}"), value);
-                };
-                note("p", fields.pressure);
-                for (stress, direction) in fields.effective_stress.iter().zip(["xx", "yy", "zz", "xy"]) {
-                    note(&format!("σ'_{direction}"), *stress);
-                }
-                for (displacement, direction) in fields.displacement.iter().zip(["x", "y"]) {
-                    note(&format!("u_{direction}/(m_v q H)"), displacement / seed.final_settlement());
+        for (start, name) in starts {
+            let column = DynamicColumn::new(seed, start, &TIME_FACTORS)?;
+            let case = format!("dynamic-column {name}");
+            for time_factor in TIME_FACTORS {
+                for zeta in DEPTHS {
+                    let fields = column.dynamic_fields(time_factor, zeta)?;
+                    let mut note =
+                        |what: &str, value| self.note(&case, &format!("{what} ζ={zeta}"), time_factor, value);
+                    note("u_w/(m_v q H)", fields.water_displacement / length);
+                    note("v_s/(m_v q c_v/H)", fields.velocities.solid / rate);
+                    note("v_w/(m_v q c_v/H)", fields.velocities.water / rate);
                 }
             }
         }
+        Ok(())
     }
-    Ok(values)
-}
 
-/// A solution on the depths at some times.
-fn note_solution(
-    values: &mut BTreeMap<String, f64>,
-    name: &str,
-    reference: &Reference,
-    parameters: &ColumnParameters,
-    time_factors: &[f64],
-) -> Result<(), ExactError> {
-    let mut note = |what: &str, time_factor: f64, value: f64| {
-        values.insert(format!("{name} | {what} T_v={time_factor}"), value);
-    };
-    for time_factor in time_factors.iter().copied() {
-        note("degree", time_factor, reference.degree_of_consolidation(time_factor)?);
-        let accuracy = reference.accuracy(time_factor)?;
-        note("terms", time_factor, accuracy.terms as f64);
-        // By its power of ten: a bound of 1e-20 is nothing beside any tolerance.
-        note("power of the tail bound", time_factor, elementary::log10(accuracy.tail_bound.max(LEAST_BOUND)));
-        for zeta in DEPTHS {
-            let fields = reference.fields(time_factor, zeta)?;
-            let load = parameters.load;
-            note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / load);
-            note(&format!("σ'/q ζ={zeta}"), time_factor, fields.effective_stress / load);
-            let displacement = fields.displacement / parameters.final_settlement();
-            note(&format!("u/(m_v q H) ζ={zeta}"), time_factor, displacement);
-        }
-    }
-    Ok(())
-}
-
-/// What Xie & Leo give beside fields, for both drainages.
-fn note_drainages(
-    values: &mut BTreeMap<String, f64>,
-    parameters: &ColumnParameters,
-) -> Result<(), ExactError> {
-    for (drainage, name) in [(Drainage::Top, "top"), (Drainage::TopAndBase, "top and base")] {
-        let solution = XieLeo::drained(parameters, drainage)?;
-        let mut note = |what: &str, time_factor: f64, value: f64| {
-            values.insert(format!("xie-leo drained at {name} | {what} T_v={time_factor}"), value);
-        };
-        for time_factor in TIME_FACTORS {
-            note("settlement/H", time_factor, solution.settlement(time_factor)? / parameters.height);
-            note("degree", time_factor, solution.degree_of_consolidation(time_factor)?);
-            let bound = solution.accuracy(time_factor)?.tail_bound;
-            note("power of the tail bound", time_factor, elementary::log10(bound.max(LEAST_BOUND)));
-            for zeta in DEPTHS {
-                let fields = solution.fields(time_factor, zeta)?;
-                note(&format!("p/q ζ={zeta}"), time_factor, fields.pressure / parameters.load);
-                let displacement = fields.displacement / parameters.height;
-                note(&format!("u/H ζ={zeta}"), time_factor, displacement);
-                note(&format!("J ζ={zeta}"), time_factor, solution.volume_ratio(time_factor, zeta)?);
+    /// Notes the fields of the cosine layer on both bases.
+    fn note_layers(&mut self, seed: &ColumnParameters) -> Result<(), ExactError> {
+        for (base, name) in [(Base::Rough, "rough"), (Base::Smooth, "smooth")] {
+            let layer = CosineLayer::new(seed, 1.0, base, Water::Compressible)?;
+            let case = format!("cosine-layer {name}");
+            for time_factor in TIME_FACTORS {
+                let state = layer.at(time_factor)?;
+                for (x, y) in [(0.0, 0.9), (0.3, 0.5), (0.5, 0.1)] {
+                    let fields = state.fields(x, y)?;
+                    let mut note = |what: &str, value| {
+                        self.note(&case, &format!("{what} x={x} y={y}"), time_factor, value);
+                    };
+                    note("p", fields.pressure);
+                    for (stress, direction) in fields.effective_stress.iter().zip(["xx", "yy", "zz", "xy"]) {
+                        note(&format!("σ'_{direction}"), *stress);
+                    }
+                    for (displacement, direction) in fields.displacement.iter().zip(["x", "y"]) {
+                        note(&format!("u_{direction}/(m_v q H)"), displacement / seed.final_settlement());
+                    }
+                }
             }
         }
+        Ok(())
     }
-    Ok(())
+}
+
+fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, ExactError> {
+    let mut values = Values::default();
+    let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..*seed };
+    let growing = ColumnParameters { loading_time: seed.time(LOADED_AT), ..soft };
+    // Motions that were chosen have no column; their balances are tested.
+    for kind in ReferenceKind::ALL.into_iter().filter(|kind| !kind.is_manufactured()) {
+        values.note_solution("seed column", kind, seed, &TIME_FACTORS)?;
+        values.note_solution("soft water, 200 kPa", kind, &soft, &TIME_FACTORS)?;
+        if matches!(kind, ReferenceKind::DynamicColumn | ReferenceKind::LargeStrain(_)) {
+            values.note_solution("growing load", kind, &growing, &TIMES_OF_GROWTH)?;
+        }
+    }
+    values.note_drainages(&ColumnParameters { load: LARGE_LOAD, ..*seed })?;
+    values.note_waves(seed)?;
+    values.note_layers(seed)?;
+    Ok(values.0)
 }

@@ -2,9 +2,9 @@
 
 use crate::campaign::run_report::RunError;
 use crate::case::Tier;
-use crate::golden::case_changes::{CaseChange, case_changes};
-use crate::golden::compare::{Change, Difference, compare};
-use crate::golden::difference_groups::{DifferenceGroup, groups_of};
+use crate::golden::compare::{
+    CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
+};
 use crate::golden::references::{REFERENCES, reference_values};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::judge::explanation::place_of_attached;

@@ -6,7 +6,7 @@ use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::{LONG_AFTER, snapshot_errors};
 use crate::measure::other_measures::measures_of;
 use crate::measure::theory::known_reference;
-use crate::record::attached_run::AttachedRun;
+use crate::record::AttachedRun;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ErrorRow, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
 use oedometer_exact::{ExactError, Reference, ReferenceKind};

@@ -3,24 +3,16 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
-pub mod attached_run;
 pub mod csv;
-pub mod machines;
-pub mod origins;
 pub mod pack;
-pub mod packed_store;
 pub mod provenance;
-pub mod seal;
-pub mod single_files;
 pub mod store;
 pub mod whole_file;
 
 use crate::case::Case;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
-use crate::record::attached_run::AttachedRun;
-use crate::record::machines::Machine;
-use crate::record::provenance::Provenance;
+use crate::record::provenance::{Machine, Provenance};
 pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
 pub use oedometer_mpm::run::profile::PhaseTime;
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
@@ -41,12 +33,12 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether the time was over before the case was.
+    /// Whether the case ran out of its time.
     pub fn is_late(&self) -> bool {
         self.failure().is_some_and(|failure| failure.kind == FailureKind::TimedOut)
     }
 
-    /// Whether it lies in what may be otherwise by now: time that was too short, or somebody else's program.
+    /// Whether another run may end otherwise: the time was too short, or an attached solver failed.
     pub fn is_worth_another_run(&self) -> bool {
         self.is_late() || self.failure().is_some_and(|failure| failure.kind.is_of_attached())
     }
@@ -167,7 +159,7 @@ pub struct LayerBalance {
     pub largest_pressure: Option<f64>,
 }
 
-/// What is measured beside errors of fields, against what it must be.
+/// A quantity that is measured beside errors of fields, with its exact value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MeasureRow {
     /// Name, a word of the field.
@@ -175,11 +167,11 @@ pub struct MeasureRow {
     /// Time factor of the output; none where it is of the whole run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_factor: Option<f64>,
-    /// Reference that it is held against.
+    /// Reference that it is compared with.
     pub reference: ReferenceName,
-    /// What the run has.
+    /// Value of the run.
     pub found: f64,
-    /// What is exact.
+    /// Exact value.
     pub exact: f64,
 }
 
@@ -201,7 +193,7 @@ pub struct ErrorRow {
     pub sample: Sample,
     /// In which norm.
     pub norm: Norm,
-    /// Against which reference.
+    /// Reference.
     pub reference: ReferenceName,
     /// Relative error; settlement with its sign.
     pub value: f64,
@@ -247,9 +239,42 @@ pub struct ReferenceUse {
     pub terms: usize,
     /// Largest tail bound at any output, over the load.
     pub tail_bound: f64,
-    /// Why it does not hold for the case, where it does not: then no error is held against it.
+    /// Why it does not hold for the case, where it does not: then no error is computed from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub does_not_hold: Option<String>,
+}
+
+/// What is known of the run of an attached solver beside its result. What changes from run to run at the same result, like
+/// times, is kept with the wall times.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct AttachedRun {
+    /// The command as the study has it, with its placeholders.
+    pub command: Vec<String>,
+    /// What it says of its version, where it was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<String>,
+    /// Whether it was run once before it was timed.
+    #[serde(default)]
+    pub warmed_up: bool,
+    /// Kind of the places of its result, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample: Option<Sample>,
+    /// What of the result was taken from where.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub taken: Vec<String>,
+    /// Digest of the content of the result's files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub result_digest: Option<String>,
+    /// Largest difference between the results of repeats, over the largest value of its field; none where there was
+    /// one run. Results at other places are told as a note.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeats_differ_by: Option<f64>,
+    /// What is odd about the run and fails nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// The last lines that it said, of a run that failed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub last_words: Vec<String>,
 }
 
 /// Everything known of one case.
@@ -280,7 +305,7 @@ pub struct Record {
     pub start: Option<StartChecks>,
     /// Balances at each output.
     pub balance: Vec<Balance>,
-    /// Errors against every reference of the scene.
+    /// Errors with each reference of the scene.
     pub errors: Vec<ErrorRow>,
     /// What is measured beside errors of fields: peaks, and what moves where nothing may.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

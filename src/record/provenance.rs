@@ -1,6 +1,9 @@
-//! What made a record: version, sources, compiler, target.
+//! What made a record: the program with its version, sources, compiler and target, and the machine; and what made several
+//! records that are taken together.
 
+use crate::record::whole_file::host_name;
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// Origin of a record.
 ///
@@ -66,4 +69,185 @@ impl Provenance {
 fn tag(words: &[&str]) -> u64 {
     let hash = blake3::hash(words.join("\n").as_bytes());
     hash.as_bytes().iter().take(8).fold(0, |number, byte| (number << 8) | u64::from(*byte))
+}
+
+/// A machine.
+#[derive(
+    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
+)]
+pub struct Machine {
+    /// Name of the host.
+    pub node: String,
+    /// Its processor, by its name where the system tells it.
+    pub processor: String,
+}
+
+/// The one this program runs on.
+static THIS: LazyLock<Machine> = LazyLock::new(|| {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| {
+        let (key, value) = line.split_once(':')?;
+        (key.trim() == "model name").then(|| value.split_whitespace().collect::<Vec<_>>().join(" "))
+    });
+    Machine { node: host_name(), processor: name.unwrap_or_else(|| std::env::consts::ARCH.to_owned()) }
+});
+
+impl Machine {
+    /// The machine that this program runs on.
+    pub fn this() -> Self {
+        THIS.clone()
+    }
+}
+
+/// A property in which builds of one program may differ: its name, and its word for an origin.
+type Property = (&'static str, fn(&Provenance) -> &str);
+
+/// Every such property.
+const OF_A_BUILD: [Property; 4] = [
+    ("compiler", |origin| &origin.compiler),
+    ("target", |origin| &origin.target),
+    ("profile", |origin| &origin.profile),
+    ("tree", |origin| if origin.dirty { "changed since its commit" } else { "as committed" }),
+];
+
+/// Origins of records, each with the number of its records.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origins {
+    counts: Vec<(Provenance, usize)>,
+}
+
+impl Origins {
+    /// Counts one record.
+    pub fn add(&mut self, origin: &Provenance) {
+        self.add_many(origin, 1);
+    }
+
+    /// Counts several records.
+    pub fn add_many(&mut self, origin: &Provenance, records: usize) {
+        match self.counts.iter_mut().find(|(known, _)| known == origin) {
+            Some((_, count)) => *count += records,
+            None => self.counts.push((origin.clone(), records)),
+        }
+    }
+
+    /// Counts those of others too.
+    pub fn join(&mut self, others: &Self) {
+        for (origin, records) in &others.counts {
+            self.add_many(origin, *records);
+        }
+    }
+
+    /// The origin of most records; of the first ones where several have as many.
+    pub fn main(&self) -> Option<&Provenance> {
+        let most = self.counts.iter().map(|(_, count)| *count).max()?;
+        self.counts.iter().find(|(_, count)| *count == most).map(|(origin, _)| origin)
+    }
+
+    /// The programs, in words with the number of their records, where there is more than one: their records
+    /// must not be taken together.
+    pub fn several_programs(&self) -> Option<String> {
+        let mut programs: Vec<(&Provenance, usize)> = Vec::new();
+        for (origin, count) in &self.counts {
+            match programs.iter_mut().find(|(known, _)| known.is_of_one_program_with(origin)) {
+                Some((_, all)) => *all += count,
+                None => programs.push((origin, *count)),
+            }
+        }
+        let word = |(origin, count): &(&Provenance, usize)| {
+            let tree = if origin.dirty { ", changed since their commit" } else { "" };
+            format!("{count} of version {} and sources {}{tree}", origin.version, origin.sources)
+        };
+        (programs.len() > 1).then(|| programs.iter().map(word).collect::<Vec<_>>().join(", "))
+    }
+
+    /// In what builds differ from one of them, and in how many records; none where they do not.
+    pub fn differences_from(&self, main: &Provenance) -> Option<String> {
+        let parts: Vec<String> = OF_A_BUILD.iter().filter_map(|one| self.difference(*one, main)).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+
+    fn difference(&self, (name, word): Property, main: &Provenance) -> Option<String> {
+        let mut others: Vec<(&str, usize)> = Vec::new();
+        for (origin, count) in self.counts.iter().filter(|(origin, _)| word(origin) != word(main)) {
+            match others.iter_mut().find(|(known, _)| *known == word(origin)) {
+                Some((_, all)) => *all += count,
+                None => others.push((word(origin), *count)),
+            }
+        }
+        let counted: Vec<String> =
+            others.iter().map(|(other, count)| format!("`{other}` in {count}")).collect();
+        (!counted.is_empty()).then(|| format!("{name} {} instead of `{}`", counted.join(", "), word(main)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn origin() -> Provenance {
+        Provenance {
+            version: "1.0.0".to_owned(),
+            sources: "aaaa".to_owned(),
+            commit: "c1".to_owned(),
+            dirty: false,
+            compiler: "rustc 1.89.0".to_owned(),
+            target: "x86_64-unknown-linux-gnu".to_owned(),
+            profile: "release".to_owned(),
+        }
+    }
+
+    fn origins(all: &[Provenance]) -> Origins {
+        let mut origins = Origins::default();
+        for one in all {
+            origins.add(one);
+        }
+        origins
+    }
+
+    #[test]
+    fn one_build_has_no_differences_whatever_its_commit() {
+        let other = Provenance { commit: "c2".to_owned(), ..origin() };
+        let all = origins(&[origin(), other]);
+        assert_eq!((all.several_programs(), all.differences_from(&origin())), (None, None));
+    }
+
+    #[test]
+    fn every_property_of_a_build_is_named_with_the_number_of_its_records() {
+        let other = |change: fn(&mut Provenance)| {
+            let mut other = origin();
+            change(&mut other);
+            other
+        };
+        let quick = other(|other| other.profile = "quick".to_owned());
+        let newer = other(|other| other.compiler = "rustc 1.90.0".to_owned());
+        let all = origins(&[
+            origin(),
+            quick.clone(),
+            origin(),
+            quick,
+            origin(),
+            newer,
+            other(|other| other.target = "aarch64-apple-darwin".to_owned()),
+            other(|other| other.dirty = true),
+        ]);
+        assert_eq!(all.main(), Some(&origin()));
+        assert_eq!(all.several_programs(), None);
+        let told = all.differences_from(&origin()).unwrap_or_default();
+        assert_eq!(
+            told,
+            "compiler `rustc 1.90.0` in 1 instead of `rustc 1.89.0`; target `aarch64-apple-darwin` in 1 instead of \
+             `x86_64-unknown-linux-gnu`; profile `quick` in 2 instead of `release`; tree `changed since its commit` \
+             in 1 instead of `as committed`"
+        );
+    }
+
+    #[test]
+    fn other_sources_or_another_version_are_another_program() {
+        let dirty = Provenance { sources: "bbbb".to_owned(), dirty: true, ..origin() };
+        let told = origins(&[origin(), dirty.clone(), dirty]).several_programs();
+        let words = "1 of version 1.0.0 and sources aaaa, 2 of version 1.0.0 and sources bbbb, changed since their commit";
+        assert_eq!(told.as_deref(), Some(words));
+        let newer = Provenance { version: "1.1.0".to_owned(), ..origin() };
+        assert!(origins(&[origin(), newer]).several_programs().is_some());
+    }
 }

@@ -1,20 +1,24 @@
 //! Records on disk: a small study has a folder a case, a large one has packs.
 
 use crate::case::Case;
-use crate::record::csv::rows_at_hand::RowsAtHand;
-use crate::record::origins::Origins;
-use crate::record::pack::index::Damage;
-use crate::record::packed_store::{CaseEnd, Entry, PackedStore, number_of};
-use crate::record::provenance::Provenance;
-use crate::record::whole_file::StoreError;
-use crate::record::{Record, SCHEMA, Status, WallSample, single_files};
-use serde::Deserialize;
+use crate::record::pack::{CaseEnd, Damage, Entry, Packs};
+use crate::record::provenance::{Origins, Provenance};
+use crate::record::whole_file::{Layout, StoreError, is_whole, sealed, write_rebuildable};
+use crate::record::{Record, SCHEMA, Status, WallSample};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Cases up to which each has files of its own: a person looks at them one by one, and a folder lists them.
 pub const MOST_SINGLE_CASES: usize = 64;
+/// Folder of the cases of a small study, within that of its results.
+const CASES: &str = "cases";
+/// File of a record in the folder of its case.
+const RECORD: &str = "record.json";
+/// File of its wall times, beside it.
+const WALL: &str = "wall.json";
 
 /// What there is of a case to take up.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,35 +31,19 @@ pub enum Found {
     Finished(Box<Record>),
 }
 
-impl Found {
-    /// Whether there is nothing left to do.
-    pub fn is_finished(&self) -> bool {
-        matches!(self, Self::Finished(_))
-    }
-}
-
-/// The same, as far as it is known without reading a whole record.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Standing {
-    /// Nothing that could be used.
-    Nothing,
-    /// A record that a program of another version or of other sources made.
-    OfAnotherProgram,
-    /// A record of this program and of the build with this tag, which came to its end.
-    Ok {
-        /// Tag of the build.
-        build: u64,
-    },
-    /// A finished record of this program, read.
-    Read(Box<Record>),
-}
-
-/// What of a record says where it comes from.
+/// The fields of a record that say where it comes from.
 #[derive(Deserialize)]
 struct Head {
     schema: u32,
     hash: String,
     provenance: Provenance,
+}
+
+/// The line of wall times behind a record in a pack.
+#[derive(Serialize, Deserialize)]
+struct WallLine {
+    hash: String,
+    wall: Vec<WallSample>,
 }
 
 /// The records of one study.
@@ -64,7 +52,7 @@ struct Head {
 #[derive(Clone, Debug)]
 pub struct RecordStore {
     folder: PathBuf,
-    packs: Arc<PackedStore>,
+    packs: Arc<Packs>,
     is_packed: bool,
 }
 
@@ -77,8 +65,8 @@ impl RecordStore {
     /// The store of a study of so many cases below a folder of results; that of many is packed.
     pub fn for_cases(results: &Path, study: &str, cases: usize) -> Self {
         let folder = results.join(study);
-        let packs = Arc::new(PackedStore::new(&folder));
-        let is_packed = cases > MOST_SINGLE_CASES || packs.has_records();
+        let packs = Arc::new(Packs::new(&folder));
+        let is_packed = cases > MOST_SINGLE_CASES || !packs.entries().is_empty();
         Self { folder, packs, is_packed }
     }
 
@@ -89,7 +77,7 @@ impl RecordStore {
 
     /// Folder of a case, by its hash.
     pub fn folder_of(&self, hash: &str) -> PathBuf {
-        self.folder.join("cases").join(hash)
+        self.folder.join(CASES).join(hash)
     }
 
     /// Whether records go into packs.
@@ -102,27 +90,30 @@ impl RecordStore {
         self.packs.damages()
     }
 
-    /// What is known of the packed records without unpacking them, in no order.
-    pub fn entries(&self) -> Vec<Entry> {
-        self.packs.entries()
-    }
-
-    /// What is known of the packed record of a case.
-    pub fn entry(&self, case: &Case) -> Option<Entry> {
-        self.packs.entry(case.number())
+    /// Takes note of what other writers appended since the store was opened.
+    pub fn refresh(&self) {
+        self.packs.refresh();
     }
 
     /// Whether a program of these sources finished a case, as far as the packs tell without unpacking.
     pub fn is_done(&self, case: &Case) -> bool {
-        match self.entry(case) {
+        match self.packs.entry(case.number()) {
             Some(entry) => entry.is_taken_up_by(&Provenance::of_this_program()),
-            None => matches!(self.found(case), Found::Finished(_)),
+            None => self.finished(case).is_some(),
         }
+    }
+
+    /// Whether a pack has a whole record of a case which a program of these sources brought to its end: then there is
+    /// nothing to read of it.
+    pub fn is_packed_and_done(&self, case: &Case) -> bool {
+        let is_done =
+            |entry: Entry| entry.end == CaseEnd::Ok && entry.is_taken_up_by(&Provenance::of_this_program());
+        self.packs.entry(case.number()).is_some_and(is_done) && self.packs.texts(case.number()).is_some()
     }
 
     /// The record of a case that failed.
     pub fn failed(&self, case: &Case) -> Option<Record> {
-        if self.entry(case).is_some_and(|entry| entry.end == CaseEnd::Ok) {
+        if self.packs.entry(case.number()).is_some_and(|entry| entry.end == CaseEnd::Ok) {
             return None;
         }
         self.kept(case).filter(|record| record.status != Status::Ok)
@@ -130,7 +121,7 @@ impl RecordStore {
 
     /// Whether there is a whole record of a case.
     pub fn has(&self, case: &Case) -> bool {
-        self.packs.text(case.number()).is_some() || single_files::text(&self.folder, &case.hash()).is_some()
+        self.texts(&case.hash()).is_some()
     }
 
     /// Takes over the record of a case from another store as it is, where both are packed and it has a whole one
@@ -142,12 +133,12 @@ impl RecordStore {
         if self.is_packed { self.packs.take_over(&other.packs, case.number()) } else { Ok(false) }
     }
 
-    /// What made the records of some cases.
+    /// What made the records of some cases; of packed ones that one build made only the first is read.
     pub fn origins(&self, cases: &[&Case]) -> Origins {
         let mut origins = Origins::default();
         let mut by_tags: HashMap<(u64, u64), (&Case, usize)> = HashMap::new();
         for case in cases {
-            match self.entry(case) {
+            match self.packs.entry(case.number()) {
                 Some(entry) => by_tags.entry((entry.program, entry.build)).or_insert((case, 0)).1 += 1,
                 None => self.origin(case).iter().for_each(|origin| origins.add(origin)),
             }
@@ -160,26 +151,6 @@ impl RecordStore {
         origins
     }
 
-    /// Makes the rows of every record that is written from now on, for a table that is written at the end of this run.
-    pub fn keep_rows_at_hand(&self) {
-        self.packs.keep_rows_at_hand();
-    }
-
-    /// The rows that were made so.
-    pub fn take_rows_at_hand(&self) -> Option<RowsAtHand> {
-        self.packs.take_rows_at_hand()
-    }
-
-    /// The packs, each with the bytes of it that are whole.
-    pub fn packs(&self) -> Vec<(PathBuf, u64)> {
-        self.packs.packs()
-    }
-
-    /// Takes note of what other writers appended since the store was opened.
-    pub fn refresh(&self) {
-        self.packs.refresh();
-    }
-
     /// The finished record of a case, if there is one that a program of these sources made.
     pub fn finished(&self, case: &Case) -> Option<Record> {
         match self.found(case) {
@@ -190,9 +161,9 @@ impl RecordStore {
 
     /// What there is of a case to take up.
     ///
-    /// A record that cannot be read, was damaged, is of another layout or of another case is as good as none, and so
-    /// is one that ran out of its time, or whose attached solver failed: the case is run again, and so it is where
-    /// another program made its record.
+    /// A record that cannot be read, was damaged, is of another layout or of another case counts as none, and so does
+    /// one that ran out of its time, or whose attached solver failed: the case is run again, and so it is where another
+    /// program made its record.
     /// Another build of the same sources gives the same values and is taken up, without its wall times, which are
     /// that build's own.
     pub fn found(&self, case: &Case) -> Found {
@@ -209,31 +180,10 @@ impl RecordStore {
         Found::Finished(Box::new(record))
     }
 
-    /// What there is of a case to take up, without reading more of a packed record than that it is whole; a failed
-    /// one is read.
-    pub fn standing(&self, case: &Case) -> Standing {
-        let own = Provenance::of_this_program();
-        let number = case.number();
-        let standing = |found| match found {
-            Found::Nothing => Standing::Nothing,
-            Found::OfAnotherProgram => Standing::OfAnotherProgram,
-            Found::Finished(record) => Standing::Read(record),
-        };
-        match self.packs.entry(number) {
-            Some(entry) if entry.end == CaseEnd::Ok => match self.packs.text(number) {
-                None => Standing::Nothing,
-                Some(_) if !entry.is_taken_up_by(&own) => Standing::OfAnotherProgram,
-                Some(_) => Standing::Ok { build: entry.build },
-            },
-            _ => standing(self.found(case)),
-        }
-    }
-
     /// What made the record of a case, if there is one of this layout that is whole.
     pub fn origin(&self, case: &Case) -> Option<Provenance> {
         let hash = case.hash();
-        let text = self.packs.text(number_of(&hash)).or_else(|| single_files::text(&self.folder, &hash))?;
-        let head: Head = serde_json::from_str(&text).ok()?;
+        let head: Head = serde_json::from_str(&self.texts(&hash)?.0).ok()?;
         (head.schema == SCHEMA && head.hash == hash).then_some(head.provenance)
     }
 
@@ -253,26 +203,33 @@ impl RecordStore {
     /// The hash of every case with a record, in their order.
     pub fn hashes(&self) -> Vec<String> {
         let packed = self.packs.entries().into_iter().map(|entry| format!("{:016x}", entry.case));
-        let mut hashes: Vec<String> = packed.chain(single_files::hashes(&self.folder)).collect();
+        let folders = fs::read_dir(self.folder.join(CASES)).into_iter().flatten().flatten();
+        let single = folders.filter_map(|folder| folder.file_name().into_string().ok());
+        let mut hashes: Vec<String> = packed.chain(single).collect();
         hashes.sort_unstable();
         hashes.dedup();
         hashes
     }
 
-    /// The build of a packed record with its wall times, without reading the rest of it.
-    pub fn entry_and_wall(&self, case: &Case) -> Option<(Entry, Vec<WallSample>)> {
-        let number = case.number();
-        Some((self.packs.entry(number)?, self.packs.text_and_wall(number)?.1))
-    }
-
     fn of_hash(&self, hash: &str) -> Option<Record> {
-        let single =
-            || Some((single_files::text(&self.folder, hash)?, single_files::wall(&self.folder, hash)));
-        let (text, wall) = self.packs.text_and_wall(number_of(hash)).or_else(single)?;
+        let (text, wall) = self.texts(hash)?;
         let mut record = Record::from_json(&text).ok()?;
         record.wall = wall;
         record.digest.clear();
         (record.schema == SCHEMA).then_some(record)
+    }
+
+    /// The text of the record of a case, where it is whole, and its wall times. Without readable ones the case is done
+    /// all the same, only not timed.
+    fn texts(&self, hash: &str) -> Option<(String, Vec<WallSample>)> {
+        if let Some((text, wall)) = self.packs.texts(number_of(hash)) {
+            let wall = serde_json::from_str::<WallLine>(&wall).map(|line| line.wall).unwrap_or_default();
+            return Some((text, wall));
+        }
+        let read = |file| fs::read_to_string(self.folder_of(hash).join(file)).ok();
+        let text = read(RECORD).filter(|text| is_whole(text))?;
+        let wall = read(WALL).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        Some((text, wall))
     }
 
     /// Writes a record so that a reader sees the whole of it or nothing.
@@ -288,23 +245,50 @@ impl RecordStore {
             unsealed = Record { digest: String::new(), ..record.clone() };
             &unsealed
         };
-        if self.is_packed { self.packs.write(record) } else { single_files::write(&self.folder, record) }
+        if self.is_packed { self.append(record) } else { self.write_files(record) }
     }
 
-    /// Writes the wall times of a record alone.
+    fn append(&self, record: &Record) -> Result<(), StoreError> {
+        let json = |source| StoreError::Json { path: self.folder.clone(), source };
+        let end = match record.status {
+            Status::Ok => CaseEnd::Ok,
+            Status::Failed(_) if record.status.is_worth_another_run() => CaseEnd::Late,
+            Status::Failed(_) => CaseEnd::Failed,
+        };
+        let line = WallLine { hash: record.hash.clone(), wall: record.wall.clone() };
+        let wall = serde_json::to_string(&line).map_err(json)?;
+        let text = sealed(record, Layout::OneLine).map_err(json)? + "\n" + &wall + "\n";
+        self.packs.append(Entry::new(number_of(&record.hash), end, &record.provenance), &text)
+    }
+
+    fn write_files(&self, record: &Record) -> Result<(), StoreError> {
+        let path = self.folder_of(&record.hash).join(RECORD);
+        self.write_wall(record)?;
+        let text = sealed(record, Layout::Lines)
+            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
+        // Not forced to the disk, which costs more than a small case: after a loss of power an unreadable record
+        // counts as none, and the case runs again.
+        write_rebuildable(&path, text.as_bytes())
+    }
+
+    /// Writes the wall times of a record that is kept already: alone where they have a file of their own.
     ///
     /// # Errors
     /// When the file system refuses.
     pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
-        if self.is_packed && self.packs.entry(number_of(&record.hash)).is_none() {
-            // That of a study which has grown since has files of its own: times alone would belong to nothing.
-            self.write(record)
-        } else if self.is_packed {
-            self.packs.write_wall(record)
-        } else {
-            single_files::write_wall(&self.folder, record)
+        if self.is_packed {
+            return self.write(record);
         }
+        let path = self.folder_of(&record.hash).join(WALL);
+        let text = serde_json::to_string_pretty(&record.wall)
+            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
+        write_rebuildable(&path, text.as_bytes())
     }
+}
+
+/// The number that the hash of a case is.
+fn number_of(hash: &str) -> u64 {
+    u64::from_str_radix(hash, 16).unwrap_or(0)
 }
 
 #[cfg(test)]

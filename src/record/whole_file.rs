@@ -1,5 +1,8 @@
-//! Files that are written whole or not at all: under a name of their own first, then renamed.
+//! Files that are written whole or not at all, under a name of their own first, then renamed; and texts with a digest as
+//! their last field, by which damage and tampering are seen.
 
+use regex_lite::Regex;
+use serde::Serialize;
 use std::collections::HashSet;
 use std::fs;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -67,40 +70,25 @@ pub fn host_name() -> String {
 /// When the file system refuses; nothing is left under the name then.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
     remove_stale_once(folder_of(path));
-    write_renamed(path, content, fs::File::sync_all)
+    write_streamed(path, |file| file.write_all(content).and_then(|()| file.sync_all()))
 }
 
-/// The same of a file that can be made again from others: it takes its name whole, and the system puts it on the disk
-/// in its own time.
+/// Writes a file that can be made again from others, or whose loss is noticed: it takes its name whole, and the system
+/// puts it on the disk in its own time.
 ///
 /// # Errors
 /// As [`write_whole`].
 pub fn write_rebuildable(path: &Path, content: &[u8]) -> Result<(), StoreError> {
     remove_stale_once(folder_of(path));
-    write_renamed(path, content, |_| Ok(()))
+    write_streamed(path, |file| file.write_all(content))
 }
 
-/// Clears a folder of what writers that are no more left, once in a run: some folders have thousands of files.
+/// Clears a folder of what writers that have ended left there, once in a run: some folders have thousands of files.
 fn remove_stale_once(folder: &Path) {
     static SEEN: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(Mutex::default);
     if SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned())) {
         remove_stale(folder);
     }
-}
-
-/// The same, with what is done to the file before it takes its name.
-///
-/// # Errors
-/// [`StoreError`] where a file cannot be written, finished or renamed.
-pub fn write_renamed(
-    path: &Path,
-    content: &[u8],
-    finish: impl Fn(&fs::File) -> std::io::Result<()>,
-) -> Result<(), StoreError> {
-    write_streamed(path, |file| {
-        file.write_all(content)?;
-        finish(file)
-    })
 }
 
 /// Writes a file under a temporary name as `fill` fills it, and renames it, making its folders.
@@ -140,25 +128,14 @@ pub fn random_word() -> String {
     format!("{:016x}", RandomState::new().build_hasher().finish())
 }
 
-/// A file to write and to read for as long as this process runs, under a name that nobody else takes and that is
-/// stale when it has ended.
-///
-/// # Errors
-/// When the file system refuses.
-pub fn create_part(folder: &Path, name: &str) -> std::io::Result<(PathBuf, fs::File)> {
-    let path = folder.join(part_name(name));
-    let file = fs::File::options().read(true).write(true).create_new(true).open(&path)?;
-    Ok((path, file))
-}
-
 /// A name that no other writer takes: of this host, this process, and random.
 fn part_name(file: &str) -> String {
     format!(".{file}.{}.{}.{}{PART}", *PLACE, std::process::id(), random_word())
 }
 
-/// Removes what writers that are no more left in a folder: a process of this place that has ended, or anyone's
-/// after a day. Whatever cannot be read or removed stays.
-pub fn remove_stale(folder: &Path) {
+/// Removes from a folder what a process of this place that has ended left there, and what is older than a day, whoever
+/// wrote it. Whatever cannot be read or removed stays.
+fn remove_stale(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if entry.file_name().to_str().is_some_and(|name| is_stale(name, || age_of(&entry))) {
             let _ = fs::remove_file(entry.path());
@@ -171,26 +148,69 @@ fn age_of(entry: &fs::DirEntry) -> Option<Duration> {
     SystemTime::now().duration_since(modified).ok()
 }
 
-/// Whether a file is of a writer that is clearly no more.
+/// Whether a file was left by a writer that has certainly ended.
 fn is_stale(name: &str, age: impl Fn() -> Option<Duration>) -> bool {
-    let Some(inner) = name.strip_prefix('.').and_then(|name| name.strip_suffix(PART)) else { return false };
-    let mut parts = inner.rsplitn(4, '.');
-    let (Some(random), Some(process), Some(place), Some(_)) =
-        (parts.next(), parts.next(), parts.next(), parts.next())
-    else {
-        return false;
-    };
-    let is_random = random.len() == 16 && random.chars().all(|digit| digit.is_ascii_hexdigit());
-    if !is_random || process.is_empty() || !process.chars().all(|digit| digit.is_ascii_digit()) {
-        return false;
-    }
-    (place == *PLACE && has_ended(process)) || age().is_some_and(|age| age > STALE)
+    static NAME: LazyLock<Option<Regex>> =
+        LazyLock::new(|| Regex::new(r"^\..+\.([^.]+)\.([0-9]+)\.[0-9a-fA-F]{16}\.part$").ok());
+    let Some(parts) = NAME.as_ref().and_then(|pattern| pattern.captures(name)) else { return false };
+    (parts[1] == **PLACE && has_ended(&parts[2])) || age().is_some_and(|age| age > STALE)
 }
 
 /// Whether a process of this place is known to be no more; never where processes cannot be looked up.
 fn has_ended(process: &str) -> bool {
     let all = Path::new("/proc");
     all.join("self").exists() && !all.join(process).exists()
+}
+
+/// What stands before the digest where every field has a line of its own, and where all is one line.
+const SEALS: [&str; 2] = [",\n  \"digest\": \"", ",\"digest\":\""];
+/// What ends the object there.
+const ENDS: [&str; 2] = ["\n}", "}"];
+/// Hexadecimal digits of a digest.
+const DIGEST_DIGITS: usize = 32;
+
+/// How a record is laid out as text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Every field on a line of its own, for a file of one record.
+    Lines,
+    /// All on one line, for a file of many.
+    OneLine,
+}
+
+/// The JSON of a value with the digest of it as the last field: made of the text and not of the value, so that it
+/// is written and read once.
+///
+/// # Errors
+/// When the value has no JSON.
+pub fn sealed(value: &impl Serialize, layout: Layout) -> serde_json::Result<String> {
+    let content = match layout {
+        Layout::Lines => serde_json::to_string_pretty(value)?,
+        Layout::OneLine => serde_json::to_string(value)?,
+    };
+    let (seal, end) = (SEALS[layout as usize], ENDS[layout as usize]);
+    let content = content.strip_suffix(end).unwrap_or(&content);
+    Ok(format!("{content}{seal}{}\"{end}", digest_of(content)))
+}
+
+/// Whether a text is as it was sealed, in either layout.
+pub fn is_whole(text: &str) -> bool {
+    SEALS.iter().zip(ENDS).any(|(seal, end)| sealed_by(text, seal, end).is_some_and(is_digest_of))
+}
+
+/// What a text seals, and the digest that it has of it; none where it does not end as a seal does.
+fn sealed_by<'a>(text: &'a str, seal: &str, end: &str) -> Option<(&'a str, &'a str)> {
+    let text = text.strip_suffix(end)?.strip_suffix('"')?;
+    let (text, digest) = text.split_at_checked(text.len().checked_sub(DIGEST_DIGITS)?)?;
+    Some((text.strip_suffix(seal)?, digest))
+}
+
+fn is_digest_of((content, digest): (&str, &str)) -> bool {
+    digest_of(content) == digest
+}
+
+fn digest_of(content: &str) -> String {
+    blake3::hash(content.as_bytes()).to_hex()[..DIGEST_DIGITS].to_owned()
 }
 
 #[cfg(test)]
@@ -248,5 +268,23 @@ mod tests {
         assert_eq!(fs::read(file("a.csv")).expect("the file"), b"whole");
         assert_eq!(dead.exists(), !cfg!(target_os = "linux"));
         assert!(foreign.exists() && !old.exists());
+    }
+
+    #[test]
+    fn a_text_is_whole_in_both_layouts_and_no_longer_after_any_change() {
+        let value = serde_json::json!({ "a": 1.5, "b": ["x", "y"] });
+        for layout in [Layout::Lines, Layout::OneLine] {
+            let text = sealed(&value, layout).expect("JSON");
+            assert!(is_whole(&text), "{text}");
+            let read: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            assert_eq!(read["a"], value["a"]);
+            for place in 0..text.len() {
+                let mut damaged = text.clone().into_bytes();
+                damaged[place] ^= 1;
+                let damaged = String::from_utf8(damaged).expect("ASCII");
+                assert!(!is_whole(&damaged), "byte {place} of {text}");
+            }
+        }
+        assert!(!is_whole("{}") && !is_whole(""));
     }
 }

@@ -1,6 +1,5 @@
 use super::*;
-use crate::campaign::run_options::RunOptions;
-use crate::campaign::runner::run_study;
+use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::tier::Tier;
 use crate::study::check::Study;
 use crate::study::file::StudySource;

@@ -240,7 +240,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
 #[test]
 fn every_column_of_the_tidy_table_is_the_field_of_its_name() {
     for record in records() {
-        let csv = header_line() + &rows_of("its study", &record);
+        let csv = header_line() + &rows_of("its study", &record).expect("rows");
         let mut reader = csv::Reader::from_reader(csv.as_bytes());
         let header = reader.headers().expect("a header").clone();
         let case = &record.case;
@@ -356,7 +356,7 @@ fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
 #[test]
 fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own() {
     let mut record = records().remove(0);
-    record.attached = Some(crate::record::attached_run::AttachedRun::default());
+    record.attached = Some(crate::record::AttachedRun::default());
     for (sample, own) in record.wall.iter_mut().zip([5.5, 7.5, 6.5]) {
         (sample.own_seconds, sample.peak_memory) = (Some(own), Some(counted(1e6 * own)));
     }

@@ -1,7 +1,6 @@
 //! The worst, the best and the largest over outputs, runs, meshes and studies: hand-made records in which one value stands
 //! out, first, in the middle and last. Wherever it stands the answer is the same.
 
-use crate::campaign::costs::CostTable;
 use crate::campaign::runner::records_of;
 use crate::campaign::shares::balance_of;
 use crate::case::Case;
@@ -287,10 +286,9 @@ fn a_spread_is_that_of_all_levels_and_a_share_the_largest() {
         spread: Some(ErrorBound { size: 1.0, below: 0.5, above: 0.0 }),
         ..SeriesDemand::default()
     };
-    let costs = CostTable::default();
     let all = records_of(&text("cells = [4, 8, 64]", ""));
     let cases: Vec<&Case> = all.iter().map(|record| &record.case).collect();
-    let longest = costs.seconds(cases[2]);
+    let longest = crate::case::work_estimate::estimated_seconds(cases[2]);
     for place in 0..4 {
         let mut errors = [1.0, 1.1, 1.05, 1.02];
         errors[place] = 4.0;
@@ -302,7 +300,7 @@ fn a_spread_is_that_of_all_levels_and_a_share_the_largest() {
         assert!(!check.pass && check.measured == Some(4.0 / least - 1.0), "{check:?}");
         let mut turned = cases.clone();
         turned.rotate_left(place % 3);
-        let balance = balance_of(&turned, &[0, 1, 2], 3, &costs);
+        let balance = balance_of(&turned, &[0, 1, 2], 3);
         assert_eq!((balance.largest, balance.longest_case), (longest, longest));
     }
 }

@@ -22,7 +22,7 @@ fn a_peak_and_what_moves_at_rest_are_rows_of_the_table() {
         let record = records_of(&study).remove(0);
         let row = record.measures.iter().find(|row| row.name == name).expect("the measure");
         assert!((row.exact - exact).abs() < 1e-10 && row.error().abs() < 5e-3, "{row:?}");
-        let table = tidy::rows_of("t", &record);
+        let table = tidy::rows_of("t", &record).expect("rows");
         let told = table.lines().filter(|line| line.contains(&format!(",{name},,"))).count();
         assert_eq!(told, 1, "{table}");
     }

@@ -2,16 +2,10 @@
 
 use crate::campaign::runner::records_of;
 use crate::record::Record;
-use crate::record::csv::long_tables::{LongTable, columns_csv};
-use crate::record::csv::machines_table::MachinesTable;
-use crate::record::csv::packed_table::{RowsOf, packed_rows};
-use crate::record::csv::rows_at_hand::RowsAtHand;
+use crate::record::csv::long_tables::{LongTable, MachinesTable, columns_csv};
 use crate::record::csv::tidy;
 use crate::record::csv::tidy::{columns, header_line, rows_of};
-use crate::record::machines::Machine;
-use crate::record::pack::member::unpacked;
-use crate::record::store::RecordStore;
-use std::fs;
+use crate::record::provenance::Machine;
 
 #[test]
 fn every_machine_and_build_has_its_row_with_its_cases() {
@@ -40,11 +34,8 @@ const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = 
                      method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3]\npoisson_ratio = []\n";
 
 fn table(table: LongTable, records: &[Record]) -> String {
-    let mut bytes = table.header_line().into_bytes();
-    for record in records {
-        table.write_rows(&mut bytes, record).expect("a table");
-    }
-    String::from_utf8(bytes).expect("words")
+    let rows: String = records.iter().map(|record| table.rows_of(record).expect("rows")).collect();
+    table.header_line() + &rows
 }
 
 fn rows(text: &str) -> Vec<csv::StringRecord> {
@@ -73,7 +64,7 @@ fn every_place_of_every_output_has_a_row_and_every_column_a_meaning() {
 #[test]
 fn what_is_swept_tells_the_rows_apart() {
     let records = records_of(&STUDY.replace("poisson_ratio = []\n", "poissons_ratio = [0.1, 0.4]\n"));
-    let all: String = records.iter().map(|one| tidy::rows_of("s", one)).collect();
+    let all: String = records.iter().map(|one| tidy::rows_of("s", one).expect("rows")).collect();
     let table = tidy::header_line() + &all;
     let place = |name: &str| tidy::columns().iter().position(|column| *column == name).expect("a column");
     let all = rows(&table);
@@ -99,7 +90,7 @@ fn rows_are_what_the_usual_writer_makes_of_the_same_fields() {
     records[1].errors.clear();
     records[1].measures.clear();
     for (record, rows) in records.iter().zip([2 * 56, 1]) {
-        let text = header_line() + &rows_of("a \"b\", c", record);
+        let text = header_line() + &rows_of("a \"b\", c", record).expect("rows");
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let read: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
         assert!(read.len() <= rows && !read.is_empty(), "{} rows", read.len());
@@ -120,49 +111,5 @@ fn rows_are_what_the_usual_writer_makes_of_the_same_fields() {
         } else {
             assert_eq!([at(0, "quantity"), at(0, "absolute_error")], ["", ""]);
         }
-    }
-}
-
-#[test]
-fn rows_come_back_by_what_they_are_of_and_leave_no_file() {
-    let folder = tempfile::TempDir::new().expect("a folder");
-    let study = folder.path().join("study");
-    let mut rows = RowsAtHand::in_folder(&study).expect("a file");
-    let of = |case, generation| RowsOf { case, generation, program: 1, build: 2 };
-    for (of, text) in [(of(1, 1), "a,1\n"), (of(2, 1), "b,2\nb,3\n"), (of(1, 2), "a,4\n")] {
-        rows.keep(of, &packed_rows(of, text).expect("packed")).expect("kept");
-    }
-    let mut text = |of| rows.packed(of).and_then(|member| unpacked(&member));
-    assert_eq!(text(of(2, 1)).as_deref(), Some("b,2\nb,3\n"));
-    assert_eq!(text(of(1, 2)).as_deref(), Some("a,4\n"));
-    assert_eq!(
-        [text(of(3, 1)), text(of(2, 2)), text(of(1, 1))],
-        [None, None, None],
-        "another case, another run"
-    );
-    drop(rows);
-    assert_eq!(fs::read_dir(&study).expect("a folder").count(), 0);
-}
-#[test]
-fn rows_at_hand_are_those_of_the_records_as_they_are_read_back() {
-    let records = records_of(
-        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
-         method = [\"MPM\", \"GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [2, 3]\n",
-    );
-    let folder = tempfile::TempDir::new().expect("a folder");
-    let store = RecordStore::for_cases(folder.path(), "s", 100);
-    let (last, first) = records.split_last().expect("some");
-    store.keep_rows_at_hand();
-    for record in first {
-        store.write(record).expect("written");
-    }
-    let mut rows = store.take_rows_at_hand().expect("asked for");
-    store.write(last).expect("written");
-    let again = RecordStore::for_cases(folder.path(), "s", 100);
-    for record in &records {
-        let of = again.entry(&record.case).expect("a record").rows();
-        let read = tidy::rows_of("s", &again.kept(&record.case).expect("whole"));
-        let at_hand = rows.packed(of).and_then(|member| unpacked(&member));
-        assert_eq!(at_hand, (record != last).then_some(read), "none are made before or after");
     }
 }

@@ -86,7 +86,12 @@ fn the_exact_layer_has_no_error_wherever_it_is_sampled() {
         let told = call(at, &[&layer[..], &own].concat());
         assert_eq!(told.code, 0, "x/L = {ratios}: {}", told.err);
         let is_profile = ratios.split(',').count() < 4;
-        assert_eq!(told.err.contains("nothing is known about the rest"), is_profile, "{ratios}: {}", told.err);
+        assert_eq!(
+            told.err.contains("nothing is known about the rest"),
+            is_profile,
+            "{ratios}: {}",
+            told.err
+        );
         for quantity in ["pressure", "displacement"] {
             // Half a wave from the crest nothing presses, and a zero has no relative error.
             let is_zero = quantity == "pressure" && ratios == "0.5";

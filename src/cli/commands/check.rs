@@ -1,8 +1,7 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use crate::campaign::run_options::{RunOptions, Selected};
 use crate::campaign::run_report::{RunReport, Tally};
-use crate::campaign::runner::run_studies_thinned;
+use crate::campaign::runner::{RunOptions, Selected, run_studies_thinned};
 use crate::case::tier::Tier;
 use crate::cli::commands::run::{jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};
@@ -12,9 +11,7 @@ use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
 use crate::cli::trust::{self, TrustArguments};
-use crate::golden::case_changes::CaseChange;
-use crate::golden::compare::Difference;
-use crate::golden::difference_groups::DifferenceGroup;
+use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::judgement::Judgement;
@@ -44,7 +41,7 @@ pub struct Arguments {
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Hold the exact solutions against their golden values too; done by itself where no study is named
+    /// Compare the exact solutions with their golden values too; done by itself where no study is named
     #[arg(long)]
     references: bool,
     /// Write a `JUnit` report
@@ -72,7 +69,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if checks.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
-    let verdict = checks.iter().map(|check| exit_of(check.end())).fold(Exit::Pass, worse);
+    let verdict = worst_of(&checks);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| file_of(study, &arguments.studies);
     let mut refused = Vec::new();
@@ -147,7 +144,7 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
     studies.iter().zip(run_all(studies, jobs, &|_, _| {})?).map(of_study).collect()
 }
 
-/// The same with what went wrong in each study.
+/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports.
 fn run_all(
     studies: &[Study],
     jobs: usize,
@@ -180,20 +177,15 @@ pub fn refuse_unfinished(reports: &[RunReport]) -> anyhow::Result<()> {
     Err(Ended::with(Exit::IncompleteMerge, sentence))
 }
 
-fn exit_of(end: CheckEnd) -> Exit {
-    match end {
-        CheckEnd::Pass => Exit::Pass,
-        CheckEnd::Failed => Exit::VerdictFailed,
-        CheckEnd::CaseFailed => Exit::CaseFailed,
-        CheckEnd::Golden => Exit::Golden,
-    }
-}
-
-/// The worse of two ends, in the order verdict, case, golden, pass.
-fn worse(a: Exit, b: Exit) -> Exit {
-    const RANK: [Exit; 4] = [Exit::VerdictFailed, Exit::CaseFailed, Exit::Golden, Exit::Pass];
-    let rank = |exit: Exit| RANK.iter().position(|one| *one == exit).unwrap_or(RANK.len());
-    if rank(b) < rank(a) { b } else { a }
+/// The worst end of checks, in the order verdict, case, golden, pass.
+fn worst_of(checks: &[StudyCheck]) -> Exit {
+    let order = [
+        (CheckEnd::Failed, Exit::VerdictFailed),
+        (CheckEnd::CaseFailed, Exit::CaseFailed),
+        (CheckEnd::Golden, Exit::Golden),
+    ];
+    let worst = order.into_iter().find(|(end, _)| checks.iter().any(|check| check.end() == *end));
+    worst.map_or(Exit::Pass, |(_, exit)| exit)
 }
 
 /// What the JSON of `check` has of a study.

@@ -1,12 +1,13 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
 use crate::case::Case;
-use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, load_or_shipped};
+use crate::case::tier::Tier;
+use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::cli::study_tables::{Beside, write_machines, write_table};
+use crate::cli::study_tables::{Beside, write_table};
 use crate::record::csv::table_file::TableForm;
-use crate::record::origins::Origins;
+use crate::record::provenance::Origins;
 use crate::record::store::RecordStore;
 use crate::record::{Record, WallSample};
 use crate::study::check::Study;
@@ -25,8 +26,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
     /// How much of each study must be there
-    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
-    tier: TierArgument,
+    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    tier: Tier,
 }
 
 /// Merges and tells of holes.
@@ -77,7 +78,7 @@ fn stores_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> (Reco
 fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<Origins> {
     let mut origins = Origins::default();
     let (target, others) = stores_of(study, folders, arguments);
-    let cases = study.cases(arguments.tier.into());
+    let cases = study.cases(arguments.tier);
     for store in std::iter::once(&target).chain(&others) {
         origins.join(&store.origins(&cases));
     }
@@ -100,7 +101,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
         say!("{}: {damage}", study.name);
     }
     let mut holes: Vec<&Case> = Vec::new();
-    let cases = study.cases(arguments.tier.into());
+    let cases = study.cases(arguments.tier);
     for case in &cases {
         if !bring(study, case, &target, &others)? {
             holes.push(case);
@@ -109,9 +110,6 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     let there = cases.len() - holes.len();
     if there > 0 {
         let table = write_table(study, &target, &[], Beside::Tables(TableForm::Plain))?;
-        if target.is_packed() {
-            write_machines(study, &target)?;
-        }
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {
@@ -123,7 +121,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     Ok(holes.len())
 }
 
-/// Brings the record of a case to the target; whether there is one then.
+/// Brings the record of a case to the target, with the wall times of all stores that have it; whether there is one then.
 fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore]) -> anyhow::Result<bool> {
     let having: Vec<&RecordStore> = others.iter().filter(|store| store.has(case)).collect();
     match (target.has(case), having.as_slice()) {
@@ -131,8 +129,36 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
         (false, [only]) if target.take_over(only, case)? => return Ok(true),
         _ => {}
     }
-    let Some(record) = record_of(study, case, target, &having)? else { return Ok(false) };
-    if target.kept(case).as_ref() != Some(&record) {
+    let kept = target.kept(case);
+    let mut found = kept.clone().map(|record| (record, target));
+    for store in having {
+        let Some(other) = store.kept(case) else { continue };
+        let Some((record, from)) = &mut found else {
+            found = Some((other, store));
+            continue;
+        };
+        // Builds of one program differ in the time they take and in nothing else.
+        let values =
+            |one: &Record| Record { wall: Vec::new(), provenance: record.provenance.clone(), ..one.clone() };
+        if values(record) != values(&other) {
+            return Err(Ended::with(
+                Exit::IncompleteMerge,
+                format!(
+                    "{}: {} and {} have different results of {} {}, though one program is said to have made both",
+                    study.name,
+                    from.folder().display(),
+                    store.folder().display(),
+                    case.hash(),
+                    case.label()
+                ),
+            ));
+        }
+        if record.provenance.is_of_one_build_with(&other.provenance) {
+            add_wall(&mut record.wall, other.wall);
+        }
+    }
+    let Some((record, _)) = found else { return Ok(false) };
+    if kept.as_ref() != Some(&record) {
         target.write(&record)?;
     }
     Ok(true)
@@ -150,50 +176,6 @@ fn add_wall(wall: &mut Vec<WallSample>, others: Vec<WallSample>) {
             None => wall.push(sample),
         }
     }
-}
-
-/// The one record of a case that target and other stores have, with the wall times of all.
-fn record_of(
-    study: &Study,
-    case: &Case,
-    target: &RecordStore,
-    others: &[&RecordStore],
-) -> anyhow::Result<Option<Record>> {
-    let stored = |store: &RecordStore| Some((store.kept(case)?, store.folder().to_owned()));
-    let mut found = stored(target);
-    for store in others {
-        let Some((other, place)) = stored(store) else { continue };
-        match &mut found {
-            None => found = Some((other, place)),
-            Some((record, from)) => {
-                // Builds of one program differ in the time they take and in nothing else.
-                let values = |other: &Record| Record {
-                    wall: Vec::new(),
-                    provenance: record.provenance.clone(),
-                    ..other.clone()
-                };
-                if values(record) != values(&other) {
-                    return Err(Ended::with(
-                        Exit::IncompleteMerge,
-                        format!(
-                            "{}: {} and {} have different results of {} {}, though one program is said to have made \
-                             both",
-                            study.name,
-                            from.display(),
-                            place.display(),
-                            case.hash(),
-                            case.label()
-                        ),
-                    ));
-                }
-                let is_of_one_build = record.provenance.is_of_one_build_with(&other.provenance);
-                if is_of_one_build {
-                    add_wall(&mut record.wall, other.wall);
-                }
-            }
-        }
-    }
-    Ok(found.map(|(record, _)| record))
 }
 
 #[cfg(test)]

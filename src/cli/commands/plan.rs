@@ -1,15 +1,12 @@
 //! `oedometer plan`: which cases there are, with their hashes and times, before anything runs; which of them are
 //! missing; and the commands that run them in shares.
 
-use crate::campaign::costs::CostTable;
 use crate::campaign::run_report::LongestCase;
 use crate::campaign::shares::Parting;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::case::work_estimate::estimated_updates;
-use crate::cli::calibrate;
-use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped};
-use crate::cli::cost_files::{costs_of, learned_from};
+use crate::case::work_estimate::{estimated_seconds, estimated_updates};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::output::json_of;
@@ -31,8 +28,8 @@ pub struct Arguments {
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// How much of each study
-    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
-    tier: TierArgument,
+    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    tier: Tier,
     /// Only cases without a finished record in this folder of results
     #[arg(long, value_name = "DIR")]
     missing: Option<PathBuf>,
@@ -42,18 +39,9 @@ pub struct Arguments {
     /// Part the cases by what they cost, the longest first, and not by their hashes
     #[arg(long, requires = "tasks")]
     balance: bool,
-    /// Costs as `--learn` prints them
-    #[arg(long, value_name = "FILE")]
-    costs: Option<PathBuf>,
     /// Folder for the results of the commands; that of `--missing` where it is named
     #[arg(long, value_name = "DIR", requires = "tasks")]
     out: Option<PathBuf>,
-    /// Print what finished cases in this folder of results took over what was estimated, by kind, for `--costs`
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["missing", "tasks", "costs"])]
-    learn: Option<PathBuf>,
-    /// Measure on this machine what a step of each kind costs, beside the constants of the estimates
-    #[arg(long, conflicts_with_all = ["studies", "tier", "missing", "tasks", "costs", "learn"])]
-    calibrate: bool,
     /// Output format: one line a case, or the case files that attached solvers are given
     #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
     format: PlanFormat,
@@ -73,20 +61,12 @@ enum PlanFormat {
 
 /// Prints one line a case as CSV, the case files as JSON, or a job list; what it adds up to goes to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    if arguments.calibrate {
-        return calibrate::run();
-    }
     // Every file is judged before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
-    let tier = Tier::from(arguments.tier);
-    if let Some(folder) = &arguments.learn {
-        print_data(&learned_from(&studies, tier, folder)?.to_csv())?;
-        return Ok(Exit::Pass);
-    }
+    let tier = arguments.tier;
     if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {
         return Err(Ended::usage(format!("there is no folder of results {}", folder.display())));
     }
-    let costs = costs_of(arguments.costs.as_deref())?;
     let all: Vec<(&Study, Vec<&Case>)> = studies.iter().map(|study| (study, study.cases(tier))).collect();
     let wanted: Vec<(&Study, Vec<&Case>)> = match &arguments.missing {
         Some(folder) => all.iter().map(|(study, cases)| (*study, missing_of(study, cases, folder))).collect(),
@@ -102,14 +82,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             tasks,
             allow_solvers: false,
             parting: if arguments.balance { Parting::Cost } else { Parting::Hash },
-            costs: arguments.costs.clone(),
         };
-        list.tell_of_balance(&all, &costs);
-        print_data(&list.commands(&all, &wanted, &costs))?;
+        list.tell_of_balance(&all);
+        print_data(&list.commands(&all, &wanted))?;
     } else if arguments.format == PlanFormat::Json {
         print_data(&json_of(&case_files_of(&wanted))?)?;
     } else {
-        print_with(|out| write_plan(out, &wanted, &costs))?;
+        print_with(|out| write_plan(out, &wanted))?;
     }
     if let Some(folder) = &arguments.case_files {
         for file in case_files_of(&wanted) {
@@ -120,7 +99,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         say!("no case is missing");
         return Ok(Exit::Pass);
     }
-    tell_of_time(&wanted, &costs);
+    tell_of_time(&wanted);
     Ok(if count == 0 { Exit::NothingSelected } else { Exit::Pass })
 }
 
@@ -130,16 +109,12 @@ fn case_files_of(studies: &[(&Study, Vec<&Case>)]) -> Vec<CaseFile> {
 }
 
 /// Writes the plan as it goes, so that a million cases take no memory.
-fn write_plan(
-    out: &mut dyn std::io::Write,
-    studies: &[(&Study, Vec<&Case>)],
-    costs: &CostTable,
-) -> std::io::Result<()> {
+fn write_plan(out: &mut dyn std::io::Write, studies: &[(&Study, Vec<&Case>)]) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(COLUMNS).map_err(of_device)?;
     for (study, cases) in studies {
         for case in cases {
-            let seconds = format!("{:.1e}", costs.seconds(case));
+            let seconds = format!("{:.1e}", estimated_seconds(case));
             let updates = estimated_updates(case).to_string();
             let row = [&study.name, &case.hash(), &updates, &case.label(), &seconds];
             writer.write_record(row).map_err(of_device)?;
@@ -149,13 +124,13 @@ fn write_plan(
 }
 
 /// Says what the cases take in all, and of each study what takes too long.
-fn tell_of_time(studies: &[(&Study, Vec<&Case>)], costs: &CostTable) {
+fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
     let (mut count, mut total, mut longest) = (0, 0.0, 0.0);
     for (study, cases) in studies {
         let mut slowest: Option<&Case> = None;
         let mut most = 0.0;
         for case in cases {
-            let seconds = costs.seconds(case);
+            let seconds = estimated_seconds(case);
             (count, total) = (count + 1, total + seconds);
             if seconds > most {
                 (most, slowest) = (seconds, Some(*case));

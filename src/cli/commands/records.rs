@@ -3,14 +3,39 @@
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::json_of;
 use crate::cli::stream::{print_data, print_with, say};
+use crate::record::Record;
 use crate::record::csv::long_tables::LongTable;
 use crate::record::store::RecordStore;
-use std::io::Write;
 use std::path::PathBuf;
 
-/// Columns of the list.
-const COLUMNS: [&str; 8] =
-    ["case", "status", "method", "integrator", "cells", "node", "cpu_seconds", "sources"];
+/// A row of the list.
+#[derive(serde::Serialize)]
+struct Row {
+    case: String,
+    status: String,
+    method: String,
+    integrator: &'static str,
+    cells: usize,
+    node: Option<String>,
+    cpu_seconds: Option<f64>,
+    sources: String,
+}
+
+impl Row {
+    fn of(record: Record) -> Self {
+        let sample = record.wall.into_iter().next().unwrap_or_default();
+        Self {
+            case: record.hash,
+            status: record.status.name(),
+            method: record.case.method.to_string(),
+            integrator: record.case.integrator.name(),
+            cells: record.case.cells,
+            node: sample.machine.map(|machine| machine.node),
+            cpu_seconds: sample.cpu_seconds,
+            sources: record.provenance.sources,
+        }
+    }
+}
 
 /// Arguments of `records`.
 #[derive(Debug, clap::Args)]
@@ -59,37 +84,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         print_with(|out| {
             out.write_all(table.header_line().as_bytes())?;
             for record in hashes.iter().filter_map(|hash| store.read(hash)) {
-                table.write_rows(&mut *out, &record)?;
+                out.write_all(table.rows_of(&record)?.as_bytes())?;
             }
             Ok(())
         })?;
     } else if arguments.cases.is_empty() {
-        print_with(|out| list(out, &store, &hashes))?;
+        print_with(|out| {
+            let mut writer = csv::Writer::from_writer(out);
+            for record in hashes.iter().filter_map(|hash| store.read(hash)) {
+                writer.serialize(Row::of(record))?;
+            }
+            writer.flush()
+        })?;
     } else {
         for record in hashes.iter().filter_map(|hash| store.read(hash)) {
             print_data(&json_of(&record)?)?;
         }
     }
     Ok(Exit::Pass)
-}
-
-fn list(out: &mut dyn Write, store: &RecordStore, hashes: &[String]) -> std::io::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(COLUMNS)?;
-    for record in hashes.iter().filter_map(|hash| store.read(hash)) {
-        let sample = record.wall.first();
-        let node = sample.and_then(|sample| sample.machine.as_ref()).map(|machine| machine.node.as_str());
-        let seconds = sample.and_then(|sample| sample.cpu_seconds);
-        writer.write_record([
-            &record.hash,
-            &record.status.name(),
-            &record.case.method.to_string(),
-            record.case.integrator.name(),
-            &record.case.cells.to_string(),
-            node.unwrap_or_default(),
-            &seconds.map_or(String::new(), |seconds| format!("{seconds:e}")),
-            &record.provenance.sources,
-        ])?;
-    }
-    writer.flush()
 }

@@ -1,13 +1,11 @@
 //! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
 
-use crate::campaign::run_options::{RunOptions, Selected};
+use crate::campaign::case_runner::time_study;
 use crate::campaign::run_report::{RunError, RunReport, Tally};
-use crate::campaign::runner::run_studies;
+use crate::campaign::runner::{RunOptions, Selected, run_studies};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
-use crate::campaign::timing::time_study;
 use crate::case::tier::Tier;
-use crate::cli::cost_files::costs_of;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::progress::StudyBar;
 use crate::cli::slurm;
@@ -31,27 +29,6 @@ use std::path::{Path, PathBuf};
 /// Folder of results where none is named.
 pub const DEFAULT_RESULTS: &str = "out";
 
-/// How much of a study, at the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum TierArgument {
-    /// Seconds
-    Smoke,
-    /// What a CI runs
-    Ci,
-    /// Everything
-    Full,
-}
-
-impl From<TierArgument> for Tier {
-    fn from(argument: TierArgument) -> Self {
-        match argument {
-            TierArgument::Smoke => Self::Smoke,
-            TierArgument::Ci => Self::Ci,
-            TierArgument::Full => Self::Full,
-        }
-    }
-}
-
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -65,17 +42,14 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     /// How much of each study
-    #[arg(long, value_enum, default_value_t = TierArgument::Full)]
-    tier: TierArgument,
+    #[arg(long, value_enum, default_value_t = Tier::Full)]
+    tier: Tier,
     /// Only this share of the cases, like 2/3
     #[arg(long, value_name = "i/n")]
     shard: Option<String>,
     /// Part the cases by what they cost, the longest first, and not by their hashes
     #[arg(long, requires = "shard")]
     balance: bool,
-    /// Costs as `plan --learn` prints them, for `--balance`: every share takes the same file
-    #[arg(long, value_name = "FILE", requires = "balance")]
-    costs: Option<PathBuf>,
     /// Only the case with this hash, or the first digits of it
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
@@ -91,7 +65,7 @@ pub struct Arguments {
     #[command(flatten)]
     trust: TrustArguments,
     #[command(flatten)]
-    cluster: slurm::arguments::ClusterArguments,
+    cluster: slurm::ClusterArguments,
 }
 
 /// Who runs cases.
@@ -107,7 +81,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let mut studies = load(&arguments.studies)?;
     if arguments.engine == Some(Engine::Slurm) {
         arguments.trust.mark_all(&mut studies, &arguments.studies)?;
-        let (files, tier) = (&arguments.studies, arguments.tier.into());
+        let (files, tier) = (&arguments.studies, arguments.tier);
         return slurm::run(&arguments.cluster, files, &studies, tier, &arguments.out);
     }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
@@ -118,10 +92,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let parting = if arguments.balance { Parting::Cost } else { Parting::Hash };
     let options = RunOptions {
         shard: arguments.shard.as_deref().map(|typed| shard_of(typed, parting)).transpose()?,
-        costs: costs_of(arguments.costs.as_deref())?,
         resume: arguments.resume,
         only_on_disk: true,
-        ..RunOptions::whole(arguments.tier.into(), jobs_of(arguments.jobs))
+        ..RunOptions::whole(arguments.tier, jobs_of(arguments.jobs))
     };
     arguments.trust.mark(&mut studies, &arguments.studies);
     stop::heed_signals()?;
@@ -193,12 +166,6 @@ pub fn run_and_store(
     };
     let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
     let options = RunOptions { only_on_disk, ..options.clone() };
-    for (study, store) in studies.iter().zip(&stores) {
-        // Wall times that are taken at the end change the rows.
-        if only_on_disk && !is_part_of_many(store, &options) && is_compressed(store, study.planned.len()) {
-            store.keep_rows_at_hand();
-        }
-    }
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
     let name = match studies {
         [study] => study.name.clone(),
@@ -215,7 +182,7 @@ pub fn run_and_store(
         time_study(study, &mut report.records, Some(store), &tell)?;
     }
     bar.finish();
-    for ((study, store), report) in studies.iter().zip(&stores).zip(&reports) {
+    for (((study, chosen), store), report) in studies.iter().zip(selected).zip(&stores).zip(&reports) {
         for error in &report.errors {
             say!("{}: {error}", study.name);
         }
@@ -226,7 +193,10 @@ pub fn run_and_store(
         if report.tally.recorded == 0 {
             continue;
         }
-        let place = if is_part_of_many(store, &options) {
+        // The table of many shares is made once, by `merge`, and so is a large one where a case is run again.
+        let is_share = options.shard.is_some_and(|shard| shard.count > 1);
+        let is_one_of_many = chosen.planned.len() < study.planned.len() && is_compressed(study, store);
+        let place = if (is_share && store.is_packed()) || is_one_of_many {
             store.folder().to_owned()
         } else {
             write_table(study, store, &report.records, beside)?
@@ -234,12 +204,6 @@ pub fn run_and_store(
         tell_of(study, report, &place);
     }
     Ok(reports)
-}
-
-/// Whether a run leaves a part of a table: that of many shares is written once, by `merge`, and not anew by each of
-/// them.
-fn is_part_of_many(store: &RecordStore, options: &RunOptions) -> bool {
-    options.shard.is_some_and(|shard| shard.count > 1) && store.is_packed()
 }
 
 /// The first error that is no case's own: nothing can be kept any more.

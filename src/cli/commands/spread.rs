@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Make the spreads the tolerances of the golden files in this folder, whose values and reasons stay
     #[arg(long, value_name = "DIR")]
     into: Option<PathBuf>,
-    /// Cases at the same time in the run that is held against the sequential one
+    /// Cases at the same time in the run that is compared with the sequential one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     #[command(flatten)]
@@ -99,7 +99,7 @@ fn records_of(study: &Study, threads: usize) -> anyhow::Result<Vec<Record>> {
     Ok(run_quietly(std::slice::from_ref(study), threads)?.pop().unwrap_or_default())
 }
 
-/// The same cases by the kernel that visits every point.
+/// Runs the cases by the kernel that visits every point.
 fn point_wise(study: &Study) -> anyhow::Result<Vec<Record>> {
     let run = |case| Ok(run_case(case, &study.references, Kernel::PointWise, true, &|_, _| true)?);
     study.cases(Tier::Ci).into_iter().map(run).collect()

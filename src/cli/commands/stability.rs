@@ -1,7 +1,6 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
-use crate::campaign::run_options::RunOptions;
-use crate::campaign::runner::run_study;
+use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::tier::Tier;
 use crate::cli::commands::run::jobs_of;
 use crate::cli::commands::solve::SolveFormat;

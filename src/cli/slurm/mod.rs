@@ -4,44 +4,66 @@
 //! Every share is `oedometer run … --shard i/n --resume` into one folder of results, so that a task that is killed,
 //! requeued or submitted again goes on where the last one ended, and the shares stay the same.
 
-pub mod arguments;
-pub mod array_limit;
-pub mod commands;
-pub mod follow;
-pub mod scripts;
+mod scheduler;
+mod scripts;
 
-use crate::campaign::costs::CostTable;
 use crate::campaign::shares::Parting;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::cost_files::learned_from;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
-use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
-use crate::cli::slurm::array_limit::ArrayLimit;
-use crate::cli::slurm::commands::{Job, cancel, submit};
-use crate::cli::slurm::follow::follow;
-use crate::cli::slurm::scripts::Scripts;
+use crate::cli::slurm::scheduler::{Job, cancel, most_tasks, submit};
+use crate::cli::slurm::scripts::{Scripts, merge_words};
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_whole;
 use crate::study::check::Study;
-use oedometer_formats::input_file;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
+/// Folder of a campaign's scripts and logs within that of the results.
+const FOLDER: &str = "slurm";
 /// File of the job that is under way.
 const JOB: &str = "job";
+
+/// How to run on a cluster.
+#[derive(Debug, clap::Args)]
+pub struct ClusterArguments {
+    /// Shares, each a task of the array
+    #[arg(long, value_name = "N", default_value_t = 16, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    tasks: u64,
+    /// Partition of the cluster
+    #[arg(long, value_name = "NAME", requires = "engine")]
+    partition: Option<String>,
+    /// Longest time of a task, as Slurm writes it: minutes, or hours:minutes:seconds
+    #[arg(long, value_name = "TIME", requires = "engine")]
+    time: Option<String>,
+    /// Cores of a task
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    cores: u64,
+    /// A further option of sbatch, like --sbatch=--account=soil
+    #[arg(long, value_name = "OPTION", requires = "engine", allow_hyphen_values = true)]
+    sbatch: Vec<String>,
+    /// How often what is missing is submitted, the first time included
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=100))]
+    attempts: u64,
+    /// Submit and end, without following
+    #[arg(long, requires = "engine")]
+    detach: bool,
+    /// Print the scripts and the commands that would submit them, and do nothing
+    #[arg(long, requires = "engine")]
+    dry_run: bool,
+}
 
 /// A campaign on a cluster.
 pub struct Campaign<'a> {
     studies: Vec<(&'a Study, Vec<&'a Case>)>,
     list: JobList,
-    costs: CostTable,
     results: PathBuf,
     name: String,
 }
@@ -57,11 +79,10 @@ pub fn run(
     tier: Tier,
     results: &Path,
 ) -> anyhow::Result<Exit> {
-    let campaign = Campaign::new(arguments, files, studies, tier, results, !arguments.dry_run)?;
-    let scripts = Scripts::new(arguments, &campaign.list, &campaign.name, ArrayLimit::asked()?)?;
-    let shares = campaign.shares_to_run();
+    let campaign = Campaign::new(arguments, files, studies, tier, results)?;
+    let scripts = Scripts::new(arguments, &campaign.list, &campaign.name)?;
     if arguments.dry_run {
-        print_data(&scripts.shown(&shares))?;
+        print_data(&scripts.shown(&campaign.shares_to_run()))?;
         return Ok(Exit::Pass);
     }
     let folder = results.join(FOLDER);
@@ -72,7 +93,7 @@ pub fn run(
     loop {
         let shares = campaign.shares_to_run();
         if under_way.is_none() && shares.is_empty() {
-            return campaign.merged(&scripts);
+            return campaign.merged();
         }
         let jobs = match under_way.take() {
             Some(jobs) => {
@@ -89,7 +110,7 @@ pub fn run(
             say!("{}: not followed; the same command without `--detach` does", campaign.name);
             return Ok(Exit::Pass);
         }
-        let was_cancelled = follow(&jobs, || campaign.count_of_done(), campaign.count())?;
+        let was_cancelled = jobs.follow(|| campaign.count_of_done(), campaign.count())?;
         let _ = fs::remove_file(folder.join(JOB));
         if was_cancelled && !campaign.shares_to_run().is_empty() {
             say!("{}: the tasks were cancelled; the same command submits what is missing", campaign.name);
@@ -99,31 +120,23 @@ pub fn run(
 }
 
 impl<'a> Campaign<'a> {
-    /// Plans the shares; what finished cases cost is kept in a file then, so that the shares stay the same.
+    /// Plans the shares.
     fn new(
         arguments: &ClusterArguments,
         files: &[PathBuf],
         studies: &'a [Study],
         tier: Tier,
         results: &Path,
-        is_kept: bool,
     ) -> anyhow::Result<Self> {
         let folder = results.join(FOLDER);
-        let costs_file = folder.join("costs.csv");
-        let costs = match input_file::read_text(&costs_file) {
-            Ok(text) => CostTable::parse(&text)
-                .map_err(|error| Ended::usage(format!("{}: {error}", costs_file.display())))?,
-            Err(_) => learned_from(studies, tier, results).unwrap_or_default(),
-        };
         // The text of a study may be edited while its tasks wait: they take a copy.
         let sources = study_files::read_all(files)?;
         let copies: Vec<PathBuf> =
             studies.iter().map(|study| folder.join(format!("{}.toml", study.name))).collect();
-        if is_kept {
+        if !arguments.dry_run {
             for (source, copy) in sources.iter().zip(&copies) {
                 write_whole(copy, source.text.as_bytes())?;
             }
-            write_whole(&costs_file, costs.to_csv().as_bytes())?;
         }
         let studies: Vec<(&Study, Vec<&Case>)> =
             studies.iter().map(|study| (study, study.cases(tier))).collect();
@@ -133,21 +146,24 @@ impl<'a> Campaign<'a> {
         if count == 0 {
             return Err(Ended::with(Exit::NothingSelected, "no case belongs to this tier"));
         }
+        let most = most_tasks()?;
+        if arguments.tasks.min(count as u64) > most {
+            say!("this Slurm takes at most {most} tasks an array: the cases are parted into as many shares");
+        }
         let list = JobList {
             files: copies,
             results: results.to_owned(),
             tier,
-            tasks: arguments.tasks.min(count as u64),
+            tasks: arguments.tasks.min(count as u64).min(most),
             parting: Parting::Cost,
             allow_solvers: starts_solvers,
-            costs: Some(costs_file),
         };
-        list.tell_of_balance(&studies, &costs);
+        list.tell_of_balance(&studies);
         let name = match studies.as_slice() {
             [(study, _)] => study.name.clone(),
             several => count_of(several.len(), "study", "studies").replace(' ', "-"),
         };
-        Ok(Self { studies, list, costs, results: results.to_owned(), name })
+        Ok(Self { studies, list, results: results.to_owned(), name })
     }
 
     fn missing(&self) -> Vec<(&'a Study, Vec<&'a Case>)> {
@@ -158,7 +174,7 @@ impl<'a> Campaign<'a> {
 
     /// Shares with a case that has no finished record.
     fn shares_to_run(&self) -> BTreeSet<u64> {
-        self.list.shares_with(&self.studies, &self.missing(), &self.costs)
+        self.list.shares_with(&self.studies, &self.missing())
     }
 
     fn count(&self) -> usize {
@@ -170,21 +186,10 @@ impl<'a> Campaign<'a> {
     }
 
     fn submitted(&self, scripts: &Scripts, shares: &BTreeSet<u64>, folder: &Path) -> anyhow::Result<Job> {
-        if let Some(note) = scripts.note(shares) {
-            say!("{}: {note}", self.name);
-        }
-        let mut arrays = Vec::new();
-        let merge = scripts
-            .array_commands(shares)
-            .iter()
-            .try_for_each(|command| {
-                arrays.push(submit(command)?);
-                Ok(())
-            })
-            .and_then(|()| submit(&scripts.merge_command(&arrays)));
-        // What was taken of a campaign that was refused in part would run beside the next attempt.
-        let merge = merge.inspect_err(|_: &anyhow::Error| cancel(&arrays))?;
-        let job = Job { array: arrays.join(","), merge };
+        let array = submit(&scripts.of_array(shares))?;
+        // An array without its merge would run beside the next attempt.
+        let merge = submit(&scripts.of_merge(&array)).inspect_err(|_| cancel(&array))?;
+        let job = Job { array, merge };
         job.keep(&folder.join(JOB))?;
         let tasks = count_of(shares.len(), "task", "tasks");
         say!(
@@ -197,13 +202,16 @@ impl<'a> Campaign<'a> {
     }
 
     /// The end of a campaign without holes: the table, written here where the merge of the cluster did not.
-    fn merged(&self, scripts: &Scripts) -> anyhow::Result<Exit> {
+    fn merged(&self) -> anyhow::Result<Exit> {
         let is_there = |(study, _): &(&Study, Vec<&Case>)| {
             let folder = self.results.join(&study.name);
             ["csv", "csv.gz"].iter().any(|ending| folder.join(format!("{}.{ending}", study.name)).is_file())
         };
         if !self.studies.iter().all(is_there) {
-            scripts.merge_here()?;
+            let status = Command::new(std::env::current_exe()?).args(merge_words(&self.list)).status()?;
+            if !status.success() {
+                return Err(Ended::with(Exit::IncompleteMerge, format!("the merge ended with {status}")));
+            }
         }
         let mut unforeseen = 0;
         for (study, cases) in &self.studies {

@@ -1,13 +1,10 @@
-//! The scripts of a campaign, and the commands that submit them.
+//! The scripts of a campaign, and the words that submit them.
 
-use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, quoted};
-use crate::cli::slurm::arguments::{ClusterArguments, FOLDER};
-use crate::cli::slurm::array_limit::{ArrayLimit, ArrayPart};
+use crate::cli::slurm::{ClusterArguments, FOLDER};
 use crate::record::whole_file::write_whole;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
-use std::process::Command;
+use std::path::{Path, PathBuf};
 
 /// Seconds before its time limit at which a task is told to end.
 const WARNING: u64 = 60;
@@ -16,11 +13,7 @@ const WARNING: u64 = 60;
 pub struct Scripts {
     array: String,
     merge: String,
-    limit: ArrayLimit,
-    tasks: u64,
     folder: PathBuf,
-    /// The merge as this program calls itself for it.
-    merge_words: Vec<String>,
 }
 
 impl Scripts {
@@ -28,18 +21,7 @@ impl Scripts {
     ///
     /// # Errors
     /// When the program does not know where it is.
-    pub fn new(
-        arguments: &ClusterArguments,
-        list: &JobList,
-        name: &str,
-        limit: ArrayLimit,
-    ) -> anyhow::Result<Self> {
-        // Of several arrays each is told how many shares stand before its own.
-        let share = if list.tasks > limit.most {
-            "$((SLURM_ARRAY_TASK_ID + ${1:-0}))"
-        } else {
-            "$SLURM_ARRAY_TASK_ID"
-        };
+    pub fn new(arguments: &ClusterArguments, list: &JobList, name: &str) -> anyhow::Result<Self> {
         let program = std::env::current_exe()?.to_string_lossy().into_owned();
         let folder = list.results.join(FOLDER);
         let logs = folder.join("logs").to_string_lossy().into_owned();
@@ -64,18 +46,13 @@ impl Scripts {
              exec {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
             head(name, of_array),
             list.tasks,
-            list.command(&program, share)
+            list.command(&program, "$SLURM_ARRAY_TASK_ID")
         );
-        let mut merge_words = vec!["merge".to_owned()];
-        merge_words.extend(list.files.iter().map(|file| file.to_string_lossy().into_owned()));
-        let results = list.results.to_string_lossy().into_owned();
-        merge_words.extend([results.clone(), "--out".to_owned(), results]);
-        merge_words.extend(["--tier".to_owned(), list.tier.name().to_owned()]);
         let of_merge = vec![format!("--output={logs}/merge-%j.log")];
         let words: Vec<String> =
-            std::iter::once(&program).chain(&merge_words).map(|word| quoted(word)).collect();
+            std::iter::once(program).chain(merge_words(list)).map(|word| quoted(&word)).collect();
         let merge = format!("{}exec {}\n", head(&format!("{name}-merge"), of_merge), words.join(" "));
-        Ok(Self { array, merge, limit, tasks: list.tasks, folder, merge_words })
+        Ok(Self { array, merge, folder })
     }
 
     fn path(&self, name: &str) -> String {
@@ -87,68 +64,42 @@ impl Scripts {
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self) -> anyhow::Result<()> {
-        write_whole(&self.folder.join("array.sh"), self.array.as_bytes())?;
-        write_whole(&self.folder.join("merge.sh"), self.merge.as_bytes())?;
-        Ok(())
+        write_whole(Path::new(&self.path("array.sh")), self.array.as_bytes())?;
+        Ok(write_whole(Path::new(&self.path("merge.sh")), self.merge.as_bytes())?)
     }
 
-    /// What submits the arrays of some shares, mostly one.
-    pub fn array_commands(&self, shares: &BTreeSet<u64>) -> Vec<Vec<String>> {
-        let of_part = |ArrayPart { tasks, before }: &ArrayPart| {
-            let array = format!("--array={}", ranges(tasks));
-            let mut words = vec!["sbatch".to_owned(), "--parsable".to_owned(), array, self.path("array.sh")];
-            words.extend((*before > 0).then(|| before.to_string()));
-            words
-        };
-        self.limit.parts(shares).iter().map(of_part).collect()
+    /// What submits the array of some shares, behind `sbatch`.
+    pub fn of_array(&self, shares: &BTreeSet<u64>) -> Vec<String> {
+        vec!["--parsable".to_owned(), format!("--array={}", ranges(shares)), self.path("array.sh")]
     }
 
-    /// What is said where the shares are more than one array takes.
-    pub fn note(&self, shares: &BTreeSet<u64>) -> Option<String> {
-        self.limit.sentence(self.tasks, self.limit.parts(shares).len())
-    }
-
-    /// What submits the merge behind arrays, however those end: it names the holes.
-    pub fn merge_command(&self, arrays: &[String]) -> Vec<String> {
-        let after = format!("--dependency=afterany:{}", arrays.join(":"));
-        vec!["sbatch".to_owned(), "--parsable".to_owned(), after, self.path("merge.sh")]
+    /// What submits the merge behind an array, however that ends: it names the holes.
+    pub fn of_merge(&self, array: &str) -> Vec<String> {
+        vec!["--parsable".to_owned(), format!("--dependency=afterany:{array}"), self.path("merge.sh")]
     }
 
     /// Both as a person reads them.
     pub fn shown(&self, shares: &BTreeSet<u64>) -> String {
-        let line = |words: Vec<String>| words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
-        let commands = self.array_commands(shares);
-        let name =
-            |number: usize| if number == 0 { "array".to_owned() } else { format!("array{}", number + 1) };
-        let variables: Vec<String> = (0..commands.len()).map(|number| format!("${}", name(number))).collect();
-        let arrays: Vec<String> = commands
-            .into_iter()
-            .enumerate()
-            .map(|(number, words)| format!("# {}=$({})\n", name(number), line(words)))
-            .collect();
-        let merge = line(self.merge_command(&["ARRAYS".to_owned()])).replace("ARRAYS", &variables.join(":"));
         format!(
-            "# {}\n{}\n# {}\n{}\n{}{}# {merge}\n",
+            "# {}\n{}\n# {}\n{}\n# array=$(sbatch {})\n# sbatch {}\n",
             self.path("array.sh"),
             self.array,
             self.path("merge.sh"),
             self.merge,
-            self.note(shares).map_or_else(String::new, |note| format!("# {note}\n")),
-            arrays.concat(),
+            self.of_array(shares).join(" "),
+            self.of_merge("$array").join(" "),
         )
     }
+}
 
-    /// Merges on this machine.
-    ///
-    /// # Errors
-    /// When the merge does not come to its end.
-    pub fn merge_here(&self) -> anyhow::Result<()> {
-        let status = Command::new(std::env::current_exe()?).args(&self.merge_words).status()?;
-        if status.success() {
-            return Ok(());
-        }
-        Err(Ended::with(Exit::IncompleteMerge, format!("the merge ended with {status}")))
-    }
+/// The merge as this program calls itself for it.
+pub fn merge_words(list: &JobList) -> Vec<String> {
+    let results = list.results.to_string_lossy().into_owned();
+    let mut words = vec!["merge".to_owned()];
+    words.extend(list.files.iter().map(|file| file.to_string_lossy().into_owned()));
+    words.extend([results.clone(), "--out".to_owned(), results]);
+    words.extend(["--tier".to_owned(), list.tier.name().to_owned()]);
+    words
 }
 
 /// Numbers as an array of Slurm names them: `1-4,7`.

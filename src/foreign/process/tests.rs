@@ -76,7 +76,7 @@ fn what_leaves_its_group_or_closes_its_streams_is_found_named_and_ended() {
         let (found, id, _folder) = left_behind(how, wait);
         assert!(matches!(&found.ending, Ending::Ended(status) if status.success()), "{how}: {found:?}");
         assert!(
-            found.found.seen.iter().any(|seen| seen.id == id && seen.name == "sleep"),
+            found.found.seen.iter().any(|seen| seen.id == id && ["sh", "sleep"].contains(&&*seen.name)),
             "{how}: {found:?}"
         );
         assert!(found.found.lives_on.is_empty() && !lives(id), "{how}: {found:?}");
@@ -121,4 +121,21 @@ fn work_counts_as_processor_time_and_sleep_does_not() {
     assert!(slept.seconds >= 0.5 && cpu < 0.4, "{slept:?}");
     let worked = shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done", 600.0);
     assert!(worked.cpu_seconds.expect("told on Unix") > cpu + 0.01, "{worked:?}");
+}
+
+#[test]
+fn the_end_of_a_long_talk_is_kept_and_no_more() {
+    let talk = "x".repeat(3 * KEPT_BYTES) + "the end";
+    let listener = Listener::to(std::io::Cursor::new(talk));
+    assert!(listener.ends_within(Duration::from_secs(60)));
+    let text = listener.text();
+    assert_eq!(text.len(), KEPT_BYTES);
+    assert!(text.ends_with("xxthe end"));
+}
+
+#[test]
+fn last_lines_are_few_short_and_without_control_characters() {
+    let text = "one\n\ntwo\u{1b}[31m\u{7}\n  \nthree is long\n";
+    assert_eq!(last_lines(text, 2, 8), ["two[31m", "three is…"]);
+    assert!(last_lines("", 3, 8).is_empty());
 }

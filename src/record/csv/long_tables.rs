@@ -1,10 +1,10 @@
-//! The tables beside the tidy one: profiles, settlement over time, and what every column means.
+//! The tables beside the tidy one: profiles, settlement over time, machines, and what every column means.
 
 use crate::case::keys::KEYS;
 use crate::record::Record;
-use crate::record::csv::tidy;
+use crate::record::csv::{lines_of, text_of, tidy};
 use oedometer_mpm::run::results::snapshot::Samples;
-use std::io::Write;
+use std::collections::BTreeMap;
 
 /// Columns of the profiles.
 const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
@@ -48,20 +48,6 @@ const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
     ("cpu_seconds", "s", "time that the processor worked on it, where the system tells"),
 ];
 
-fn csv_of(header: Vec<&str>, rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, csv::Error> {
-    let mut bytes = Vec::new();
-    write_csv(&mut bytes, std::iter::once(header.into_iter().map(str::to_owned).collect()).chain(rows))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-fn write_csv(out: impl Write, rows: impl IntoIterator<Item = Vec<String>>) -> Result<(), csv::Error> {
-    let mut writer = csv::Writer::from_writer(out);
-    for row in rows {
-        writer.write_record(row)?;
-    }
-    Ok(writer.flush()?)
-}
-
 /// A table with rows of every record, one record after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LongTable {
@@ -83,29 +69,30 @@ impl LongTable {
         }
     }
 
-    /// The line of its columns, with its end.
-    pub fn header_line(self) -> String {
-        let columns = match self {
-            Self::Profiles => PROFILE_COLUMNS.as_slice(),
-            Self::History => HISTORY_COLUMNS.as_slice(),
-        };
-        columns.iter().map(|(name, _, _)| *name).collect::<Vec<_>>().join(",") + "\n"
+    /// Its columns: name, unit, meaning.
+    fn columns(self) -> &'static [(&'static str, &'static str, &'static str)] {
+        match self {
+            Self::Profiles => &PROFILE_COLUMNS,
+            Self::History => &HISTORY_COLUMNS,
+        }
     }
 
-    /// Writes the rows of a record.
+    /// The line of its columns, with its end.
+    pub fn header_line(self) -> String {
+        self.columns().iter().map(|(name, _, _)| *name).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    /// The rows of a record.
     ///
     /// # Errors
-    /// When `out` refuses.
-    pub fn write_rows(self, out: impl Write, record: &Record) -> Result<(), csv::Error> {
+    /// Never for plain words; the writer's own otherwise.
+    pub fn rows_of(self, record: &Record) -> Result<String, csv::Error> {
         match self {
-            Self::Profiles => write_csv(out, profile_rows(record)),
-            Self::History => {
-                let row = |factor: f64, degree: f64| {
-                    vec![record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
-                };
-                let rows = record.history.iter().map(|one| row(one.time_factor, one.degree_of_consolidation));
-                write_csv(out, rows)
-            }
+            Self::Profiles => lines_of(profile_rows(record)),
+            Self::History => lines_of(record.history.iter().map(|row| {
+                let [factor, degree] = [row.time_factor, row.degree_of_consolidation];
+                [record.hash.clone(), format!("{factor:e}"), format!("{degree:e}")]
+            })),
         }
     }
 }
@@ -144,10 +131,7 @@ fn profile_row(first: &[String; 4], samples: &Samples, place: usize) -> Vec<Stri
 /// # Errors
 /// Never for plain numbers and words; the writer's own otherwise.
 pub fn columns_csv() -> Result<String, csv::Error> {
-    let row = |table: &str, name: &str, unit: &str, meaning: &str| {
-        [table, name, unit, meaning].map(str::to_owned).to_vec()
-    };
-    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut rows = vec![["table", "column", "unit", "meaning"]];
     for name in tidy::columns() {
         let input = KEYS.iter().find(|key| key.name == name).map(|key| (key.unit, key.meaning));
         let other =
@@ -156,12 +140,63 @@ pub fn columns_csv() -> Result<String, csv::Error> {
             "scene" => ("", "physical problem"),
             _ => ("", "what was done with the case"),
         });
-        rows.push(row("", name, unit, meaning));
+        rows.push(["", name, unit, meaning]);
     }
-    for (table, columns) in
-        [("profiles", PROFILE_COLUMNS.as_slice()), ("history", HISTORY_COLUMNS.as_slice())]
-    {
-        rows.extend(columns.iter().map(|(name, unit, meaning)| row(table, name, unit, meaning)));
+    for table in LongTable::ALL {
+        rows.extend(table.columns().iter().map(|(name, unit, meaning)| [table.name(), name, unit, meaning]));
     }
-    csv_of(vec!["table", "column", "unit", "meaning"], rows)
+    lines_of(rows)
+}
+
+/// A row of the table of machines; what is not known is empty. The number of cases is 0 until it is written.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+struct Origin {
+    node: String,
+    processor: String,
+    version: String,
+    sources: String,
+    commit: String,
+    tree: &'static str,
+    compiler: String,
+    target: String,
+    profile: String,
+    cases: usize,
+}
+
+/// Which machines and builds the records of a study are of, each with its number of cases.
+#[derive(Clone, Debug, Default)]
+pub struct MachinesTable(BTreeMap<Origin, usize>);
+
+impl MachinesTable {
+    /// Counts a record with the machine that ran it first.
+    pub fn add(&mut self, record: &Record) {
+        let made = record.provenance.clone();
+        let machine = record.wall.first().and_then(|sample| sample.machine.clone());
+        let (node, processor) = machine.map(|machine| (machine.node, machine.processor)).unwrap_or_default();
+        let origin = Origin {
+            node,
+            processor,
+            version: made.version,
+            sources: made.sources,
+            commit: made.commit,
+            tree: if made.dirty { "changed" } else { "committed" },
+            compiler: made.compiler,
+            target: made.target,
+            profile: made.profile,
+            cases: 0,
+        };
+        *self.0.entry(origin).or_default() += 1;
+    }
+
+    /// The table.
+    ///
+    /// # Errors
+    /// Never for plain words; the writer's own otherwise.
+    pub fn to_csv(&self) -> Result<String, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for (origin, cases) in &self.0 {
+            writer.serialize(Origin { cases: *cases, ..origin.clone() })?;
+        }
+        text_of(writer)
+    }
 }

@@ -1,8 +1,22 @@
 //! The tables of a study as files: the tidy one, those beside it, plain or compressed.
 
 pub mod long_tables;
-pub mod machines_table;
-pub mod packed_table;
-pub mod rows_at_hand;
 pub mod table_file;
 pub mod tidy;
+
+/// Rows as lines of CSV.
+fn lines_of<F: AsRef<[u8]>>(
+    rows: impl IntoIterator<Item = impl IntoIterator<Item = F>>,
+) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    text_of(writer)
+}
+
+/// What a writer wrote to memory.
+fn text_of(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

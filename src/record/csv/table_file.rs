@@ -3,9 +3,15 @@
 use crate::record::whole_file::{StoreError, write_streamed};
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use rayon::prelude::*;
 use std::fs;
-use std::io::{BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// Things whose rows are made and compressed together: a gzip member.
+const TOGETHER: usize = 16;
+/// Members that are in memory at the same time.
+const IN_MEMORY: usize = 64;
 
 /// How a table is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,43 +33,48 @@ impl TableForm {
         })
     }
 
-    /// Writes a table of a header and of rows as `fill` makes them, on the disk at the end, and takes away what
-    /// another form left there: nobody reads an old one for it.
+    /// A part of the file. The same text gives the same bytes: no time and no name stand in a member's header.
+    fn part(self, text: String) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Plain => Ok(text.into_bytes()),
+            Self::Compressed => {
+                let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+                encoder.write_all(text.as_bytes())?;
+                encoder.finish()
+            }
+        }
+    }
+
+    /// Writes a table of a header line and the rows of things, made on all cores and in the order of the things; it is
+    /// on the disk at the end. Removes what the other form left there: nobody reads an old table for it.
     ///
     /// # Errors
-    /// When the file system or `fill` refuses.
-    pub fn write(
+    /// When the file system or `rows` refuses.
+    pub fn write<T: Sync>(
         self,
         folder: &Path,
         name: &str,
-        header: &str,
-        fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+        header: String,
+        things: &[T],
+        rows: impl Fn(&T) -> io::Result<String> + Sync,
     ) -> Result<PathBuf, StoreError> {
         let path = self.path(folder, name);
+        let part_of = |things: &[T]| self.part(things.iter().map(&rows).collect::<io::Result<String>>()?);
         write_streamed(&path, |file| {
-            let mut out = BufWriter::with_capacity(1 << 16, &mut *file);
-            match self {
-                Self::Plain => {
-                    out.write_all(header.as_bytes())?;
-                    fill(&mut out)?;
-                }
-                // The same bytes for the same rows: no time and no name stand in the head.
-                Self::Compressed => {
-                    let mut encoder = GzEncoder::new(&mut out, Compression::default());
-                    encoder.write_all(header.as_bytes())?;
-                    fill(&mut encoder)?;
-                    encoder.finish()?;
+            file.write_all(&self.part(header)?)?;
+            for batch in things.chunks(TOGETHER * IN_MEMORY) {
+                let parts: Vec<io::Result<Vec<u8>>> = batch.par_chunks(TOGETHER).map(part_of).collect();
+                for part in parts {
+                    file.write_all(&part?)?;
                 }
             }
-            out.flush()?;
-            drop(out);
             file.sync_all()
         })?;
         for other in Self::ALL.into_iter().filter(|other| *other != self) {
             let old = other.path(folder, name);
             if old.exists() {
                 fs::remove_file(&old).map_err(|source| StoreError::Io {
-                    action: "take away the older",
+                    action: "remove the older",
                     path: old.clone(),
                     source,
                 })?;
@@ -76,26 +87,41 @@ impl TableForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use flate2::read::GzDecoder;
+    use flate2::read::MultiGzDecoder;
     use std::io::Read;
 
     #[test]
     fn a_compressed_table_reads_back_and_no_other_form_is_left() {
         let folder = tempfile::TempDir::new().expect("a folder");
-        let (header, rows) = ("case,value\n", "a,1\n".repeat(1000));
-        let text = header.to_owned() + &rows;
+        // More than are in memory at the same time.
+        let things: Vec<usize> = (0..=TOGETHER * (IN_MEMORY + 1)).collect();
+        let row = |thing: &usize| format!("case {thing},1\n");
+        let text = "case,value\n".to_owned() + &things.iter().map(row).collect::<String>();
         let written = |form: TableForm| {
-            form.write(folder.path(), "t", header, |out| out.write_all(rows.as_bytes())).expect("written")
+            let header = "case,value\n".to_owned();
+            form.write(folder.path(), "t", header, &things, |thing| Ok(row(thing))).expect("written")
         };
         let plain = written(TableForm::Plain);
+        assert_eq!(fs::read_to_string(&plain).expect("a file"), text);
         let packed = written(TableForm::Compressed);
         assert!(!plain.exists() && packed.ends_with("t.csv.gz"));
         let bytes = fs::read(&packed).expect("a file");
-        assert!(bytes.len() < text.len() / 10, "{} bytes", bytes.len());
+        assert!(bytes.len() < text.len() / 2, "{} bytes", bytes.len());
         let mut back = String::new();
-        GzDecoder::new(bytes.as_slice()).read_to_string(&mut back).expect("gzip");
+        MultiGzDecoder::new(bytes.as_slice()).read_to_string(&mut back).expect("gzip");
         assert_eq!(back, text);
         written(TableForm::Plain);
         assert!(plain.exists() && !packed.exists());
+    }
+
+    #[test]
+    fn rows_that_cannot_be_made_leave_the_older_table() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let write = |rows: fn(&usize) -> io::Result<String>| {
+            TableForm::Plain.write(folder.path(), "t", "a\n".to_owned(), &[1], rows)
+        };
+        let path = write(|_| Ok("1\n".to_owned())).expect("written");
+        assert!(write(|_| Err(io::Error::other("no"))).is_err());
+        assert_eq!(fs::read_to_string(path).expect("a file"), "a\n1\n");
     }
 }

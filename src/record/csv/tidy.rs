@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::case::keys::{KEYS, Key};
+use crate::record::csv::lines_of;
 use crate::record::{ERROR_COLUMNS, Record, WallSample};
 
 /// First columns of the tidy CSV, before those of a measure; one with the name of a key has the value of that input.
@@ -43,67 +44,41 @@ pub fn header_line() -> String {
     columns().join(",") + "\n"
 }
 
-/// The measures of a record as rows of CSV. A case that failed before its first output has one
-/// row without a measure, so that it is seen.
+/// The measures of a record as rows of CSV. A case that failed before its first output has one row without a measure, so
+/// that it is seen.
 ///
-/// What all rows of a record have in common is written once and copied: of sixty columns a measure changes seven.
-pub fn rows_of(study: &str, record: &Record) -> String {
-    let first = fields_line(&case_fields(study, record));
-    let LastFields { inputs, others } = last_fields(record);
-    let (inputs, others) = (fields_line(&inputs), fields_line(&others));
-    let mut rows = String::new();
-    let mut write = |measure: [&str; ERROR_COLUMNS.len()], absolute: &str| {
-        rows.push_str(&first);
-        for field in measure {
-            rows.push(',');
-            push_field(&mut rows, field);
-        }
-        for part in [&inputs, absolute, &others] {
-            rows.push(',');
-            rows.push_str(part);
-        }
-        rows.push('\n');
-    };
-    for row in &record.errors {
-        let [quantity, sample, norm] = [row.quantity.name(), row.sample.name(), row.norm.name()];
-        let [time_factor, value] = [row.time_factor.to_string(), format!("{:e}", row.value)];
-        write([&time_factor, quantity, sample, norm, &row.reference, &value], &format!("{:e}", row.absolute));
-    }
+/// # Errors
+/// Never for words in memory; the writer's own otherwise.
+pub fn rows_of(study: &str, record: &Record) -> Result<String, csv::Error> {
+    let first = case_fields(study, record);
+    let inputs: Vec<String> = other_inputs().map(|key| input_of(key, &record.case)).collect();
+    let last = last_fields(record);
+    let measures = measures_of(record);
+    lines_of(measures.iter().map(|(measure, absolute)| {
+        first.iter().chain(measure).chain(&inputs).chain(std::iter::once(absolute)).chain(&last)
+    }))
+}
+
+/// The fields of every measure in the order of [`ERROR_COLUMNS`], each with its absolute error.
+fn measures_of(record: &Record) -> Vec<([String; ERROR_COLUMNS.len()], String)> {
+    let errors = record.errors.iter().map(|row| {
+        let [time_factor, quantity, sample, norm, reference, _] = row.csv_fields();
+        let value = format!("{:e}", row.value);
+        ([time_factor, quantity, sample, norm, reference, value], format!("{:e}", row.absolute))
+    });
     // What is measured beside errors of fields has its name in the place of the quantity, and no place.
-    for row in &record.measures {
+    let others = record.measures.iter().map(|row| {
         let time_factor = row.time_factor.map_or(String::new(), |factor| factor.to_string());
-        let norm = if row.exact == 0.0 { "absolute" } else { "relative" };
+        let norm = if row.exact == 0.0 { "absolute" } else { "relative" }.to_owned();
         let [value, absolute] =
             [row.error(), (row.found - row.exact).abs()].map(|error| format!("{error:e}"));
-        write([&time_factor, &row.name, "", norm, &row.reference, &value], &absolute);
+        ([time_factor, row.name.clone(), String::new(), norm, row.reference.clone(), value], absolute)
+    });
+    let mut measures: Vec<_> = errors.chain(others).collect();
+    if measures.is_empty() {
+        measures.push(Default::default());
     }
-    if record.errors.is_empty() && record.measures.is_empty() {
-        write([""; ERROR_COLUMNS.len()], "");
-    }
-    rows
-}
-
-/// Fields as a part of a line.
-fn fields_line(fields: &[String]) -> String {
-    let mut line = String::new();
-    for (place, field) in fields.iter().enumerate() {
-        if place > 0 {
-            line.push(',');
-        }
-        push_field(&mut line, field);
-    }
-    line
-}
-
-/// Appends a field as CSV has it (RFC 4180): in quotes where it would be read as more than one.
-fn push_field(line: &mut String, field: &str) {
-    if field.contains([',', '"', '\r', '\n']) {
-        line.push('"');
-        line.push_str(&field.replace('"', "\"\""));
-        line.push('"');
-    } else {
-        line.push_str(field);
-    }
+    measures
 }
 
 /// An input as the table has it: nothing where it says nothing of the case.
@@ -126,26 +101,18 @@ fn case_fields(study: &str, record: &Record) -> Vec<String> {
     fields
 }
 
-/// What all rows of a record end with, but for the absolute error between the two.
-struct LastFields {
-    inputs: Vec<String>,
-    others: [String; LAST_COLUMNS.len() - 1],
-}
-
-fn last_fields(record: &Record) -> LastFields {
+/// What all rows of a record end with, in the order of [`LAST_COLUMNS`] from the second on.
+fn last_fields(record: &Record) -> [String; LAST_COLUMNS.len() - 1] {
     let case = &record.case;
     let wall = quickest(&record.wall);
     let seconds = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
-    LastFields {
-        inputs: other_inputs().map(|key| input_of(key, case)).collect(),
-        others: [
-            case.scene.name().to_owned(),
-            case.task.name().to_owned(),
-            case.cell_size().to_string(),
-            seconds(wall.map(|sample| sample.seconds)),
-            seconds(wall.and_then(|sample| sample.cpu_seconds)),
-        ],
-    }
+    [
+        case.scene.name().to_owned(),
+        case.task.name().to_owned(),
+        case.cell_size().to_string(),
+        seconds(wall.map(|sample| sample.seconds)),
+        seconds(wall.and_then(|sample| sample.cpu_seconds)),
+    ]
 }
 
 /// The shortest of the times that a case had for itself, or of all where it never was alone.

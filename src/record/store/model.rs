@@ -1,11 +1,10 @@
-//! Stores against a list in memory: random sequences of everything that happens to one, with a fixed seed.
+//! Compares stores with a list in memory: random sequences of everything that happens to one, with a fixed seed.
 
 use super::*;
 use crate::case::Task;
 use crate::measure::record::record_of_attached;
-use crate::record::attached_run::AttachedRun;
-use crate::record::pack::index::Place;
-use crate::record::pack::member::{HEADER, Header};
+use crate::record::AttachedRun;
+use crate::record::pack::HEADER;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 use oedometer_mpm::scene::SceneKind;
 use std::collections::BTreeMap;
@@ -38,8 +37,8 @@ enum State {
 /// What was written, in the order of time.
 #[derive(Clone, Debug)]
 struct Written {
-    /// The record's content; none of wall times alone.
-    tag: Option<usize>,
+    /// The record's content.
+    tag: usize,
     end: CaseEnd,
     wall: Vec<f64>,
     state: State,
@@ -53,23 +52,16 @@ struct Content {
     end: CaseEnd,
 }
 
-/// The newest record counts, and with it the newest wall times that were written alone behind it; what is broken is not
-/// replaced by something older, but for wall times: those of the record itself stand in.
+/// The newest record counts; a broken one is not replaced by something older.
 fn expected(written: &[Written]) -> Option<Content> {
-    let at = written.iter().rposition(|one| one.tag.is_some() && one.state != State::Gone)?;
-    let record = &written[at];
-    if record.state == State::Broken {
-        return None;
-    }
-    let later = written[at..].iter().rfind(|one| one.tag.is_none() && one.state != State::Gone);
-    let wall = later.filter(|wall| wall.state == State::Whole).unwrap_or(record);
-    Some(Content { tag: record.tag?, wall: wall.wall.clone(), end: record.end })
+    let record = written.iter().rfind(|one| one.state != State::Gone)?;
+    let Written { tag, end, ref wall, state } = *record;
+    (state == State::Whole).then(|| Content { tag, wall: wall.clone(), end })
 }
 
 /// A folder with two writers, each of which has every other case, and what was written.
 struct Bed {
     folder: tempfile::TempDir,
-    window: u64,
     cases: Vec<Case>,
     writers: Vec<RecordStore>,
     swapped: usize,
@@ -87,7 +79,7 @@ fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {
     let status = match end {
         CaseEnd::Ok => Status::Ok,
         CaseEnd::Failed => failed(FailureKind::Unstable),
-        CaseEnd::Late => failed(FailureKind::TimedOut),
+        CaseEnd::Late | CaseEnd::WallTimesAlone => failed(FailureKind::TimedOut),
     };
     // Texts of unlike lengths, so that members are too.
     let about = AttachedRun {
@@ -111,18 +103,17 @@ fn content(record: &Record) -> Content {
     Content { tag, wall: record.wall.iter().map(|sample| sample.seconds).collect(), end }
 }
 
-fn packed(folder: &Path, window: u64) -> RecordStore {
+fn packed(folder: &Path) -> RecordStore {
     let folder = folder.join("s");
-    RecordStore { packs: Arc::new(PackedStore::with_window(&folder, window)), folder, is_packed: true }
+    RecordStore { packs: Arc::new(Packs::new(&folder)), folder, is_packed: true }
 }
 
 impl Bed {
-    fn new(seed: u64, window: u64) -> Self {
+    fn new(seed: u64) -> Self {
         let folder = tempfile::TempDir::new().expect("a folder");
         let cases = (0..CASES).map(case).collect();
         let mut bed = Self {
             folder,
-            window,
             cases,
             writers: Vec::new(),
             swapped: 0,
@@ -135,7 +126,7 @@ impl Bed {
     }
 
     fn open(&self) -> RecordStore {
-        packed(self.folder.path(), self.window)
+        packed(self.folder.path())
     }
 
     fn reopen(&mut self) {
@@ -158,7 +149,7 @@ impl Bed {
         let end = [CaseEnd::Ok, CaseEnd::Ok, CaseEnd::Failed, CaseEnd::Late][self.dice.below(4)];
         let (tag, wall) = (self.tags, self.wall());
         self.writer_of(case).write(&record(&self.cases[case], tag, &wall, end)).expect("written");
-        let written = Written { tag: Some(tag), end, wall, state: State::Whole };
+        let written = Written { tag, end, wall, state: State::Whole };
         self.model.entry(case).or_default().push(written);
     }
 
@@ -167,52 +158,40 @@ impl Bed {
         let Some(Content { tag, wall, end }) = self.of(case) else { return };
         let wall = [wall, self.wall()].concat();
         self.writer_of(case).write_wall(&record(&self.cases[case], tag, &wall, end)).expect("written");
-        self.model.entry(case).or_default().push(Written { tag: None, end, wall, state: State::Whole });
+        self.model.entry(case).or_default().push(Written { tag, end, wall, state: State::Whole });
     }
 
     fn of(&self, case: usize) -> Option<Content> {
         expected(self.model.get(&case).map_or(&[], Vec::as_slice))
     }
 
-    /// Takes a record over from elsewhere, as a merge does; wall times that stand alone there are not left behind.
+    /// Takes a record over from elsewhere, as a merge does.
     fn take_over(&mut self, case: usize) {
         let elsewhere = tempfile::TempDir::new().expect("a folder");
-        let other = packed(elsewhere.path(), self.window);
+        let other = packed(elsewhere.path());
         self.tags += 1;
         let (tag, wall) = (self.tags, self.wall());
-        let first = record(&self.cases[case], tag, &wall, CaseEnd::Ok);
-        other.write(&first).expect("written");
-        let is_timed_later = self.dice.below(2) == 0;
-        if is_timed_later {
-            let more = [wall.clone(), vec![9.0]].concat();
-            other.write_wall(&record(&self.cases[case], tag, &more, CaseEnd::Ok)).expect("written");
-        }
-        let taken = self.writer_of(case).take_over(&other, &self.cases[case]).expect("taken over");
-        assert_eq!(taken, !is_timed_later, "a record with wall times of its own is read and written");
-        if taken {
-            let written = Written { tag: Some(tag), end: CaseEnd::Ok, wall, state: State::Whole };
-            self.model.entry(case).or_default().push(written);
-        }
+        other.write(&record(&self.cases[case], tag, &wall, CaseEnd::Ok)).expect("written");
+        assert!(self.writer_of(case).take_over(&other, &self.cases[case]).expect("taken over"));
+        let nothing = self.writer_of(case).take_over(&other, &self.cases[(case + 1) % CASES]);
+        assert!(!nothing.expect("nothing there"));
+        let written = Written { tag, end: CaseEnd::Ok, wall, state: State::Whole };
+        self.model.entry(case).or_default().push(written);
     }
 
-    /// The newest whole member of a case, and its place: of its record, or of its wall times.
-    fn newest(&self, case: usize, of_wall: bool) -> Option<(usize, PathBuf, Place)> {
+    /// The newest record of a case, where it is whole: its place in the list, its pack, its first byte and its length.
+    fn newest(&self, case: usize) -> Option<(usize, PathBuf, usize, usize)> {
         let written = self.model.get(&case)?;
-        let record = written.iter().rposition(|one| one.tag.is_some() && one.state != State::Gone)?;
-        let wall = written.iter().rposition(|one| one.tag.is_none() && one.state != State::Gone);
-        let at = if of_wall { wall.filter(|wall| *wall > record)? } else { record };
-        let (path, place) = self.open().packs.place(self.cases[case].number(), of_wall)?;
-        (written[at].state == State::Whole).then_some((at, path, place))
+        let at = written.iter().rposition(|one| one.state != State::Gone)?;
+        let (path, offset, length) = self.open().packs.place(self.cases[case].number())?;
+        (written[at].state == State::Whole).then_some((at, path, offset, length))
     }
 
-    /// Damages the newest record or the newest wall times of a case, and says whose fault it must be.
+    /// Damages the newest record of a case, and says whose fault it must be.
     fn damage(&mut self, case: usize) {
-        let of_wall = self.dice.below(3) == 0;
-        let Some((at, path, place)) = self.newest(case, of_wall) else { return };
+        let Some((at, path, offset, length)) = self.newest(case) else { return };
         self.writers.clear();
         let mut bytes = fs::read(&path).expect("a pack");
-        let offset = usize::try_from(place.offset).expect("small");
-        let length = place.header.length as usize;
         let is_told;
         let state = match self.dice.below(5) {
             0 => {
@@ -229,9 +208,8 @@ impl Bed {
                 // A length that leads into the middle of the member, or behind the end of any pack.
                 bytes[offset + 45 + self.dice.below(2)] ^= 0x04;
                 is_told = true;
-                let wrong =
-                    Header::read(&bytes[offset..]).map_or(usize::MAX, |header| header.length as usize);
-                if wrong < length {
+                let wrong = bytes[offset + 45..offset + 49].try_into().map_or(u32::MAX, u32::from_le_bytes);
+                if (wrong as usize) < length {
                     State::Broken
                 } else {
                     bytes[offset + 48] = 0x7f;
@@ -244,8 +222,9 @@ impl Bed {
                 State::Gone
             }
             _ => {
-                // Bytes of nobody before it, with beginnings of headers at all edges of the windows.
-                let count = self.dice.below(4 * usize::try_from(self.window).expect("small"));
+                // Bytes of nobody before it, with beginnings of headers.
+                let most = 1 << self.dice.below(13);
+                let count = self.dice.below(most);
                 let bait = &bytes[offset..offset + 1 + self.dice.below(20)];
                 let garbage: Vec<u8> =
                     bait.iter().chain(&[1, 2, 3]).copied().cycle().take(1 + count).collect();
@@ -270,7 +249,7 @@ impl Bed {
         self.reopen();
     }
 
-    /// Holds a store that has seen everything against the list.
+    /// Compares a store that has seen everything with the list.
     fn hold(&self, store: &RecordStore, what: &str) {
         let mut hashes = Vec::new();
         for (number, case) in self.cases.iter().enumerate() {
@@ -279,23 +258,23 @@ impl Bed {
             assert_eq!(store.kept(case).as_ref().map(content), expected, "{what}");
             assert_eq!(store.has(case), expected.is_some(), "{what}");
             assert_eq!(store.read(&case.hash()).as_ref().map(content), expected, "{what}");
-            let wall =
-                store.entry_and_wall(case).map(|(_, wall)| wall.iter().map(|one| one.seconds).collect());
-            assert_eq!(wall, expected.as_ref().map(|content| content.wall.clone()), "{what}");
             if let Some(content) = &expected {
-                assert_eq!(store.entry(case).map(|entry| entry.end), Some(content.end), "{what}");
+                assert_eq!(
+                    store.packs.entry(case.number()).map(|entry| entry.end),
+                    Some(content.end),
+                    "{what}"
+                );
                 assert_eq!(store.is_done(case), content.end != CaseEnd::Late, "{what}");
-                assert_eq!(store.found(case).is_finished(), content.end != CaseEnd::Late, "{what}");
+                assert_eq!(store.finished(case).is_some(), content.end != CaseEnd::Late, "{what}");
+                assert_eq!(store.is_packed_and_done(case), content.end == CaseEnd::Ok, "{what}");
             }
-            let is_listed = self
-                .model
-                .get(&number)
-                .is_some_and(|all| all.iter().any(|one| one.tag.is_some() && one.state != State::Gone));
+            let is_listed =
+                self.model.get(&number).is_some_and(|all| all.iter().any(|one| one.state != State::Gone));
             hashes.extend(is_listed.then(|| case.hash()));
         }
         hashes.sort_unstable();
         assert_eq!(store.hashes(), hashes, "{what}");
-        assert_eq!(store.entries().len(), hashes.len(), "{what}");
+        assert_eq!(store.packs.entries().len(), hashes.len(), "{what}");
     }
 
     fn step(&mut self) {
@@ -328,32 +307,11 @@ impl Bed {
 #[test]
 fn a_packed_store_keeps_what_a_list_keeps_whatever_happens_to_it() {
     for seed in 0..24 {
-        // Windows of the search behind damage down to one byte more than a header, so that headers lie across edges.
-        let window = [HEADER as u64 + 1, 64, 101, 1 << 10][usize::try_from(seed).expect("small") % 4];
-        let mut bed = Bed::new(seed, window);
+        let mut bed = Bed::new(seed);
         for _ in 0..60 {
             bed.step();
         }
         bed.hold(&bed.open(), "at the end");
-    }
-}
-
-#[test]
-fn a_header_is_found_wherever_it_lies_in_the_windows_behind_damage() {
-    let folder = tempfile::TempDir::new().expect("a folder");
-    for window in [HEADER as u64 + 1, HEADER as u64 + 2, 80, 200] {
-        for count in 0..3 * usize::try_from(window).expect("small") {
-            let _ = fs::remove_dir_all(folder.path().join("s"));
-            let store = packed(folder.path(), window);
-            store.write(&record(&case(0), 1, &[1.0], CaseEnd::Ok)).expect("written");
-            let (path, place) = store.packs.place(case(0).number(), false).expect("a place");
-            drop(store);
-            let mut bytes = fs::read(&path).expect("a pack");
-            bytes.splice(..usize::try_from(place.offset).expect("small"), vec![7; count]);
-            fs::write(&path, bytes).expect("a pack");
-            let found = packed(folder.path(), window).kept(&case(0));
-            assert!(found.is_some(), "lost behind {count} bytes of damage, looking at {window} at once");
-        }
     }
 }
 

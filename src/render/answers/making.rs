@@ -1,6 +1,6 @@
 //! How the report was made: on top, not at the end.
 
-use crate::record::origins::Origins;
+use crate::record::provenance::Origins;
 use crate::record::provenance::Provenance;
 use crate::render::report::StudyResults;
 use oedometer_soil::wording::count_of;

@@ -1,7 +1,6 @@
 //! What failed in a check, as lines of a terminal's width: the worst first, and the rest counted.
 
-use crate::golden::case_changes::CaseChange;
-use crate::golden::compare::Difference;
+use crate::golden::compare::{CaseChange, Difference};
 use crate::judge::study_check::{CaseNote, StudyCheck};
 use crate::render::checks::items::{item, wrapped};
 use crate::render::number;

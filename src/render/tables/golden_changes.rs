@@ -1,8 +1,6 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
-use crate::golden::case_changes::CaseChange;
-use crate::golden::compare::{Change, Difference};
-use crate::golden::difference_groups::DifferenceGroup;
+use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_convergence::ParetoChange;

@@ -41,10 +41,7 @@ pub fn write(
         .collect::<Vec<_>>()
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
-    let index = index_page(results, "html");
-    write_page(&studies.join("index.html"), &render_html(&index)?)?;
-    write_exports(&studies, &index)?;
-    write_page(&studies.join("README.md"), &render_markdown(&index_page(results, "md"))?)?;
+    write_forms(&studies, "index", "README", &index_page(results, "html"), &index_page(results, "md"))?;
 
     let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> = results
         .par_iter()
@@ -53,10 +50,8 @@ pub fn write(
         .into_iter()
         .collect();
     let ends = ends?.concat();
-    let situations = situations_page(&ends, "html");
-    write_page(&out.join("situations.html"), &render_html(&situations)?)?;
-    write_exports(out, &situations)?;
-    write_page(&out.join("situations.md"), &render_markdown(&situations_page(&ends, "md"))?)?;
+    let situations = |form| situations_page(&ends, form);
+    write_forms(out, "situations", "situations", &situations("html"), &situations("md"))?;
 
     making.seconds = start.elapsed().as_secs_f64();
     let links = |study: &str| format!("{STUDY}{study}");
@@ -81,13 +76,24 @@ pub fn write(
     Ok(path)
 }
 
+/// Writes a page in both forms, with the figures and tables of the first.
+fn write_forms(
+    folder: &Path,
+    html_name: &str,
+    markdown_name: &str,
+    html: &Page,
+    markdown: &Page,
+) -> anyhow::Result<()> {
+    write_page(&folder.join(format!("{html_name}.html")), &render_html(html)?)?;
+    write_page(&folder.join(format!("{markdown_name}.md")), &render_markdown(markdown)?)?;
+    write_exports(folder, html)
+}
+
 /// The pages of a study with their figures and tables.
 fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
     let page = study_page(one)?;
     let name = slug(&one.study.name);
-    write_page(&studies.join(format!("{name}.html")), &render_html(&page)?)?;
-    write_page(&studies.join(format!("{name}.md")), &render_markdown(&page)?)?;
-    write_exports(studies, &page)
+    write_forms(studies, &name, &name, &page, &page)
 }
 
 /// Where the Markdown front page leads for a study: to its file, which a repository has beside the report, and to

@@ -1,14 +1,13 @@
 //! `oedometer report`: run what is missing, render everything.
 
 mod files;
-mod report_origin;
 
-use crate::campaign::run_options::RunOptions;
 use crate::campaign::run_report::{RunReport, Tally};
+use crate::campaign::runner::RunOptions;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
-use crate::cli::commands::run::{DEFAULT_RESULTS, TierArgument, jobs_of, load_or_shipped, run_and_store};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::cli::study_files;
@@ -17,6 +16,7 @@ use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::{GoldenFile, values_of};
 use crate::record::Record;
+use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
 use crate::render::answers::making::Making;
 use crate::render::report::StudyResults;
@@ -38,15 +38,15 @@ pub struct Arguments {
     /// Folder of the records
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
-    /// Folder of the golden values that the records are held against
+    /// Folder of the golden values that the records are compared with
     #[arg(long, value_name = "DIR", default_value = GOLDEN)]
     golden: PathBuf,
     /// Run nothing: render the records that are there, whichever program made them
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
     /// How much of each study is run; what of the rest has its records is rendered too
-    #[arg(long, value_enum, default_value_t = TierArgument::Full, conflicts_with = "from_records")]
-    tier: TierArgument,
+    #[arg(long, value_enum, default_value_t = Tier::Full, conflicts_with = "from_records")]
+    tier: Tier,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
@@ -75,9 +75,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         })
         .collect::<Vec<_>>();
     let making = Making {
-        date: report_origin::today(),
-        processor: report_origin::processor(),
-        command: report_origin::command(),
+        date: chrono::Utc::now().format("%Y-%m-%d").to_string(),
+        processor: processor(),
+        command: command(),
         seconds: 0.0,
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
         left_out: results.iter().map(StudyResults::left_out).sum(),
@@ -102,9 +102,9 @@ fn typed_name(study: &str, arguments: &Arguments) -> String {
 }
 
 fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
-    let tier = arguments.tier.into();
+    let tier = arguments.tier;
     let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
-    let mut reports = run_and_store(studies, studies, &options, &arguments.records, Beside::Nothing)?;
+    let mut reports = run_and_store(studies, studies, &options, &arguments.records, Beside::Machines)?;
     refuse_unfinished(&reports)?;
     if tier < Tier::Full {
         for (study, report) in studies.iter().zip(&mut reports) {
@@ -173,4 +173,17 @@ fn changes(
     let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
     let held: Vec<_> = all.par_iter().filter_map(of_study).collect();
     (!held.is_empty()).then(|| held.concat())
+}
+
+/// The processor by its name where the system tells it, else by its architecture, with the number of its threads.
+fn processor() -> String {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{threads} × {}", Machine::this().processor)
+}
+
+/// The command as it was typed, without the path of the program.
+fn command() -> String {
+    let quoted = |word: String| if word.contains(char::is_whitespace) { format!("\"{word}\"") } else { word };
+    let words = std::env::args().skip(1).map(quoted);
+    std::iter::once("oedometer".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }

@@ -1,0 +1,190 @@
+//! What is asked of Slurm: to take a script, what became of it, and how many tasks an array may have.
+
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::say;
+use crate::record::whole_file::write_whole;
+use oedometer_formats::input_file;
+use std::path::Path;
+use std::process::Command;
+use std::thread::sleep;
+use std::time::Duration;
+
+/// `MaxArraySize` of Slurm where its configuration says nothing.
+const DEFAULT_ARRAY_SIZE: u64 = 1001;
+/// First time between two looks; each is half as long again as the one before, up to the longest.
+const FIRST: Duration = Duration::from_millis(500);
+const LONGEST: Duration = Duration::from_secs(15);
+/// Refusals in a row after which Slurm is given up: its controller restarts now and then.
+const MOST_REFUSALS: u32 = 20;
+
+/// The array of a campaign and the merge that waits for it, by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Job {
+    /// The array.
+    pub array: String,
+    /// The merge.
+    pub merge: String,
+}
+
+/// Tasks that are not over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Tasks {
+    /// At work.
+    running: usize,
+    /// Waiting; those of an array that wait together count as one.
+    waiting: usize,
+}
+
+impl Job {
+    /// Keeps the numbers in a file.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn keep(&self, path: &Path) -> anyhow::Result<()> {
+        Ok(write_whole(path, format!("{}\n{}\n", self.array, self.merge).as_bytes())?)
+    }
+
+    /// The job of such a file, where its array is not over yet.
+    pub fn under_way(path: &Path) -> Option<Self> {
+        let text = input_file::read_text(path).ok()?;
+        let mut lines = text.lines().map(str::to_owned);
+        let job = Self { array: lines.next()?, merge: lines.next()? };
+        (tasks_of(&job.array).ok()? != Tasks::default()).then_some(job)
+    }
+
+    /// Waits until the array and its merge are over and tells how many of `all` cases are done; whether somebody
+    /// cancelled tasks.
+    ///
+    /// # Errors
+    /// When Slurm has not answered for long.
+    pub fn follow(&self, done: impl Fn() -> usize, all: usize) -> anyhow::Result<bool> {
+        let (mut pause, mut refusals, mut told) = (FIRST, 0, String::new());
+        loop {
+            let tasks = tasks_of(&self.array).and_then(|array| Ok((array, tasks_of(&self.merge)?)));
+            let (array, merge) = match tasks {
+                Ok(tasks) => tasks,
+                Err(error) if refusals < MOST_REFUSALS && Exit::of(&error) == Exit::CaseFailed => {
+                    refusals += 1;
+                    sleep(LONGEST);
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            refusals = 0;
+            if (array, merge) == (Tasks::default(), Tasks::default()) {
+                let told = called("scontrol --oneliner show job", &[&self.array]);
+                return Ok(told.is_ok_and(|told| told.contains("JobState=CANCELLED")));
+            }
+            let work = match array {
+                Tasks { running: 0, waiting: 0 } => "merging".to_owned(),
+                Tasks { running, waiting: 0 } => format!("{running} tasks at work"),
+                Tasks { running, .. } => format!("{running} tasks at work, others wait"),
+            };
+            let line = format!("job {}: {} of {all} cases, {work}", self.array, done());
+            if line != told {
+                say!("{line}");
+                told = line;
+            }
+            sleep(pause);
+            pause = (pause * 3 / 2).min(LONGEST);
+        }
+    }
+}
+
+/// Calls a program of Slurm, whose words are parted by spaces, with more words.
+fn called(command: &str, more: &[&str]) -> anyhow::Result<String> {
+    let mut words = command.split(' ');
+    let program = words.next().unwrap_or_default();
+    let output = Command::new(program).args(words).args(more).output().map_err(|error| {
+        Ended::usage(format!("cannot call {program}: {error}; is this a machine of a cluster with Slurm?"))
+    })?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    }
+    let why = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+    Err(Ended::with(Exit::CaseFailed, format!("`{command} {}` was refused: {why}", more.join(" "))))
+}
+
+/// Submits a script by the words behind `sbatch`; the number of its job.
+///
+/// # Errors
+/// When Slurm is not there or refuses.
+pub fn submit(words: &[String]) -> anyhow::Result<String> {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let told = called("sbatch", &words)?;
+    // With several clusters the name of one stands behind the number.
+    Ok(told.trim().split(';').next().unwrap_or_default().to_owned())
+}
+
+/// Takes back what was submitted, as far as Slurm still knows it.
+pub fn cancel(job: &str) {
+    let _ = called("scancel", &[job]);
+}
+
+/// Most tasks of an array.
+///
+/// # Errors
+/// When Slurm takes no arrays.
+pub fn most_tasks() -> anyhow::Result<u64> {
+    let told = called("scontrol show config", &[]).unwrap_or_default();
+    match array_size_in(&told).unwrap_or(DEFAULT_ARRAY_SIZE) {
+        size @ (0 | 1) => Err(Ended::with(
+            Exit::CaseFailed,
+            format!(
+                "this Slurm takes no arrays (MaxArraySize={size}): `oedometer plan --tasks` writes a job list"
+            ),
+        )),
+        // The largest number of a task is one less than the size.
+        size => Ok(size - 1),
+    }
+}
+
+/// The size among the lines of a configuration, as `MaxArraySize            = 1001`.
+fn array_size_in(told: &str) -> Option<u64> {
+    let mut pairs = told.lines().filter_map(|line| line.split_once('='));
+    pairs.find(|(name, _)| name.trim() == "MaxArraySize")?.1.trim().parse().ok()
+}
+
+/// The tasks of a job that are not over; none of one that Slurm no longer knows.
+fn tasks_of(job: &str) -> anyhow::Result<Tasks> {
+    match called("squeue --noheader --format=%T", &[&format!("--jobs={job}")]) {
+        Err(error) if error.to_string().contains("Invalid job id") => Ok(Tasks::default()),
+        told => Ok(counted(&told?)),
+    }
+}
+
+fn counted(states: &str) -> Tasks {
+    let count = |names: &[&str]| states.lines().filter(|state| names.contains(&state.trim())).count();
+    Tasks {
+        running: count(&["RUNNING", "COMPLETING", "CONFIGURING", "STAGE_OUT", "SIGNALING"]),
+        waiting: count(&[
+            "PENDING",
+            "SUSPENDED",
+            "REQUEUED",
+            "REQUEUE_HOLD",
+            "SPECIAL_EXIT",
+            "RESIZING",
+            "STOPPED",
+        ]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tasks_are_counted_by_their_states() {
+        let told = "RUNNING\nRUNNING\n PENDING\nCOMPLETED\nFAILED\nCOMPLETING\n";
+        assert_eq!(counted(told), Tasks { running: 3, waiting: 1 });
+        assert_eq!(counted(""), Tasks::default());
+    }
+
+    #[test]
+    fn the_size_is_read_among_the_lines_of_a_configuration() {
+        let told = "Configuration data as of now\nMaxArrayTasks = 7\nMaxArraySize            = 1001\nMaxDBDMsgs = 2\n";
+        assert_eq!(array_size_in(told), Some(1001));
+        assert_eq!(array_size_in("MaxArraySize = (null)\n"), None);
+        assert_eq!(array_size_in(""), None);
+    }
+}
