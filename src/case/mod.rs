@@ -42,8 +42,7 @@ const BYTES_A_HALVING: f64 = 1800.0;
 const HASH_DIGITS: usize = 16;
 
 /// What is done with a case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Task {
     /// It is solved, and held against the references of its scene.
     #[default]

@@ -2,14 +2,10 @@
 
 use oedometer_soil::wording::words;
 
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How the error of a field is turned into one number.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Norm {
     /// Mean of the absolute error over the volume.
     L1,

@@ -2,13 +2,9 @@
 
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 use oedometer_soil::wording::words;
-use serde::{Deserialize, Serialize};
 
 /// A measured quantity.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Quantity {
     /// Excess pore pressure.
     Pressure,
@@ -39,10 +35,7 @@ impl Quantity {
 }
 
 /// Where a quantity is sampled: it decides the order that is seen.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Sample {
     /// At the material points.
     Points,

@@ -15,8 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What is refined along a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Axis {
     /// Cell size, by the number of cells.
     Cells,

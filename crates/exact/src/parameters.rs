@@ -1,24 +1,11 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact_error::{ExactError, normal, positive};
+use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
 /// How a layer rests on its impermeable base.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Hash,
-    PartialOrd,
-    Ord,
-    Default,
-    serde::Serialize,
-    serde::Deserialize,
-    schemars::JsonSchema,
-)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Base {
     /// No displacement.
     #[default]
@@ -27,18 +14,7 @@ pub enum Base {
     Smooth,
 }
 
-impl Base {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Rough, Self::Smooth];
-
-    /// Name in study files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rough => "rough",
-            Self::Smooth => "smooth",
-        }
-    }
-}
+words!(Base: Rough "rough", Smooth "smooth");
 
 /// A motion that is written down: its amplitudes and its frequency.
 #[derive(

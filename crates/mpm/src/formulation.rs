@@ -1,20 +1,16 @@
 //! Which accelerations the balances keep.
 
 use oedometer_soil::wording::words;
-use serde::{Deserialize, Serialize};
 
 /// Which accelerations the balances keep (docs/theory.md, section 1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formulation {
     /// None: Biot's consolidation.
     QuasiStatic,
     /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
     /// (Zienkiewicz 1980).
-    #[serde(rename = "u-p")]
     UP,
     /// Both phases' own.
-    #[serde(rename = "v-w")]
     VW,
 }
 

@@ -7,8 +7,7 @@ use std::fmt;
 use std::sync::LazyLock;
 
 /// Weights between points and nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// Piecewise linear hat functions: the original MPM.
     Hat,
@@ -29,8 +28,7 @@ pub enum Basis {
 words!(Basis: Hat "hat", Ugimp "ugimp", Cpgimp "cpgimp", Cpdi "cpdi", Bspline2 "bspline2", Bspline3 "bspline3");
 
 /// Gradient from which the effective stress takes its strain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrainGradient {
     /// The gradient of the basis.
     Standard,
@@ -68,8 +66,7 @@ impl StrainGradient {
 }
 
 /// Where the divergence that drives the pore pressure is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressureIntegration {
     /// At the points: full integration.
     Points,
@@ -91,8 +88,7 @@ impl PressureIntegration {
 }
 
 /// How pressure increments come back from the cell centres to the points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     /// Each point takes its cell's increment.
     Constant,
@@ -121,8 +117,7 @@ impl Recovery {
 }
 
 /// What remembers stress, pressure and volume while points move through the mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Memory {
     /// Each point, all that ever happened to it.
     #[default]
@@ -142,8 +137,7 @@ impl Memory {
 }
 
 /// Configuration on which weights are built.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Configuration {
     /// Points move and weights follow them.
     Updated,
@@ -295,13 +289,13 @@ impl Method {
 
     /// The operators in the words of a study file: `basis+strain+pressure+recovery`.
     pub fn choices(&self) -> String {
-        let mut choices = format!("{}+{}+{}", word(self.basis), self.strain.name(), self.pressure.name());
+        let mut choices = format!("{}+{}+{}", self.basis.name(), self.strain.name(), self.pressure.name());
         if (self.pressure, self.recovery) != (PressureIntegration::Points, Recovery::Constant) {
             choices = format!("{choices}+{}", self.recovery.name());
         }
         match self.memory {
             Memory::Points => choices,
-            Memory::Cells => format!("{choices}+{}", word(self.memory)),
+            Memory::Cells => format!("{choices}+{}", self.memory.name()),
         }
     }
 
@@ -338,24 +332,11 @@ impl fmt::Display for Method {
         }
         match (name_of(Self { configuration: None, ..*self }), self.configuration) {
             (Some(name), None) => write!(out, "{name}"),
-            (Some(name), Some(configuration)) => write!(out, "{name} ({})", word(configuration)),
+            (Some(name), Some(configuration)) => write!(out, "{name} ({})", configuration.name()),
             (None, None) => write!(out, "{}", self.choices()),
-            (None, Some(configuration)) => write!(out, "{} ({})", self.choices(), word(configuration)),
+            (None, Some(configuration)) => write!(out, "{} ({})", self.choices(), configuration.name()),
         }
     }
-}
-
-/// The word of a choice as the study file spells it.
-fn word<C: fmt::Debug>(choice: C) -> String {
-    // Words of two, `CmpmEnds`, are joined by a hyphen.
-    let mut word = String::new();
-    for (place, letter) in format!("{choice:?}").char_indices() {
-        if letter.is_uppercase() && place > 0 {
-            word.push('-');
-        }
-        word.extend(letter.to_lowercase());
-    }
-    word
 }
 
 #[cfg(test)]

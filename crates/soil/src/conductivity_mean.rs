@@ -3,24 +3,9 @@
 use crate::elementary;
 use crate::law::Law;
 use crate::wording::words;
-use serde::{Deserialize, Serialize};
 
 /// Mean of the hydraulic conductivity at a node.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    Hash,
-    PartialOrd,
-    Ord,
-    Serialize,
-    Deserialize,
-    schemars::JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ConductivityMean {
     /// Every point gives its own drag `n γ_w V/k` (Zheng et al.): a harmonic mean, which errs by 39 % in the
     /// first flux at the surface of a soil that a load at once shortens by half.

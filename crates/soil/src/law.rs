@@ -3,13 +3,10 @@
 
 use crate::elementary;
 use crate::tensor::{Tensor, product_with_transpose};
-use serde::{Deserialize, Serialize};
+use crate::wording::words;
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Law {
     /// Constant modulus and conductivity.
     Linear,
@@ -27,11 +24,12 @@ pub enum Law {
     NeoHookean,
 }
 
-impl Law {
-    /// Every law, in the order of the documentation.
-    pub const ALL: [Self; 5] =
-        [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering, Self::NeoHookean];
+words!(
+    Law: Linear "linear", LogLinear "log-linear", PorosityDependent "porosity-dependent",
+    Engineering "engineering", NeoHookean "neo-hookean"
+);
 
+impl Law {
     /// The laws of columns: a rate against the logarithmic strain, which a uniaxial compression integrates in closed
     /// form.
     pub const OF_COLUMNS: [Self; 4] =
@@ -41,18 +39,6 @@ impl Law {
     #[inline]
     pub fn is_hyperelastic(self) -> bool {
         self == Self::NeoHookean
-    }
-
-    /// Name in study files.
-    #[inline]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::LogLinear => "log-linear",
-            Self::PorosityDependent => "porosity-dependent",
-            Self::Engineering => "engineering",
-            Self::NeoHookean => "neo-hookean",
-        }
     }
 
     /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over

@@ -59,22 +59,61 @@ pub fn orders(values: &[f64]) -> String {
     values.iter().map(|value| order(*value)).collect::<Vec<_>>().join(", ")
 }
 
-/// Gives an enumeration its words: `ALL` in the order of tables, and the `name` of each in files.
+/// Names the choices of an enumeration, once for all: `ALL` and `NAMES` in the order of tables, `name` and `named`, and
+/// the same names in files (serde) and in their JSON Schemas.
 #[macro_export]
 macro_rules! words {
     ($kind:ident: $($variant:ident $word:literal),+ $(,)?) => {
+        #[allow(dead_code, reason = "few enumerations need all of them")]
         impl $kind {
             /// Every one, in the order of tables.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
 
+            /// The names of all, in the order of tables.
+            pub const NAMES: [&'static str; Self::ALL.len()] = [$($word),+];
+
             /// Name in files, records and tables.
+            #[inline]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $word),+ }
+            }
+
+            /// The one of a name.
+            pub fn named(name: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|one| one.name() == name)
+            }
+        }
+
+        impl $crate::wording::serde::Serialize for $kind {
+            fn serialize<S: $crate::wording::serde::Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+                out.serialize_str(self.name())
+            }
+        }
+
+        impl<'de> $crate::wording::serde::Deserialize<'de> for $kind {
+            fn deserialize<D: $crate::wording::serde::Deserializer<'de>>(input: D) -> Result<Self, D::Error> {
+                use $crate::wording::serde::de::Error;
+                let name = <String as $crate::wording::serde::Deserialize>::deserialize(input)?;
+                Self::named(&name).ok_or_else(|| D::Error::unknown_variant(&name, &Self::NAMES))
+            }
+        }
+
+        impl $crate::wording::schemars::JsonSchema for $kind {
+            fn inline_schema() -> bool {
+                true
+            }
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($kind).into()
+            }
+            fn json_schema(_: &mut $crate::wording::schemars::SchemaGenerator) -> $crate::wording::schemars::Schema {
+                $crate::wording::schemars::json_schema!({ "type": "string", "enum": Self::NAMES })
             }
         }
     };
 }
 pub use words;
+#[doc(hidden)]
+pub use {schemars, serde};
 
 #[cfg(test)]
 mod tests {

@@ -5,8 +5,7 @@ use oedometer_soil::wording::words;
 use serde::Deserialize;
 
 /// A unit of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
     /// Second.
     #[default]
@@ -24,31 +23,25 @@ pub enum TimeUnit {
 }
 
 /// A unit of length.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthUnit {
     /// Metre.
     #[default]
-    #[serde(rename = "m")]
     Metre,
     /// Centimetre.
-    #[serde(rename = "cm")]
     Centimetre,
     /// Millimetre.
-    #[serde(rename = "mm")]
     Millimetre,
 }
 
 /// A unit of stress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressUnit {
     /// Pascal.
-    #[serde(rename = "Pa")]
     Pascal,
     /// Kilopascal.
-    #[serde(rename = "kPa")]
     Kilopascal,
     /// Megapascal.
-    #[serde(rename = "MPa")]
     Megapascal,
 }
 

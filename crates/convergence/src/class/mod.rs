@@ -15,8 +15,7 @@ use crate::limiter::{Limiter, LimiterKind};
 use oedometer_soil::wording::words;
 
 /// How a series of errors behaves under refinement; decided before any order is quoted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Class {
     /// The order is steady on the finest window, and is the formal one where that is known.
     Asymptotic,

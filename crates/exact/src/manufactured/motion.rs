@@ -9,6 +9,7 @@ use crate::manufactured::four::{Four, PLACES};
 use crate::manufactured::jet::{Jet, Shape};
 use crate::parameters::MotionParameters;
 use oedometer_soil::elementary;
+use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
 /// Corrections after which a place is found or never is.
@@ -118,19 +119,10 @@ fn times(factor: f64, function: [f64; 3]) -> [f64; 3] {
     function.map(|value| factor * value)
 }
 
+// Names of its scene and of its exact solution.
+words!(Motion: Box "manufactured-box", Shear "manufactured-shear", Vortex "manufactured-vortex");
+
 impl Motion {
-    /// Every motion.
-    pub const ALL: [Self; 3] = [Self::Box, Self::Shear, Self::Vortex];
-
-    /// Name of its scene and of its exact solution.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Box => "manufactured-box",
-            Self::Shear => "manufactured-shear",
-            Self::Vortex => "manufactured-vortex",
-        }
-    }
-
     /// Place of a point of the skeleton at a time, m, with all its derivatives; `g = sin²(ωt)`.
     #[inline(always)]
     pub fn place(self, parameters: &MotionParameters, spots: &Spots, moment: &Moment) -> [Jet; 2] {

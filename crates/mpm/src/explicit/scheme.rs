@@ -11,8 +11,7 @@ use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// Time levels of velocities and stresses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// Zheng et al.: velocities and stresses at the same times.
     #[default]
@@ -31,8 +30,7 @@ impl Scheme {
 }
 
 /// Time level at which the drag between skeleton and water is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drag {
     /// Old velocities: bounds the step by the drag.
     Explicit,

@@ -3,7 +3,6 @@
 use crate::explicit::scheme::{Drag, ExplicitSettings, Scheme};
 use crate::run::time_step_rule::TimeStepRule;
 use oedometer_soil::wording::words;
-use serde::{Deserialize, Serialize};
 
 pub use crate::formulation::Formulation;
 
@@ -16,8 +15,7 @@ const SEMI_IMPLICIT_SHARE: f64 = 0.1;
 const DEFAULT_GROWTH: f64 = 0.05;
 
 /// Time integrator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IntegratorKind {
     /// The eight steps of Zheng et al. (2021).
     #[default]

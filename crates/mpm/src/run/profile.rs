@@ -9,8 +9,7 @@ use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
 /// What a run can be busy with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Problem, body and start.
     Setup,

@@ -6,7 +6,6 @@ use crate::scene::definition::{
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static AT_REST: SceneDefinition = SceneDefinition {
-    name: "at-rest",
     summary: "column without load at rest under its own weight: any motion is the method's own",
     references: &[ReferenceKind::AtRest],
     model_difference: |_, _| None,

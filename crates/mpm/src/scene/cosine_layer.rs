@@ -7,7 +7,6 @@ use crate::scene::definition::{
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static COSINE_LAYER: SceneDefinition = SceneDefinition {
-    name: "cosine-layer",
     summary: "plane layer under a cosine load, drained at its top: where locking shows",
     references: &[ReferenceKind::CosineLayer, ReferenceKind::CosineLayerIncompressible],
     model_difference: |reference, _| {

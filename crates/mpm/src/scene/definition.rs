@@ -8,8 +8,6 @@ use oedometer_soil::material::Material;
 
 /// A scene as data and a few functions.
 pub struct SceneDefinition {
-    /// Name in study files and at the command line.
-    pub name: &'static str,
     /// One line on what it is.
     pub summary: &'static str,
     /// References that hold, the one whose equations the solver solves first.

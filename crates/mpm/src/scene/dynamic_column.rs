@@ -8,7 +8,6 @@ use oedometer_exact::reference::ReferenceKind;
 const REFERENCES: &[ReferenceKind] = &[ReferenceKind::DynamicColumn, ReferenceKind::Terzaghi];
 
 pub(crate) static DYNAMIC_COLUMN: SceneDefinition = SceneDefinition {
-    name: "dynamic-column",
     summary: "column at rest under a sudden or growing load: waves and consolidation",
     references: REFERENCES,
     model_difference: |reference, _| (reference == ReferenceKind::Terzaghi).then_some("the inertia"),

@@ -7,7 +7,6 @@ use crate::scene::single_mode::mode_without_inertia;
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static DYNAMIC_SINGLE_MODE: SceneDefinition = SceneDefinition {
-    name: "dynamic-single-mode",
     summary: "slowest consolidation mode with its inertia, no load: smooth",
     references: &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
     model_difference: |reference, _| (reference == ReferenceKind::SingleMode).then_some("the inertia"),

@@ -11,7 +11,6 @@ use crate::scene::definition::{
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static MANDEL: SceneDefinition = SceneDefinition {
-    name: "mandel",
     summary: "slab between rigid plates, drained at its sides: the pressure in its middle rises before it falls",
     references: &[ReferenceKind::Mandel],
     model_difference: |_, _| None,

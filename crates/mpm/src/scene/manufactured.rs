@@ -24,21 +24,18 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 pub(crate) static BOX: SceneDefinition = SceneDefinition {
-    name: Motion::Box.name(),
     summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
     references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Box))],
     ..OF_ALL
 };
 
 pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
-    name: Motion::Shear.name(),
     summary: "the same with shear inside, in a neo-Hookean soil",
     references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Shear))],
     ..OF_ALL
 };
 
 pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
-    name: Motion::Vortex.name(),
     summary: "a disc that turns inside a square at rest, and back: tells domains that turn from those that do not",
     references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Vortex))],
     ..OF_ALL
@@ -46,7 +43,6 @@ pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
 
 /// What the motions have in common: at the start nothing is displaced, presses or moves.
 const OF_ALL: SceneDefinition = SceneDefinition {
-    name: "",
     summary: "",
     references: &[],
     model_difference: |_, _| None,

@@ -33,11 +33,10 @@ use oedometer_exact::manufactured::motion::Motion;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
-use serde::{Deserialize, Serialize};
+use oedometer_soil::wording::words;
 
 /// A physical problem by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SceneKind {
     /// A column loaded at once and drained at its top, at small strain.
     Terzaghi,
@@ -65,23 +64,14 @@ pub enum SceneKind {
     ManufacturedVortex,
 }
 
-impl SceneKind {
-    /// Every scene.
-    pub const ALL: [Self; 12] = [
-        Self::Terzaghi,
-        Self::SingleMode,
-        Self::XieLeo,
-        Self::CosineLayer,
-        Self::DynamicColumn,
-        Self::DynamicSingleMode,
-        Self::StandingWave,
-        Self::Mandel,
-        Self::AtRest,
-        Self::ManufacturedBox,
-        Self::ManufacturedShear,
-        Self::ManufacturedVortex,
-    ];
+words!(
+    SceneKind: Terzaghi "terzaghi", SingleMode "single-mode", XieLeo "xie-leo", CosineLayer "cosine-layer",
+    DynamicColumn "dynamic-column", DynamicSingleMode "dynamic-single-mode", StandingWave "standing-wave",
+    Mandel "mandel", AtRest "at-rest", ManufacturedBox "manufactured-box", ManufacturedShear "manufactured-shear",
+    ManufacturedVortex "manufactured-vortex"
+);
 
+impl SceneKind {
     /// The scene's own file.
     fn definition(self) -> &'static SceneDefinition {
         match self {
@@ -98,16 +88,6 @@ impl SceneKind {
             Self::ManufacturedShear => &manufactured::SHEAR,
             Self::ManufacturedVortex => &manufactured::VORTEX,
         }
-    }
-
-    /// Name in study files and at the command line.
-    pub fn name(self) -> &'static str {
-        self.definition().name
-    }
-
-    /// The scene of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|scene| scene.name() == name)
     }
 
     /// One line on what it is.

@@ -10,7 +10,6 @@ use oedometer_exact::single_mode::SingleMode;
 use oedometer_soil::material::Material;
 
 pub(crate) static SINGLE_MODE: SceneDefinition = SceneDefinition {
-    name: "single-mode",
     summary: "slowest consolidation mode, no load: smooth, for formal orders",
     references: &[ReferenceKind::SingleMode],
     model_difference: |_, _| None,

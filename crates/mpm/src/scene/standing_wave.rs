@@ -8,7 +8,6 @@ use oedometer_exact::dynamic_column::{DynamicColumn, Start};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static STANDING_WAVE: SceneDefinition = SceneDefinition {
-    name: "standing-wave",
     summary: "undrained standing wave, no load: smooth, for the order in the step",
     references: &[ReferenceKind::StandingWave],
     model_difference: |_, _| None,

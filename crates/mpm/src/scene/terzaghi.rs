@@ -6,7 +6,6 @@ use crate::scene::definition::{
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static TERZAGHI: SceneDefinition = SceneDefinition {
-    name: "terzaghi",
     summary: "column under a sudden load, drained at its top, small strain",
     references: &[ReferenceKind::Terzaghi, ReferenceKind::TerzaghiIncompressible],
     model_difference: |reference, _| {

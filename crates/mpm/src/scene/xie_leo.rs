@@ -15,7 +15,6 @@ use oedometer_soil::material::Material;
 const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel::XIE_LEO);
 
 pub(crate) static XIE_LEO: SceneDefinition = SceneDefinition {
-    name: "xie-leo",
     summary: "column under a sudden load, drained at its top, large strain",
     references: &[LARGE_STRAIN, ReferenceKind::XieLeo],
     model_difference: |reference, soil| {
