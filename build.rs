@@ -1,8 +1,6 @@
-//! Packs the golden values of the shipped studies for the program, and tells the program its provenance: a hash of
-//! its sources, commit, compiler, target.
+//! Tells the program its provenance: a hash of its sources, commit, compiler, target.
 #![allow(clippy::print_stdout, reason = "Cargo reads it")]
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -10,35 +8,8 @@ use std::process::Command;
 const SOURCES: [&str; 2] = ["src", "crates"];
 
 fn main() {
-    pack_golden_values();
-    tell_provenance();
-}
-
-/// Writes names, lengths and texts as one compressed stream, a tenth of the size of the files.
-fn pack_golden_values() {
+    // The program includes the golden values: a new file belongs to it too.
     println!("cargo:rerun-if-changed=golden");
-    let entries = std::fs::read_dir("golden").into_iter().flatten().flatten();
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|kind| kind == "csv"));
-    files.sort();
-    let mut whole = Vec::new();
-    for path in &files {
-        let text = std::fs::read(path).unwrap_or_default();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        whole.extend(format!("{name} {}\n", text.len()).into_bytes());
-        whole.extend(text);
-    }
-    let folder = PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
-    let packed = zlib(&whole);
-    std::fs::write(folder.join("golden.z"), packed).expect("the folder of the build can be written to");
-}
-
-fn zlib(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
-    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory takes every byte")
-}
-
-fn tell_provenance() {
     let mut sources = vec![PathBuf::from("Cargo.lock")];
     // A published package has no `crates`.
     for folder in SOURCES.into_iter().filter(|folder| Path::new(folder).exists()) {

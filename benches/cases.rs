@@ -87,7 +87,7 @@ fn implicit_case(method: &str, scene: SceneKind, cells: usize) -> Case {
     let is_large = scene == SceneKind::XieLeo;
     Case {
         scene,
-        method,
+        method: method.into(),
         column: Column { load: if is_large { 2e5 } else { 1.0 }, ..Column::default() }.into(),
         material: Material { law: scene.default_law(), ..Material::default() }.into(),
         integrator: IntegratorKind::Implicit,
@@ -106,7 +106,7 @@ fn case(method: &str, cells: usize, configuration: Configuration) -> Case {
         scene: SceneKind::Terzaghi,
         column: Column::default().into(),
         material: Material::default().into(),
-        method: Method { configuration: Some(configuration), ..method },
+        method: Method { configuration: Some(configuration), ..method }.into(),
         integrator: IntegratorKind::Explicit,
         formulation: IntegratorKind::Explicit.default_formulation(),
         settings: ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() },

@@ -152,6 +152,7 @@ pub use campaign::case_run::run_case;
 pub use campaign::runner::{RunOptions, Selected, run_studies, run_study};
 pub use case::norm::Norm;
 pub use case::quantity::{Quantity, Sample};
+pub use case::solver::Solver;
 pub use case::tier::Tier;
 pub use case::{Case, Task};
 pub use cli::{main, main_with};
@@ -192,7 +193,7 @@ pub use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, S
 pub use oedometer_mpm::run::results::snapshot::Snapshot;
 pub use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 pub use oedometer_mpm::scene::SceneKind;
-pub use oedometer_mpm::scene::column::Column;
+pub use oedometer_mpm::scene::column::{Column, Shape};
 pub use oedometer_mpm::scene::problem::column_problem;
 pub use oedometer_mpm::time_limit::TimeLimit;
 pub use oedometer_soil::continuity::Continuity;

@@ -92,7 +92,7 @@ impl Samples<'_> {
         self.lists_fit(times, places)?;
         let body = SolvedBody {
             height: case.column.height,
-            length: case.scene.has_plane_fields().then_some(case.column.horizontal_extent),
+            length: case.scene.has_plane_fields().then_some(case.column.extent()),
             seconds_per_time_factor: case.seconds_per_time_factor(),
         };
         let mut rows = Rows::default();

@@ -1,6 +1,7 @@
 //! Runs one case: from its inputs to its record.
 
 use crate::campaign::clock::{Deadline, process_seconds, thread_seconds};
+use crate::case::solver::Solver;
 use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
 use crate::measure::record::{record_of, record_of_critical_step, record_of_stopped_search};
@@ -164,7 +165,8 @@ fn solved(
 
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
-    SceneProblem::of(*scene, column, material, *method, *cells, *points_per_cell)
+    let Solver::Own(method) = *method else { unreachable!("an attached solver runs its own program") };
+    SceneProblem::of(*scene, column, material, method, *cells, *points_per_cell)
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.

@@ -3,6 +3,7 @@
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
 use crate::campaign::run_report::{Progress, RunError};
 use crate::campaign::stop;
+use crate::case::solver::Solver;
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task};
 use crate::foreign::attachment::{Attachment, Wish};
@@ -105,7 +106,7 @@ impl<'a> CaseRunner<'a> {
             alone,
             is_wanted: &is_wanted,
         };
-        let of_case = |one: &&Attachment<'_>| Some(one.solver().attached) == case.method.attached;
+        let of_case = |one: &&Attachment<'_>| Solver::Attached(one.solver().attached) == case.method;
         match self.attachments.iter().find(of_case) {
             Some(attachment) if self.study.holds_back(case) => attachment.held_back(case, &wish),
             Some(attachment) => attachment.run(case, &wish),

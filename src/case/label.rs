@@ -20,8 +20,8 @@ impl Case {
             (settings.drag != usual.drag, format!("{} drag", settings.drag.name())),
             (settings.flip != usual.flip, format!("FLIP {}", settings.flip)),
             (settings.mapping_back != usual.mapping_back, "no mapping back".to_owned()),
-            (settings.affine, "slopes of velocities".to_owned()),
-            (settings.stress_slopes, "slopes of stresses".to_owned()),
+            (settings.affine, "APIC".to_owned()),
+            (settings.stress_slopes, "stress slopes".to_owned()),
             (self.column.dimensions == 2 && !self.scene.needs_two_dimensions(), "two dimensions".to_owned()),
             (self.column.self_weight && !self.scene.is_at_rest(), "own weight".to_owned()),
             (self.material.law != self.scene.default_law(), format!("{} law", self.material.law.name())),
@@ -58,13 +58,13 @@ impl Case {
         })
     }
 
-    /// Where the points lie, where that is not the regular lattice in one layer.
+    /// Where the points lie, where that is not the regular lattice in one set.
     fn arrangement(&self) -> Vec<String> {
         let (points, regular) = (&self.column.points, Arrangement::default());
-        let layers = match points.water_per_cell {
+        let sets = match points.water_per_cell {
             0 => None,
-            of_water if of_water == self.points_per_cell => Some("two layers".to_owned()),
-            of_water => Some(format!("two layers, {of_water} of the water")),
+            of_water if of_water == self.points_per_cell => Some("two point sets".to_owned()),
+            of_water => Some(format!("two point sets, {of_water} of the water")),
         };
         let places = [
             (points.offset, regular.offset, "points shifted by"),
@@ -74,7 +74,7 @@ impl Case {
         .into_iter()
         .filter(|(value, usual, _)| value != usual)
         .map(|(value, _, what)| format!("{what} {value}"));
-        layers.into_iter().chain(places).collect()
+        sets.into_iter().chain(places).collect()
     }
 
     /// Parameters that maps of the critical step sweep, where they are not the seed's.
@@ -101,7 +101,7 @@ impl Case {
         self.label_with(&step_label(&self.time_step))
     }
 
-    /// The same for a case whose step is the question.
+    /// The label without the step, for a case whose step is the question.
     pub fn label_without_step(&self) -> String {
         self.label_with("")
     }

@@ -2,19 +2,21 @@
 
 pub mod keys;
 pub mod label;
+pub mod limits;
 pub mod norm;
 pub mod planned;
 pub mod quantity;
 pub mod shared;
+pub mod solver;
 pub mod step_cost;
 pub mod tier;
-pub mod two_layer_limits;
 pub mod work_estimate;
 
 use crate::case::shared::Shared;
+use crate::case::solver::Solver;
 pub use norm::Norm;
 use oedometer_mpm::explicit::ExplicitSettings;
-use oedometer_mpm::method::{Basis, Memory, Method, PressureIntegration, Recovery, StrainGradient};
+use oedometer_mpm::method::{Configuration, Method};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::Formulation;
 pub use oedometer_mpm::run::integrator::IntegratorKind;
@@ -74,8 +76,8 @@ pub struct Case {
     /// Soil.
     #[schemars(with = "Material")]
     pub material: Shared<Material>,
-    /// Operators.
-    pub method: Method,
+    /// What solves it.
+    pub method: Solver,
     /// Integrator.
     pub integrator: IntegratorKind,
     /// Accelerations that the balances keep.
@@ -106,15 +108,7 @@ impl Case {
             scene,
             column: scene.default_column().into(),
             material: scene.default_material().into(),
-            method: Method {
-                basis: Basis::Hat,
-                strain: StrainGradient::Standard,
-                pressure: PressureIntegration::Points,
-                recovery: Recovery::Constant,
-                memory: Memory::Points,
-                configuration: None,
-                attached: None,
-            },
+            method: Solver::Own(Method::STANDARD),
             integrator,
             formulation: integrator.default_formulation(),
             settings: scene.default_settings(),
@@ -145,13 +139,19 @@ impl Case {
         case.number()
     }
 
-    /// Whether somebody else's solver is asked, and not this program's.
+    /// Whether an external solver solves it.
     pub fn is_attached(&self) -> bool {
-        self.method.attached.is_some()
+        self.method.own().is_none()
     }
 
-    /// The case as an attached solver knows it: what only this program's integrators take says nothing to it, and
-    /// cases that differ in nothing else are one. A step in seconds stays, for it is a step that can be suggested.
+    /// Configuration of the shape functions of this program's method: the method's own, or the scene's.
+    pub fn configuration(&self) -> Configuration {
+        let own = self.method.own().and_then(|method| method.configuration);
+        own.unwrap_or(self.scene.configuration())
+    }
+
+    /// The case as an attached solver knows it: it has no use for what only this program's integrators take, and cases
+    /// that differ in nothing else are one. A step in seconds stays, for it is a step that can be suggested.
     #[must_use]
     pub fn for_attached(mut self) -> Self {
         if self.is_attached() {
@@ -163,6 +163,11 @@ impl Case {
             }
         }
         self
+    }
+
+    /// Whether its shape functions are splines.
+    pub fn is_spline(&self) -> bool {
+        self.method.own().is_some_and(|method| method.basis.is_spline())
     }
 
     /// Whether it is integrated explicitly.
@@ -182,16 +187,16 @@ impl Case {
         self.column.points.cell_size(self.column.height, self.cells)
     }
 
-    /// Points there are to be, in all layers: cells times points a cell, in every direction.
+    /// Points there are to be, in all sets: cells times points a cell, in every direction.
     pub fn expected_points(&self) -> usize {
-        let of_layer = |per_cell: usize| {
+        let of_set = |per_cell: usize| {
             let along = self.cells * per_cell;
             match self.column.dimensions {
                 1 => along,
                 _ => along * self.column.cells_across(self.cells).unwrap_or(1) * per_cell,
             }
         };
-        of_layer(self.points_per_cell) + of_layer(self.column.points.water_per_cell)
+        of_set(self.points_per_cell) + of_set(self.column.points.water_per_cell)
     }
 
     /// Time, s, at which `T_v = 1`; of a motion half its period.
@@ -206,7 +211,8 @@ impl Case {
         let (short, long) = (across.min(self.cells as f64), across.max(self.cells as f64));
         let dimensions = self.column.dimensions as f64;
         let points_a_cell = elementary::powf(self.points_per_cell as f64, dimensions);
-        let sites = if self.method.pressure.is_by_cells() { 1.0 } else { points_a_cell };
+        let is_by_cells = self.method.own().is_some_and(|method| method.pressure.is_by_cells());
+        let sites = if is_by_cells { 1.0 } else { points_a_cell };
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);
         let band = 12.0 * row;
@@ -249,17 +255,18 @@ pub fn step_label(rule: &TimeStepRule) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oedometer_exact::parameters::Base;
-    use oedometer_mpm::attached_method::Attached;
+    use crate::case::solver::Attached;
+    use oedometer_exact::parameters::MotionParameters;
     use oedometer_mpm::explicit::Drag;
     use oedometer_mpm::explicit::scheme::Scheme;
+    use oedometer_mpm::scene::column::Shape;
     use oedometer_soil::conductivity_mean::ConductivityMean;
     use oedometer_soil::continuity::Continuity;
     use oedometer_soil::law::Law;
 
     fn seed() -> Case {
         Case {
-            method: Method::named("GC-SRI-patch").expect("the paper's method"),
+            method: Method::named("GC-SRI-patch").expect("the paper's method").into(),
             cells: 10,
             time_step: TimeStepRule::Stable(0.5),
             time_factors: vec![0.1].into(),
@@ -267,8 +274,8 @@ mod tests {
         }
     }
 
-    fn attached(name: &str, digest: &str) -> Method {
-        Method::of_attached(Attached::new(name, digest).expect("a plain name"))
+    fn attached(name: &str, digest: &str) -> Solver {
+        Solver::Attached(Attached::new(name, digest).expect("a plain name"))
     }
 
     #[test]
@@ -313,24 +320,29 @@ mod tests {
     #[test]
     fn the_hash_follows_every_input() {
         let mut hashes = vec![seed().hash()];
+        fn square(change: fn(&mut MotionParameters)) -> Shape {
+            let mut motion = MotionParameters::default();
+            change(&mut motion);
+            Shape::Square { motion, pressure: 1.0 }
+        }
         let changes: [fn(&mut Case); 49] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
-            |case| case.column.horizontal_extent = 2.0,
+            |case| *case.column = case.column.with_extent(2.0),
             |case| case.column.load = 2.0,
             |case| case.column.dimensions = 2,
-            |case| case.column.base = Some(Base::ALL[0]),
+            |case| *case.column = Column::layer(),
             |case| case.column.loading_time = 2.0,
             |case| case.column.self_weight = true,
-            |case| case.column.motion.amplitude_x = 0.1,
-            |case| case.column.motion.amplitude_y = 0.1,
-            |case| case.column.motion.amplitude = 0.1,
-            |case| case.column.motion.frequency = 0.1,
+            |case| case.column.shape = square(|motion| motion.amplitude_x = 0.1),
+            |case| case.column.shape = square(|motion| motion.amplitude_y = 0.1),
+            |case| case.column.shape = square(|motion| motion.amplitude = 0.1),
+            |case| case.column.shape = square(|motion| motion.frequency = 0.1),
             |case| case.column.points.offset = 0.1,
             |case| case.column.points.jitter = 0.1,
             |case| case.column.points.filling = 0.5,
-            |case| case.column.points.layers = 2,
+            |case| case.column.points.sets = 2,
             |case| case.column.points.water_per_cell = 3,
             |case| case.material.law = Law::LogLinear,
             |case| case.material.youngs_modulus = 2.0,
@@ -343,8 +355,8 @@ mod tests {
             |case| case.material.gravity = 2.0,
             |case| case.material.continuity = Continuity::ConstantPorosityGradient,
             |case| case.material.conductivity_mean = ConductivityMean::Chord,
-            |case| case.method = Method::named("GIMP").expect("a method"),
-            |case| case.method = Method::named("GIMP-SRI").expect("a method"),
+            |case| case.method = Method::named("GIMP").expect("a method").into(),
+            |case| case.method = Method::named("GIMP-SRI").expect("a method").into(),
             |case| case.method = attached("ogs", "0123456789abcdef"),
             |case| case.method = attached("ogs", "0123456789abcdee"),
             |case| case.integrator = IntegratorKind::Implicit,

@@ -1,10 +1,7 @@
-//! The cases of a study in their order, each once, and what they have in common kept once too.
+//! The cases of a study in their order, each once, and what neighbours have in common kept once too.
 
 use crate::case::Case;
-use crate::case::shared::Pool;
 use crate::case::tier::Tier;
-use oedometer_mpm::scene::column::Column;
-use oedometer_soil::material::Material;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -23,9 +20,6 @@ pub struct Planner {
     planned: Vec<PlannedCase>,
     /// Place of each case by the number that its hash is.
     places: HashMap<u64, usize>,
-    columns: Pool<Column>,
-    soils: Pool<Material>,
-    times: Pool<Vec<f64>>,
 }
 
 impl Planner {
@@ -43,9 +37,11 @@ impl Planner {
             }
             Entry::Vacant(place) => {
                 place.insert(self.planned.len());
-                self.columns.share(&mut case.column);
-                self.soils.share(&mut case.material);
-                self.times.share(&mut case.time_factors);
+                if let Some(PlannedCase { case: last, .. }) = self.planned.last() {
+                    case.column.share_with(&last.column);
+                    case.material.share_with(&last.material);
+                    case.time_factors.share_with(&last.time_factors);
+                }
                 self.planned.push(PlannedCase { case, tier });
             }
         }
@@ -82,7 +78,7 @@ mod tests {
         assert!(planned.iter().all(|one| one.tier == Tier::Ci), "the smallest tier that has it");
         let [first, other, third] = [0, 1, 2].map(|place| &planned[place].case);
         assert_eq!(*first, case(2, 0.3));
-        assert!(first.material.is_one_with(&third.material) && !first.material.is_one_with(&other.material));
+        assert!(first.column.is_one_with(&third.column) && !first.material.is_one_with(&other.material));
         assert!(
             first.column.is_one_with(&other.column) && first.time_factors.is_one_with(&other.time_factors)
         );

@@ -4,9 +4,10 @@ use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 use oedometer_soil::wording::words;
 
 /// A measured quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Quantity {
     /// Excess pore pressure.
+    #[default]
     Pressure,
     /// Vertical effective stress.
     EffectiveStress,

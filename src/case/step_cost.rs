@@ -4,7 +4,7 @@
 //! there to the cases of the shipped studies.
 
 use crate::case::Case;
-use oedometer_mpm::method::{Configuration, Memory, Recovery, StrainGradient};
+use oedometer_mpm::method::{Configuration, Memory, Method, Recovery, StrainGradient};
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 
 /// Kinds of steps that differ in what they cost.
@@ -39,19 +39,19 @@ pub const CASE_SECONDS: f64 = 1e-3;
 /// A point-wise step of a column with a fit over patches or a composite gradient, over one without. In Newton's steps
 /// what it costs is won by fewer iterations.
 const FIT_FACTOR: f64 = 1.2;
-/// The same for a step of a plane.
+/// Factor for a step of a plane with such a fit.
 const PLANE_FIT_FACTOR: f64 = 1.3;
-/// The same for a pressure that cells remember.
+/// Factor for cell averages.
 const MEMORY_FACTOR: f64 = 1.8;
-/// The same for a scene whose body forces and sources are asked for at every point.
+/// Factor for a scene whose body forces and sources are evaluated at every point.
 const FORCED_FACTOR: f64 = 2.0;
 
 impl StepKind {
     /// The kind of step that a case takes.
     pub fn of(case: &Case) -> Self {
-        let frozen = case.method.configuration_or(case.scene.configuration()) == Configuration::Frozen;
+        let frozen = case.configuration() == Configuration::Frozen;
         match case.integrator {
-            IntegratorKind::Explicit if frozen && !case.column.points.has_two_layers() => Self::Assembled,
+            IntegratorKind::Explicit if frozen && !case.column.points.has_two_sets() => Self::Assembled,
             IntegratorKind::Explicit => Self::PointWise,
             _ if frozen && case.formulation == Formulation::QuasiStatic => Self::Linear,
             _ if frozen => Self::Inertial,
@@ -83,7 +83,7 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     let cost = kind.cost(case.column.dimensions);
     let points = case.expected_points() as f64;
     let width = case.column.cells_across(case.cells).unwrap_or(1).min(case.cells) as f64;
-    let method = &case.method;
+    let method = case.method.own().unwrap_or(Method::STANDARD);
     let follows = matches!(kind, StepKind::PointWise | StepKind::Newton);
     let fits = method.recovery == Recovery::Patch || method.strain != StrainGradient::Standard;
     let mut factor = 1.0;
@@ -107,7 +107,7 @@ mod tests {
     use oedometer_mpm::scene::SceneKind;
 
     fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
-        let method = Method::named(method).expect("a method");
+        let method = Method::named(method).expect("a method").into();
         let formulation = integrator.default_formulation();
         Case { method, integrator, formulation, cells, ..Case::seed(Task::Solve, scene) }
     }

@@ -2,8 +2,8 @@
 //! so that one checker judges both and its messages point at what was typed.
 
 use crate::cli::exit::Ended;
+use crate::study::check::Purpose;
 use crate::study::check::Study;
-use crate::study::check::checker::Purpose;
 use crate::study::file::StudySource;
 
 /// Repeats are for the cases of a study.

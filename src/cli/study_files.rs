@@ -3,7 +3,7 @@
 use crate::cli::exit::Ended;
 use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
-use crate::study::name::{name_of, refused_name};
+use crate::study::shipped::{name_of, refused_name};
 use crate::study::shipped::{shipped_names, shipped_study};
 use oedometer_formats::input_file;
 use oedometer_formats::input_file::LARGEST_TEXT;

@@ -5,12 +5,13 @@
 //! terminal said yes to: that is remembered by a digest of the commands and of the adapter's files.
 
 use crate::campaign::run_report::Tally;
+use crate::case::solver::Solver;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::study::check::Study;
-use crate::study::check::check_solver::digest_of_file;
-use crate::study::solver::Solver;
+use crate::study::check::solvers::digest_of_file;
+use crate::study::solver::ExternalSolver;
 use clap::builder::FalseyValueParser;
 use oedometer_soil::wording::count_of;
 use std::fs::{self, OpenOptions};
@@ -82,16 +83,16 @@ pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
 }
 
 /// The solvers of a study that its cases would start.
-fn starting(study: &Study) -> Vec<&Solver> {
-    let is_used = |solver: &&Solver| {
-        study.planned.iter().any(|planned| planned.case.method.attached == Some(solver.attached))
+fn starting(study: &Study) -> Vec<&ExternalSolver> {
+    let is_used = |solver: &&ExternalSolver| {
+        study.planned.iter().any(|planned| planned.case.method == Solver::Attached(solver.attached))
     };
     study.solvers.iter().filter(|solver| !solver.is_given()).filter(is_used).collect()
 }
 
 /// What would be started, in words that change nothing on a terminal.
-fn told(starting: &[&Solver]) -> String {
-    let of_one = |solver: &&Solver| {
+fn told(starting: &[&ExternalSolver]) -> String {
+    let of_one = |solver: &&ExternalSolver| {
         let command: String = solver.command.join(" ").escape_debug().take(LONGEST_COMMAND).collect();
         format!("`{command}` in {}", solver.folder.display().to_string().escape_debug())
     };
@@ -100,7 +101,7 @@ fn told(starting: &[&Solver]) -> String {
 
 /// Digest of everything of a study that decides what is started: where it lies, commands, environments, and the contents
 /// of the adapters' files.
-fn digest_of(study: &Study, starting: &[&Solver]) -> String {
+fn digest_of(study: &Study, starting: &[&ExternalSolver]) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut take = |text: &str| {
         hasher.update(&(text.len() as u64).to_le_bytes());
@@ -140,7 +141,7 @@ fn remember(folder: &Path, digest: &str, study: &str) -> std::io::Result<()> {
 }
 
 /// Whether somebody at a terminal says yes; that is remembered.
-fn is_answered(study: &Study, starting: &[&Solver]) -> bool {
+fn is_answered(study: &Study, starting: &[&ExternalSolver]) -> bool {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return false;
     }

@@ -13,7 +13,7 @@ use crate::import::table::SampledState;
 use crate::measure::record::record_of_attached;
 use crate::record::provenance::Machine;
 use crate::record::{AttachedRun, Record, Status, WallSample};
-use crate::study::solver::Solver;
+use crate::study::solver::ExternalSolver;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::Failure;
@@ -39,7 +39,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// A solver with what its runs share.
 pub struct Attachment<'a> {
-    solver: &'a Solver,
+    solver: &'a ExternalSolver,
     /// What its result means, or why that cannot be told.
     mapping: Result<Mapping, String>,
     version: OnceLock<Version>,
@@ -67,13 +67,13 @@ type Left = Result<(Vec<SampledState>, ReadResult), Failure>;
 
 impl<'a> Attachment<'a> {
     /// A solver of a study about a column, or about a plane.
-    pub fn new(solver: &'a Solver, is_plane: bool) -> Self {
+    pub fn new(solver: &'a ExternalSolver, is_plane: bool) -> Self {
         let mapping = mapping_of(solver, is_plane).map_err(|error| error.to_string());
         Self { solver, mapping, version: OnceLock::new(), gate: Gate::of(solver.at_once) }
     }
 
     /// The solver.
-    pub fn solver(&self) -> &Solver {
+    pub fn solver(&self) -> &ExternalSolver {
         self.solver
     }
 
@@ -306,9 +306,10 @@ fn snapshot_of(case: &Case, sample: Sample, state: SampledState) -> Snapshot {
     let is_at_surface = |place: &usize| {
         let column = &case.column;
         state.initial_height[*place] > (1.0 - RIM) * column.height
-            && state.initial_distance.get(*place).is_none_or(|distance| {
-                !case.scene.has_plane_fields() || *distance < RIM * column.horizontal_extent
-            })
+            && state
+                .initial_distance
+                .get(*place)
+                .is_none_or(|distance| !case.scene.has_plane_fields() || *distance < RIM * column.extent())
     };
     let at_surface = || {
         let place = (0..state.initial_height.len()).find(is_at_surface)?;

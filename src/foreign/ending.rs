@@ -16,7 +16,7 @@
 use crate::foreign::process::{Ending, Finished, last_lines};
 use crate::foreign::reading::Unread;
 use crate::foreign::started_processes::named;
-use crate::study::solver::Solver;
+use crate::study::solver::ExternalSolver;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 use oedometer_soil::wording::typed;
 use std::process::ExitStatus;
@@ -31,7 +31,7 @@ const TOLD_LINES: usize = 4;
 const LONGEST_LINE: usize = 200;
 
 /// The end of a run that left no result; none where it may have.
-pub fn of_process(run: &Finished, solver: &Solver) -> Option<Failure> {
+pub fn of_process(run: &Finished, solver: &ExternalSolver) -> Option<Failure> {
     let (kind, what) = match &run.ending {
         Ending::TimedOut => (
             FailureKind::TimedOut,
@@ -99,7 +99,7 @@ fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
 }
 
 /// The end of a run whose result cannot be taken.
-pub fn of_reading(unread: Unread, solver: &Solver, contents: &str) -> Failure {
+pub fn of_reading(unread: Unread, solver: &ExternalSolver, contents: &str) -> Failure {
     let no_file = format!(
         "it ended well and left no {}; in {{out}} there is {contents}: the adapter writes it elsewhere, or `result` in \
          the study names it otherwise",

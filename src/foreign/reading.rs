@@ -10,7 +10,7 @@ use crate::import::runs::{Run, are_tables, files_of, run_of_tables, runs_of_arra
 use crate::import::table::SampledState;
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
-use crate::study::solver::Solver;
+use crate::study::solver::ExternalSolver;
 use clap::ValueEnum;
 use oedometer_formats::import_error::ImportError;
 use oedometer_formats::input_file;
@@ -74,7 +74,7 @@ pub enum MappingError {
 ///
 /// # Errors
 /// When the mapping file cannot be read or is wrong.
-pub fn mapping_of(solver: &Solver, is_plane: bool) -> Result<Mapping, MappingError> {
+pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, MappingError> {
     let own = solver.mapping.as_ref().map(|name| {
         let path = solver.folder.join(name);
         match input_file::read_text(&path) {
@@ -116,7 +116,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     let digest = digest_of(&files);
     let body = SolvedBody {
         height: case.column.height,
-        length: case.scene.has_plane_fields().then_some(case.column.horizontal_extent),
+        length: case.scene.has_plane_fields().then_some(case.column.extent()),
         seconds_per_time_factor: case.seconds_per_time_factor(),
     };
     let unread = |error: ImportError| why_unread(&error);
@@ -194,7 +194,7 @@ fn distinct(places: &[f64], extent: f64) -> usize {
 
 /// A pressure that the load cannot cause, in a body without self-weight.
 fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
-    let most = IMPOSSIBLE * case.column.load.abs();
+    let most = IMPOSSIBLE * case.column.pressure_scale().abs();
     if case.column.self_weight || most == 0.0 {
         return None;
     }
@@ -202,7 +202,7 @@ fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
     Some(format!(
         "a pressure is {:.3e} Pa, more than {IMPOSSIBLE} times the load of {} Pa",
         state.pressure[place],
-        short(case.column.load)
+        short(case.column.pressure_scale())
     ))
 }
 

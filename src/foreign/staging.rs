@@ -3,7 +3,7 @@
 
 use crate::case::Case;
 use crate::foreign::case_file::suggested_step;
-use crate::study::solver::Solver;
+use crate::study::solver::ExternalSolver;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -146,7 +146,7 @@ pub struct Filling {
 
 impl Filling {
     /// Those of a case whose file and fresh folder are known.
-    pub fn of(case: &Case, solver: &Solver, case_file: &Path, out: &Path) -> Self {
+    pub fn of(case: &Case, solver: &ExternalSolver, case_file: &Path, out: &Path) -> Self {
         let end = case.time_factors.last().copied().unwrap_or(0.0) * case.seconds_per_time_factor();
         Self {
             values: vec![
@@ -186,7 +186,7 @@ impl Filling {
 
 /// A command as it is started. A program with a `/` is found from the study's folder, another one as the system finds
 /// programs; any other word that names a file beside the study is that file.
-pub fn words_of(solver: &Solver, typed: &[String], fill: impl Fn(&str) -> String) -> Vec<OsString> {
+pub fn words_of(solver: &ExternalSolver, typed: &[String], fill: impl Fn(&str) -> String) -> Vec<OsString> {
     let word = |(place, word): (usize, &String)| {
         let is_path = place == 0 && word.contains('/') && !word.contains('{');
         let is_program_by_name = place == 0 && !word.contains('/');

@@ -68,7 +68,7 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
     let stretch = bare(&state.initial_height, column.height, size, is_held);
     let of_height = stretch.map(|stretch| ("heights", stretch));
     let is_plane = case.scene.has_plane_fields();
-    let along = || bare(&state.initial_distance, column.horizontal_extent, size, true);
+    let along = || bare(&state.initial_distance, column.extent(), size, true);
     let of_length = || along().filter(|_| is_plane).map(|stretch| ("distances", stretch));
     let (places, [from, to]) = of_height.or_else(of_length)?;
     Some(format!(

@@ -34,9 +34,9 @@ use crate::golden::tolerance::{ABSOLUTE_FLOOR, BASIS, RELATIVE_FLOOR};
 use crate::record::provenance::Provenance;
 use crate::record::whole_file::{StoreError, write_whole};
 use crate::record::{ErrorRow, Record};
+use include_dir::{Dir, include_dir};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Version of the file's layout.
@@ -151,12 +151,14 @@ impl GoldenFile {
     /// As [`GoldenFile::read`].
     pub fn read_or_embedded(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         match Self::read(folder, study) {
-            Err(GoldenError::Missing(path)) => match text_of(study) {
-                Some(text) => Self::from_text(&text).map_err(|reason| {
-                    GoldenError::refused(&path, "inside the program cannot be read", reason)
-                }),
-                None => Err(GoldenError::Missing(path)),
-            },
+            Err(GoldenError::Missing(path)) => {
+                match FILES.get_file(format!("{study}.csv")).and_then(|file| file.contents_utf8()) {
+                    Some(text) => Self::from_text(text).map_err(|reason| {
+                        GoldenError::refused(&path, "inside the program cannot be read", reason)
+                    }),
+                    None => Err(GoldenError::Missing(path)),
+                }
+            }
             found => found,
         }
     }
@@ -177,24 +179,8 @@ impl GoldenFile {
     }
 }
 
-/// Names, lengths and texts of the golden files in one compressed stream, packed by `build.rs`.
-const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/golden.z"));
-
-/// The text of a study's golden file, where the program has it.
-fn text_of(study: &str) -> Option<String> {
-    let mut whole = Vec::new();
-    flate2::read::ZlibDecoder::new(PACKED).read_to_end(&mut whole).ok()?;
-    let mut rest = whole.as_slice();
-    while let Some(end) = rest.iter().position(|byte| *byte == b'\n') {
-        let (name, length) = std::str::from_utf8(&rest[..end]).ok()?.split_once(' ')?;
-        let (text, after) = rest[end + 1..].split_at_checked(length.parse().ok()?)?;
-        if name == study {
-            return String::from_utf8(text.to_vec()).ok();
-        }
-        rest = after;
-    }
-    None
-}
+/// The golden files inside the program.
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/golden");
 
 /// Wall time of the first run of every record together, s.
 pub fn seconds_of(records: &[Record]) -> f64 {

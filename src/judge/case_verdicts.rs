@@ -6,7 +6,7 @@ use crate::judge::verdict::{BELOW, Check, IN, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
 use crate::measure::statistics::{larger, largest};
 use crate::record::{Balance, LayerBalance, Record};
-use crate::study::case_expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
+use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use oedometer_convergence::{Class, Classification};
 use oedometer_soil::wording::{short, typed};
 
@@ -15,7 +15,7 @@ impl CaseExpectation {
     pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
         let judge = |record: &Record| {
             let mut checks = self.demand.checks(record);
-            let within = self.demand.one_layer_within;
+            let within = self.demand.one_set_within;
             checks.extend(within.map(|within| one_layer_found(within, record, records)));
             self.judgement(record.case.label(), checks)
         };
@@ -97,7 +97,7 @@ impl CaseDemand {
 fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
     const NAME: &str = "one layer";
     let mut twin = record.case.clone();
-    twin.column.points.layers = 1;
+    twin.column.points.sets = 1;
     twin.column.points.water_per_cell = 0;
     if twin == record.case {
         return Check::failed(NAME, "the case has one layer itself");
@@ -254,11 +254,11 @@ time_step = [{ growth = 0.05 }]
 
     #[test]
     fn two_layers_are_held_to_one_and_their_water_to_its_pores() {
-        let study = STUDY.replace("cells = [10]", "cells = [3]\nlayers = [1, 2]");
+        let study = STUDY.replace("cells = [10]", "cells = [3]\nsets = [1, 2]");
         let study = study.replace("\"implicit\"", "\"explicit\"").replace("growth = 0.05", "stable = 0.7");
         let study = study.replace("[0.05]", "[1e-5]");
         let mut records = records_of(&study);
-        let demand = CaseDemand { one_layer_within: Some(1e-9), ..CaseDemand::default() };
+        let demand = CaseDemand { one_set_within: Some(1e-9), ..CaseDemand::default() };
         let selection = crate::study::expectation::Selection::default();
         let expectation = CaseExpectation { selection, demand, tier: crate::case::tier::Tier::Ci, line: 1 };
         let verdicts = |records: &[Record]| -> Vec<(bool, String)> {

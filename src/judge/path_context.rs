@@ -73,7 +73,7 @@ impl Path<'_> {
         if self.axis != Axis::Cells || measure.reference == NEXT_FINER || case.is_attached() {
             return Vec::new();
         }
-        let moves = case.method.configuration_or(case.scene.configuration()).moves_points();
+        let moves = case.configuration().moves_points();
         let points = moves.then(|| Limiter::new(LimiterKind::PointsPerCell, "the points per cell"));
         step_limiter(case).into_iter().chain(points).collect()
     }
@@ -128,10 +128,7 @@ impl Path<'_> {
 /// Order in the cell size that a method's operators promise at small strain, where they promise
 /// one: constant fields in a cell are of first order at points and of second at the centres.
 fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
-    let method = &case.method;
-    if case.is_attached() {
-        return None;
-    }
+    let method = case.method.own()?;
     let by_points = |second: bool| if second { 2.0 } else { 1.0 };
     match (measure.quantity, measure.sample) {
         (Quantity::Pressure, Sample::Points) => {
@@ -187,7 +184,7 @@ fn value_of(record: &Record, measure: &Measure) -> Option<f64> {
     let final_settlement = column_parameters(&case.column, &case.material).final_settlement();
     let scale = match measure.quantity {
         Quantity::Settlement => return Some(snapshot.settlement / final_settlement),
-        Quantity::Pressure | Quantity::EffectiveStress => case.column.load,
+        Quantity::Pressure | Quantity::EffectiveStress => case.column.pressure_scale(),
         Quantity::Displacement => final_settlement,
     };
     let height = (1.0 - measure.probe?) * case.column.height;

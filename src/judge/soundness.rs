@@ -42,7 +42,7 @@ pub fn thin(study: &Study, record: &mut Record) {
     }
     record.history = Vec::new();
     // A case of two layers is compared with one that its expectation does not name.
-    let compares = study.case_expectations.iter().any(|one| one.demand.one_layer_within.is_some());
+    let compares = study.case_expectations.iter().any(|one| one.demand.one_set_within.is_some());
     let case = &record.case;
     let of_series = study.expectations.iter().any(|one| one.selection.fits_along(one.axis.name(), case));
     let of_cases = study.case_expectations.iter().any(|one| one.selection.fits(case));

@@ -18,7 +18,7 @@ pub fn start_checks(
     start: &Snapshot,
 ) -> Result<StartChecks, ExactError> {
     let soil = &case.material;
-    let load = case.column.load;
+    let load = case.column.pressure_scale();
     let samples = &start.points;
     let found = samples.water.as_ref().map_or((&*samples.initial_height, &*samples.pressure), |water| {
         (&*water.initial_height, &*water.pressure)
@@ -38,7 +38,7 @@ pub fn start_checks(
 
 /// Masses and forces at an output against those of the start.
 pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> Balance {
-    let load = case.column.load;
+    let load = case.column.pressure_scale();
     let applied = if case.scene.is_loaded() { load } else { 0.0 };
     let parameters = column_parameters(&case.column, &case.material);
     let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);

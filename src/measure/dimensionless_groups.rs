@@ -13,7 +13,7 @@ pub fn groups(case: &Case, step_over_limit: f64) -> Groups {
     let soil = &case.material;
     Groups {
         storage: soil.oedometric_modulus() / soil.coupling_modulus(),
-        finite_strain: case.column.load / soil.oedometric_modulus(),
+        finite_strain: case.column.pressure_scale() / soil.oedometric_modulus(),
         inertia: soil.coefficient_of_consolidation()
             / (case.column.height * formula::undrained_wave_speed(soil)),
         step_over_limit,

@@ -69,7 +69,7 @@ pub fn pressure_peak(case: &Case, snapshots: &[Snapshot]) -> Option<PressurePeak
         .map(|(time_factor, snapshot)| {
             let centres = &snapshot.centres;
             let end = pressure_at_the_end(&centres.initial_height, &centres.pressure);
-            (elementary::ln(*time_factor), end / case.column.load)
+            (elementary::ln(*time_factor), end / case.column.pressure_scale())
         })
         .collect();
     let highest = (0..rows.len()).max_by(|a, b| rows[*a].1.total_cmp(&rows[*b].1))?;

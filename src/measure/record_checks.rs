@@ -94,7 +94,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
 pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     let spurious = balance.spurious_velocity.map(|velocity| {
         // Points integrate no spline exactly: what its start leaves unbalanced moves.
-        let bound = if record.case.method.basis.is_spline() { Err(SPLINES) } else { Ok(AT_REST) };
+        let bound = if record.case.is_spline() { Err(SPLINES) } else { Ok(AT_REST) };
         RecordCheck::judged("spurious velocity at rest, over the conductivity", velocity, bound)
     });
     let mut checks = vec![
@@ -139,7 +139,7 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
 pub fn has_burst(record: &Record) -> bool {
     let case = &record.case;
     let is_sound = case.material.continuity == Continuity::Conservative;
-    if !(is_sound && case.column.points.has_two_layers() && deforms(record)) {
+    if !(is_sound && case.column.points.has_two_sets() && deforms(record)) {
         return false;
     }
     let mut seen = record.balance.iter().filter_map(|balance| balance.layers.as_ref()?.largest_pressure);
@@ -152,7 +152,8 @@ pub fn has_burst(record: &Record) -> bool {
 /// `q/(E_oed + Q)`, a tenth more than that under any law.
 fn volume_bound(record: &Record) -> f64 {
     let (case, soil) = (&record.case, &record.case.material);
-    let compression = 1.1 * case.column.load / (soil.oedometric_modulus() + soil.coupling_modulus());
+    let compression =
+        1.1 * case.column.pressure_scale() / (soil.oedometric_modulus() + soil.coupling_modulus());
     ROUND_OFF + if deforms(record) { compression } else { 0.0 }
 }
 
@@ -166,7 +167,7 @@ fn pressure_bound(record: &Record) -> f64 {
 
 /// Whether the weights follow the points, or their deformation.
 fn deforms(record: &Record) -> bool {
-    record.case.method.configuration_or(record.case.scene.configuration()).deforms()
+    record.case.configuration().deforms()
 }
 
 /// Force over that of the load on a cell that a start may leave unbalanced.
@@ -175,7 +176,7 @@ fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
     if case.scene.is_manufactured() {
         return Err("the body forces that make the motion begin at once");
     }
-    let is_spline = case.method.basis.is_spline() && !case.scene.start_is_solved();
+    let is_spline = case.is_spline() && !case.scene.start_is_solved();
     if is_spline && case.scene.is_at_rest() {
         return Err(SPLINES);
     }
@@ -186,7 +187,7 @@ fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
     // Points that have moved by the undrained strain lie off their lattice by as much: in the plane by a shear strain, which
     // the water does not hinder.
     let water = if case.scene.needs_two_dimensions() { 0.0 } else { soil.coupling_modulus() };
-    let strain = case.column.load / (soil.oedometric_modulus() + water);
+    let strain = case.column.pressure_scale() / (soil.oedometric_modulus() + water);
     let moved = if deforms(record) { strain * (case.cells * case.points_per_cell) as f64 } else { 0.0 };
     Ok(UNBALANCED + SHIFTED * (shift(record) + moved))
 }
@@ -203,7 +204,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
     if deforms(record) {
         return Err("stresses of points that cross cells jump; the forces of the run are watched");
     }
-    if case.method.basis.is_spline() {
+    if case.is_spline() {
         return Err(SPLINES);
     }
     if case.scene.needs_two_dimensions() && case.integrator == IntegratorKind::Implicit {
@@ -229,7 +230,7 @@ fn water_bound(record: &Record) -> Result<f64, &'static str> {
     if case.column.points.jitter != Arrangement::default().jitter {
         return Err("domains of scattered points overlap: their volumes are not those of the cells");
     }
-    if case.scene.is_at_rest() && case.method.basis.is_spline() {
+    if case.scene.is_at_rest() && case.is_spline() {
         return Err(SPLINES);
     }
     if case.scene.presses_out_no_water() && !deforms(record) {

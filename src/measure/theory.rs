@@ -96,7 +96,7 @@ fn new_isochrones(case: &Case, kind: ReferenceKind) -> Result<Vec<TheoryIsochron
     let at = |time_factor: f64| {
         let point = |i: u32| {
             let zeta = f64::from(i) / f64::from(LINE_POINTS);
-            Ok((reference.fields(time_factor, zeta)?.pressure / case.column.load, zeta))
+            Ok((reference.fields(time_factor, zeta)?.pressure / case.column.pressure_scale(), zeta))
         };
         let line = (0..=LINE_POINTS).map(point).collect::<Result<_, _>>()?;
         Ok(TheoryIsochrone { time_factor, degree: reference.degree_of_consolidation(time_factor)?, line })
@@ -131,7 +131,7 @@ pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> 
     let pairs = points.pressure.iter().zip(&points.initial_height);
     pairs
         .map(|(pressure, height)| {
-            (pressure / record.case.column.load, 1.0 - height / record.case.column.height)
+            (pressure / record.case.column.pressure_scale(), 1.0 - height / record.case.column.height)
         })
         .collect()
 }

@@ -1,23 +1,26 @@
-//! What a study expects of its own results: which series, and what of it.
+//! What a study expects of its own results: of series of cases, and of single cases. Hard cases are judged by how they
+//! end, where their critical step lies, how large an error or a drift is.
 
 use crate::case::Case;
-use crate::case::keys::{Choice, Key, Value};
+use crate::case::keys::{Key, Value};
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
+use crate::case::solver::Solver;
 use crate::case::tier::Tier;
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::method::Method;
+use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_soil::wording::typed;
 use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What is refined along a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Axis {
     /// Cell size, by the number of cells.
+    #[default]
     Cells,
     /// Size of the time step.
     TimeStep,
@@ -32,15 +35,6 @@ words!(
     Cells "cells", TimeStep "time_step", PointsPerCell "points_per_cell",
     WaterBulkModulus "water_bulk_modulus",
 );
-
-impl Choice for Axis {
-    fn all() -> Vec<Self> {
-        Self::ALL.to_vec()
-    }
-    fn word(self) -> &'static str {
-        self.name()
-    }
-}
 
 impl Axis {
     /// Those along which a discretisation gets finer.
@@ -112,7 +106,7 @@ impl Selection {
     }
 
     /// The method, where one is named.
-    pub fn method(&self) -> Option<Method> {
+    pub fn method(&self) -> Option<Solver> {
         self.0
             .iter()
             .find_map(|(_, value)| if let Value::Method(method) = value { Some(*method) } else { None })
@@ -126,7 +120,7 @@ pub struct SeriesExpectation {
     pub selection: Selection,
     /// Which error.
     pub measure: Measure,
-    /// Reference, typed; none where a series is held against itself or against nothing.
+    /// Reference, typed; none where a series is compared with itself or with nothing.
     pub reference: Option<ReferenceKind>,
     /// Axis of the series.
     pub axis: Axis,
@@ -136,4 +130,79 @@ pub struct SeriesExpectation {
     pub tier: Tier,
     /// The file's line, for messages.
     pub line: usize,
+}
+
+/// A range of values: the lower end belongs to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest value.
+    pub above: f64,
+    /// Values are smaller than this.
+    pub below: f64,
+}
+
+/// Bounds on one error of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorRange {
+    /// Which error.
+    pub measure: Measure,
+    /// It must be smaller than this.
+    pub below: f64,
+    /// It must be at least this.
+    pub above: f64,
+}
+
+/// What is wanted of a case; everything asked is judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CaseDemand {
+    /// Name of its end: `ok`, or a failure's.
+    pub status: Option<String>,
+    /// Largest relative difference of the observed from the predicted critical step.
+    pub critical_step_within: Option<f64>,
+    /// Bounds on an error.
+    pub error: Option<ErrorRange>,
+    /// Largest drift of the mass of solids at any output, relative.
+    pub solid_drift_below: Option<f64>,
+    /// Largest imbalance of the water at any output, over what the load presses out.
+    pub water_drift_below: Option<f64>,
+    /// Bounds on the largest size, at any output, of the water in the soil over its pores, minus one: of two point sets.
+    pub pore_water: Option<[f64; 2]>,
+    /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
+    pub water_left_within: Option<f64>,
+    /// Bounds on the largest pressure of any water point of two point sets, between outputs too, over the load.
+    pub largest_pressure: Option<Bounds>,
+    /// Largest difference of any error from that of the same case with one point set.
+    pub one_set_within: Option<f64>,
+    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    pub spurious_velocity: Option<Bounds>,
+    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    pub peak_time_factor: Option<Bounds>,
+    /// Bounds on that pressure over the load.
+    pub peak_pressure: Option<Bounds>,
+}
+
+/// An expectation of single cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseExpectation {
+    /// Which cases.
+    pub selection: Selection,
+    /// What of each.
+    pub demand: CaseDemand,
+    /// Smallest tier whose cases can answer it.
+    pub tier: Tier,
+    /// The file's line, for messages.
+    pub line: usize,
+}
+
+impl CaseExpectation {
+    /// Whether it is about an attached solver that is absent.
+    pub fn asks_for_a_skip(&self) -> bool {
+        self.demand.status.as_deref() == Some(FailureKind::Skipped.name())
+    }
+
+    /// Whether it says how a record is to end.
+    pub fn foresees(&self, record: &Record) -> bool {
+        self.selection.fits(&record.case)
+            && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
+    }
 }

@@ -1,22 +1,22 @@
 //! A study as it was typed: every value with its place in the text, nothing judged yet.
 
 use crate::case::Task;
-use crate::case::keys::{KEYS, Key};
+use crate::case::keys::Key;
 use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
-use crate::study::choice_tables::{Named, Placed, Typed, TypedList};
-use crate::study::diagnostic::{Diagnostic, StudyError, nearest};
+use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
-use crate::study::inputs::{InputTable, List, One, OwnKeys};
-use crate::study::reading::{grammar, mistakes, toml_tree};
-use crate::study::result_table::ResultTable;
-use crate::study::solver_table::SolverTable;
+use crate::study::inputs::{Inputs, add_inputs, take_inputs};
+use crate::study::reading::{Placed, Typed};
+use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::de::Deserializer;
 
 /// Text of a study with a name for messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,45 +27,64 @@ pub struct StudySource {
     pub text: String,
 }
 
+impl StudySource {
+    /// One complaint about the whole text.
+    pub fn complaint(&self, message: String, help: String) -> StudyError {
+        self.error(vec![Diagnostic { message, span: None, help: Some(help) }])
+    }
+
+    /// An error of this study.
+    pub fn error(&self, diagnostics: Vec<Diagnostic>) -> StudyError {
+        StudyError { name: self.name.clone(), source: self.text.clone(), diagnostics }
+    }
+}
+
 /// A study file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
     /// What the study is about, in one line.
-    pub title: Placed<String>,
+    pub title: String,
     /// The question that it answers.
-    pub summary: Option<String>,
+    #[serde(default)]
+    pub summary: String,
     /// Physical problem.
-    pub scene: Placed<Named<SceneKind>>,
+    pub scene: Placed<SceneKind>,
     /// Geometry and load of a column.
     #[serde(default)]
-    pub column: InputTable<One, ColumnKeys>,
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "column", false))]
+    pub column: ColumnTable,
     /// Geometry and load of a layer.
-    pub layer: Typed<InputTable<One, LayerKeys>>,
-    /// Motion and pressure of a square that are chosen.
-    pub manufactured: Typed<InputTable<One, ManufacturedKeys>>,
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "layer", false))]
+    pub layer: Typed<InputTable>,
+    /// Motion and pressure of a square that are prescribed.
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "manufactured", false))]
+    pub manufactured: Typed<InputTable>,
     /// Where the points lie in their cells.
     #[serde(default)]
-    pub points: InputTable<One, PointsKeys>,
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "points", false))]
+    pub points: InputTable,
     /// What is done with the cases.
-    pub task: Typed<Named<Task>>,
+    pub task: Typed<Task>,
     /// Longest wall time of a case, s.
     pub case_seconds: Typed<f64>,
     /// What the soil is made of.
     #[serde(default)]
-    pub material: InputTable<One, MaterialKeys>,
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "material", false))]
+    pub material: InputTable,
     /// Choices of the integrators that a sweep may vary.
     #[serde(default)]
-    pub integrator: InputTable<One, IntegratorKeys>,
-    /// When results are kept, and what they are held against.
+    #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "integrator", false))]
+    pub integrator: InputTable,
+    /// When results are kept, and what they are compared with.
     #[serde(default)]
     pub output: OutputTable,
-    /// Somebody else's solvers, whose names then stand among the methods of a sweep.
+    /// External solvers, whose names then stand among the methods of a sweep.
     #[serde(default)]
-    pub solver: Vec<Placed<SolverTable>>,
-    /// Results that somebody else's solvers have left already, whose names stand among the methods too.
+    pub solver: Vec<SolverTable>,
+    /// Results that external solvers have left already, whose names stand among the methods too.
     #[serde(default)]
-    pub result: Vec<Placed<ResultTable>>,
+    pub result: Vec<ResultTable>,
     /// Blocks of cases: the product of the lists, or a path.
     #[serde(default)]
     pub sweep: Vec<Placed<SweepTable>>,
@@ -80,48 +99,72 @@ pub struct StudyFile {
     pub timing: TimingTable,
 }
 
-/// Tables that hold inputs of a case and nothing else.
-macro_rules! tables_of_inputs {
-    ($($keys:ident: $table:literal),+ $(,)?) => { $(
-        #[derive(Debug, Default, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        #[doc = "Inputs of a case."]
-        pub struct $keys {}
-        impl OwnKeys for $keys {
-            const TABLE: &'static str = $table;
-        }
-    )+ };
+impl StudyFile {
+    /// Reads a study; the inputs of its tables by the table of keys, all else by serde.
+    ///
+    /// # Errors
+    /// Keys that are not known and values of a wrong kind, all at their places.
+    pub fn read(source: &StudySource) -> Result<Self, StudyError> {
+        source.read_by(|mut root| {
+            let mut take = |table: &str, of: &str| take_inputs(root.as_mut(), table, of, table == "sweep");
+            let single = ["column", "points", "material", "integrator", "layer", "manufactured"];
+            let single = single.map(|table| take(table, table));
+            let [sweep, expect, expect_case] =
+                ["sweep", "expect", "expect_case"].map(|table| take(table, "sweep"));
+            let mut file = Self::deserialize(Deserializer::from(root))?;
+            let [column, points, material, integrator, layer, manufactured] =
+                single.map(|inputs| inputs.map(|one| one.into_iter().next().unwrap_or_default()));
+            file.column.inputs = column?;
+            file.points.inputs = points?;
+            file.material.inputs = material?;
+            file.integrator.inputs = integrator?;
+            for (table, inputs) in [(&mut file.layer, layer?), (&mut file.manufactured, manufactured?)] {
+                if let Some(table) = table {
+                    table.get_mut().inputs = inputs;
+                }
+            }
+            for (block, inputs) in file.sweep.iter_mut().zip(sweep?) {
+                block.get_mut().inputs = inputs;
+            }
+            for (block, inputs) in file.expect.iter_mut().zip(expect?) {
+                block.get_mut().inputs = inputs;
+            }
+            for (block, inputs) in file.expect_case.iter_mut().zip(expect_case?) {
+                block.get_mut().inputs = inputs;
+            }
+            Ok(file)
+        })
+    }
 }
 
-tables_of_inputs!(
-    LayerKeys: "layer",
-    ManufacturedKeys: "manufactured",
-    PointsKeys: "points",
-    MaterialKeys: "material",
-    IntegratorKeys: "integrator",
-);
+/// A table that has inputs of a case and no other keys.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InputTable {
+    #[serde(skip)]
+    pub inputs: Inputs,
+}
 
 /// Geometry and load of a column.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ColumnKeys {
-    /// Vertical strain at the end, in place of the load that brings it about: 0.3 is a column that gets 30 % shorter.
+pub struct ColumnTable {
+    #[serde(skip)]
+    pub inputs: Inputs,
+    /// Vertical strain at the end, in place of the load that causes it: 0.3 is a column that gets 30 % shorter.
     pub strain: Typed<f64>,
 }
-impl OwnKeys for ColumnKeys {
-    const TABLE: &'static str = "column";
-}
 
-/// When results are kept, and what they are held against.
+/// When results are kept, and what they are compared with.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputTable {
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
-    pub time_factors: TypedList<f64>,
-    /// Exact solutions to hold the result against.
-    #[serde(default)]
+    pub time_factors: Typed<Vec<Placed<f64>>>,
+    /// Exact solutions to compare the result with.
     #[schemars(schema_with = "references")]
-    pub references: TypedList<String>,
+    #[serde(default)]
+    pub references: Typed<Vec<Placed<String>>>,
 }
 
 /// How the cases are timed.
@@ -133,43 +176,46 @@ pub struct TimingTable {
 }
 
 /// One block of cases: lists of inputs, and the keys of the block.
-pub type SweepTable = InputTable<List, SweepKeys>;
-
-/// Keys of a sweep beside inputs.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SweepKeys {
+#[schemars(transform = |schema: &mut Schema| add_inputs(schema, "sweep", true))]
+pub struct SweepTable {
+    #[serde(skip)]
+    pub inputs: Inputs,
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
-    pub time_factors: TypedList<f64>,
+    pub time_factors: Typed<Vec<Placed<f64>>>,
     /// Axes that step together instead of being multiplied out.
     #[serde(default)]
     #[schemars(schema_with = "axes")]
-    pub path: TypedList<String>,
-    /// Smallest tier that has it.
-    pub tier: Typed<Named<Tier>>,
+    pub path: Typed<Vec<Placed<String>>>,
+    /// Smallest tier that includes it.
+    #[serde(default)]
+    pub tier: Tier,
 }
 
 /// What must be found of the series of the cases that its inputs name.
-pub type ExpectTable = InputTable<One, ExpectKeys>;
-
-/// Keys of an expectation of series beside inputs.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ExpectKeys {
+#[schemars(transform = |schema: &mut Schema| add_inputs(schema, "sweep", false))]
+pub struct ExpectTable {
+    #[serde(skip)]
+    pub inputs: Inputs,
     /// What is measured.
-    pub quantity: Typed<Named<Quantity>>,
+    #[serde(default)]
+    pub quantity: Quantity,
     /// How the error becomes one number.
-    pub norm: Typed<Named<Norm>>,
+    pub norm: Typed<Norm>,
     /// Where it is measured.
-    pub sample: Typed<Named<Sample>>,
+    pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
-    /// Exact solution to hold the result against.
+    /// Exact solution to compare the result with.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
     /// What is refined along the series.
-    pub axis: Typed<Named<Axis>>,
+    #[serde(default)]
+    pub axis: Axis,
     /// Two-sided band about the order on the finest three levels.
     pub order: Typed<OrderTable>,
     /// Bounds on the error at a named level.
@@ -177,7 +223,7 @@ pub struct ExpectKeys {
     /// Bound on the spread of the errors from a named level on: the largest over the smallest, minus one.
     pub spread: Typed<LevelTable>,
     /// Class of the series.
-    pub class: Typed<Named<Class>>,
+    pub class: Option<Class>,
     /// Bounds on the floor under the errors.
     pub floor: Typed<RangeTable>,
     /// Bound on the wiggle of the profile.
@@ -188,17 +234,18 @@ pub struct ExpectKeys {
     pub probe: Typed<f64>,
     /// Marks a known failure, which must then fail.
     pub xfail: Typed<XfailTable>,
-    /// Smallest tier that has it.
-    pub tier: Typed<Named<Tier>>,
+    /// Smallest tier that includes it.
+    #[serde(default)]
+    pub tier: Tier,
 }
 
 /// What the single cases that its inputs name must do.
-pub type ExpectCaseTable = InputTable<One, ExpectCaseKeys>;
-
-/// Keys of an expectation of cases beside inputs.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ExpectCaseKeys {
+#[schemars(transform = |schema: &mut Schema| add_inputs(schema, "sweep", false))]
+pub struct ExpectCaseTable {
+    #[serde(skip)]
+    pub inputs: Inputs,
     /// How the case must end: `ok`, or the name of a failure.
     pub status: Typed<String>,
     /// Largest relative difference of the observed from the predicted critical step.
@@ -207,14 +254,15 @@ pub struct ExpectCaseKeys {
     pub solid_drift_below: Typed<f64>,
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Typed<f64>,
-    /// Bounds on the largest size, at any output, of the water in the soil over its pores, less one: of two layers.
+    /// Bounds on the largest volume, at any output, of the water in the soil over its pores, minus one: of two point
+    /// sets.
     pub pore_water: Typed<RangeTable>,
     /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
     pub water_left_within: Typed<f64>,
-    /// Bounds on the largest pressure of any water point of two layers, between outputs too, over the load.
+    /// Bounds on the largest pressure of any water point of two point sets, between outputs too, over the load.
     pub largest_pressure: Typed<RangeTable>,
-    /// Largest difference of any error from that of the same case in one layer.
-    pub one_layer_within: Typed<f64>,
+    /// Largest difference of any error from that of the same case with one point set.
+    pub one_set_within: Typed<f64>,
     /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
     pub spurious_velocity: Typed<RangeTable>,
     /// Bounds on the time factor at which the pressure at the impermeable end is highest.
@@ -224,29 +272,21 @@ pub struct ExpectCaseKeys {
     /// Bounds on one error.
     pub error: Typed<RangeTable>,
     /// What is measured.
-    pub quantity: Typed<Named<Quantity>>,
+    #[serde(default)]
+    pub quantity: Quantity,
     /// How the error becomes one number.
-    pub norm: Typed<Named<Norm>>,
+    pub norm: Typed<Norm>,
     /// Where it is measured.
-    pub sample: Typed<Named<Sample>>,
+    pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
-    /// Exact solution to hold the result against.
+    /// Exact solution to compare the result with.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
-    /// Smallest tier that has it.
-    pub tier: Typed<Named<Tier>>,
-}
-
-impl OwnKeys for SweepKeys {
-    const TABLE: &'static str = "sweep";
-}
-impl OwnKeys for ExpectKeys {
-    const TABLE: &'static str = "sweep";
-}
-impl OwnKeys for ExpectCaseKeys {
-    const TABLE: &'static str = "sweep";
+    /// Smallest tier that includes it.
+    #[serde(default)]
+    pub tier: Tier,
 }
 
 /// Two bounds.
@@ -254,9 +294,9 @@ impl OwnKeys for ExpectCaseKeys {
 #[serde(deny_unknown_fields)]
 pub struct RangeTable {
     /// Lower bound.
-    pub above: Typed<f64>,
+    pub above: Option<f64>,
     /// Upper bound.
-    pub below: Typed<f64>,
+    pub below: Option<f64>,
 }
 
 /// A band about an order.
@@ -264,11 +304,11 @@ pub struct RangeTable {
 #[serde(deny_unknown_fields)]
 pub struct OrderTable {
     /// The order.
-    pub value: Placed<f64>,
+    pub value: f64,
     /// How far below it may lie.
-    pub minus: Typed<f64>,
+    pub minus: Option<f64>,
     /// How far above it may lie.
-    pub plus: Typed<f64>,
+    pub plus: Option<f64>,
 }
 
 /// Bounds at a level, which is named in the words of its axis.
@@ -280,13 +320,13 @@ pub struct LevelTable {
     /// Material points per cell and direction.
     pub points_per_cell: Typed<i64>,
     /// Step, s.
-    pub seconds: Typed<f64>,
+    pub seconds: Option<f64>,
     /// Bulk modulus of the water, Pa.
-    pub water_bulk_modulus: Typed<f64>,
+    pub water_bulk_modulus: Option<f64>,
     /// Upper bound.
-    pub below: Typed<f64>,
+    pub below: Option<f64>,
     /// Lower bound.
-    pub above: Typed<f64>,
+    pub above: Option<f64>,
 }
 
 /// An upper bound.
@@ -294,7 +334,7 @@ pub struct LevelTable {
 #[serde(deny_unknown_fields)]
 pub struct BelowTable {
     /// Upper bound.
-    pub below: Placed<f64>,
+    pub below: f64,
 }
 
 /// A known failure.
@@ -302,9 +342,72 @@ pub struct BelowTable {
 #[serde(deny_unknown_fields)]
 pub struct XfailTable {
     /// Whether an unexpected pass is a failure.
-    pub strict: Typed<bool>,
+    pub strict: Option<bool>,
     /// Why.
-    pub reason: Placed<String>,
+    pub reason: String,
+}
+
+/// A program that solves a case of the study and leaves a result.
+///
+/// `{case}`, `{out}`, `{study}`, `{cells}`, `{points_per_cell}`, `{time_step}` and `{end_time}` stand for values of
+/// the case in `command`, `result` and `env`. A word that names a file beside the study stands for that file.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverTable {
+    /// Its name among the methods of a sweep.
+    pub name: Placed<String>,
+    /// The program and its arguments, word by word; no shell reads them.
+    pub command: Placed<Vec<Placed<String>>>,
+    /// The result that it leaves, below `{out}`; `*` and `?` stand for several files.
+    pub result: Placed<String>,
+    /// File beside the study that says what the result's columns or arrays mean.
+    pub mapping: Typed<String>,
+    /// Program whose files are known; a mapping goes over it.
+    #[serde(default)]
+    #[schemars(schema_with = "presets")]
+    pub preset: Typed<String>,
+    /// Command that prints its version; its first line is kept in the record.
+    pub version: Typed<Vec<Placed<String>>>,
+    /// Longest wall time of one run, s; `case_seconds` of the study where it is left out.
+    pub timeout: Typed<f64>,
+    /// Runs of each case that are timed, 1 where it is left out; their results must agree.
+    pub repeats: Typed<i64>,
+    /// Whether a run goes before the timed ones; where it is left out, it does before several.
+    pub warm_up: Option<bool>,
+    /// How many of its runs may go on at the same time, 1 where it is left out.
+    pub at_once: Typed<i64>,
+    /// Variables of its environment beside those of this program.
+    #[serde(default)]
+    pub env: BTreeMap<String, Placed<String>>,
+    /// Further files of the adapter beside the study: they belong to the identity of its cases.
+    pub files: Typed<Vec<Placed<String>>>,
+    /// Regular expression whose first group is the time in its output that it says it took, s.
+    pub solve_seconds: Typed<String>,
+}
+
+/// Files that an external solver has left, on one mesh or on several; nothing is run for them.
+///
+/// Its name then stands where expectations name a method. The scene, its column and soil are those of the study.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ResultTable {
+    /// Its name among the methods.
+    pub name: Placed<String>,
+    /// Files of one mesh, from the folder of the study: `{cells}` stands for the mesh, `*` and `?` for several files.
+    pub files: Placed<Vec<Placed<String>>>,
+    /// Cells over the height of each mesh.
+    pub cells: Placed<Vec<Placed<i64>>>,
+    /// Program whose files are known; a mapping goes over it.
+    #[serde(default)]
+    #[schemars(schema_with = "presets")]
+    pub preset: Typed<String>,
+    /// File beside the study that says what columns or arrays mean.
+    pub mapping: Typed<String>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    pub time_step: Typed<f64>,
+    /// Smallest tier that has it.
+    #[serde(default)]
+    pub tier: Tier,
 }
 
 fn names_of_references() -> Vec<&'static str> {
@@ -325,64 +428,6 @@ fn axes(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "array", "items": { "enum": names } })
 }
 
-impl StudySource {
-    /// Reads TOML into tables, refusing unknown keys and wrong types at their place.
-    ///
-    /// # Errors
-    /// What the parser refuses, with the nearest key.
-    pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, StudyError> {
-        toml_tree::read(&self.text).map_err(|refusal| self.error(vec![explained(refusal, &self.text)]))
-    }
-
-    /// One complaint about the whole text.
-    pub fn complaint(&self, message: String, help: String) -> StudyError {
-        self.error(vec![Diagnostic { message, span: None, help: Some(help) }])
-    }
-
-    /// An error of this study.
-    pub fn error(&self, diagnostics: Vec<Diagnostic>) -> StudyError {
-        StudyError { name: self.name.clone(), source: self.text.clone(), diagnostics }
-    }
-}
-
-/// A refusal with the nearest key, where the key is unknown.
-fn explained(refusal: toml_tree::Refusal, text: &str) -> Diagnostic {
-    let message = refusal.message.trim().replace('\n', "; ");
-    let span = refusal.place;
-    if let Some((message, help)) = mistakes::explained(&message, span.as_ref(), text) {
-        return Diagnostic { message, span, help: Some(help) };
-    }
-    if let Some(diagnostic) = grammar::explained(&message, span.as_ref(), text) {
-        return diagnostic;
-    }
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let (message, help) = match quoted.split_first() {
-        Some((word, candidates)) if message.starts_with("unknown field") => {
-            let help = match nearest(word, candidates.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => {
-                    table_of(word).unwrap_or_else(|| format!("the keys here are {}", candidates.join(", ")))
-                }
-            };
-            (format!("unknown key `{word}`"), help)
-        }
-        Some((word, choices)) if message.starts_with("unknown variant") => {
-            let help = match nearest(word, choices.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("the words here are {}", choices.join(", ")),
-            };
-            (format!("`{word}` is none of the words that stand here"), help)
-        }
-        _ => grammar::in_short(&message),
-    };
-    Diagnostic { message, span, help: Some(help) }
-}
-
-/// Where a key belongs that stands outside its table.
-fn table_of(word: &str) -> Option<String> {
-    let key = KEYS.iter().find(|key| key.name == word)?;
-    let (table, is_block) =
-        key.tables.iter().find(|table| **table != "sweep").map_or(("sweep", true), |t| (t, false));
-    let header = if is_block { format!("[[{table}]]") } else { format!("[{table}]") };
-    Some(format!("`{word}` belongs to {header}: `{table}.{word}`"))
+fn presets(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "enum": PRESETS })
 }

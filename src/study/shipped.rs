@@ -1,7 +1,6 @@
-//! The studies that ship, inside the program: it makes its report wherever it is run.
+//! The studies that ship inside the program, and the names of studies.
 
 use crate::study::file::StudySource;
-use crate::study::name::name_of;
 
 /// The studies by their names, each with its text.
 macro_rules! shipped {
@@ -39,11 +38,60 @@ pub fn shipped_names() -> Vec<String> {
     shipped_studies().iter().map(|source| name_of(&source.name).to_owned()).collect()
 }
 
+/// Names and titles of the shipped studies. Only the line of the title is read: nothing is checked.
+pub fn shipped_titles() -> impl Iterator<Item = (&'static str, String)> {
+    SHIPPED.iter().map(|(name, text)| {
+        let title = text.lines().find_map(|line| toml::from_str::<Titled>(line).ok());
+        (name_of(name), title.map_or(String::new(), |titled| titled.title))
+    })
+}
+
+/// The first key of a study.
+#[derive(serde::Deserialize)]
+struct Titled {
+    title: String,
+}
+
 /// Every shipped study.
 pub fn shipped_studies() -> Vec<StudySource> {
     let study =
         |(name, text): &(&str, &str)| StudySource { name: (*name).to_owned(), text: (*text).to_owned() };
     SHIPPED.iter().map(study).collect()
+}
+
+/// Longest name, bytes: file systems take 255, and what is made of a name puts more around it.
+const LONGEST: usize = 100;
+/// Names by which the report, the golden values and the tables call parts of their own.
+const TAKEN: [&str; 7] = ["findings", "survival", "how", "references", "profiles", "history", "columns"];
+
+/// Name of a study by its file: without folders and extension.
+pub fn name_of(file: &str) -> &str {
+    let file = file.rsplit(['/', '\\']).next().unwrap_or_default();
+    file.strip_suffix(".toml").unwrap_or(file)
+}
+
+/// Why a name cannot be that of a study that is kept; none where it can.
+///
+/// Plain names only: they become folders, files and anchors, on file systems that know upper from lower case and
+/// on those that do not.
+pub fn refused_name(name: &str) -> Option<String> {
+    let is_inner = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_';
+    let is_plain = name.starts_with(|first: char| first.is_ascii_lowercase() || first.is_ascii_digit())
+        && name.ends_with(is_inner)
+        && name.chars().all(|letter| is_inner(letter) || ".-".contains(letter))
+        && !name.contains("--");
+    if !is_plain {
+        return Some(
+            "take lower-case letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`"
+                .to_owned(),
+        );
+    }
+    if name.len() > LONGEST {
+        return Some(format!("it has {} letters: take {LONGEST} at most", name.len()));
+    }
+    TAKEN.contains(&name).then(|| {
+        format!("`{name}` is what a part of the report, of the golden values or of the tables is called")
+    })
 }
 
 #[cfg(test)]
@@ -62,6 +110,53 @@ mod tests {
             let file = entry.file_name().into_string().expect("a name");
             let name = format!("studies/{file}");
             assert!(SHIPPED.iter().any(|(shipped, _)| *shipped == name), "{name} is not in SHIPPED");
+        }
+    }
+
+    #[test]
+    fn the_titles_are_those_of_the_checked_studies() {
+        for ((name, title), source) in shipped_titles().zip(shipped_studies()).step_by(9) {
+            let study = crate::study::check::Study::check(&source).expect("sound");
+            assert_eq!((name, title), (study.name.as_str(), study.title));
+        }
+    }
+
+    #[test]
+    fn a_name_is_the_file_without_folders_and_extension() {
+        assert_eq!(name_of("studies/a.b.toml"), "a.b");
+        assert_eq!(name_of("c:\\studies\\mesh.toml"), "mesh");
+        assert_eq!(name_of("..toml"), ".");
+        assert_eq!(name_of("...toml"), "..");
+        assert_eq!(name_of("/dev/stdin"), "stdin");
+    }
+
+    #[test]
+    fn plain_names_are_taken_and_others_refused() {
+        for name in ["terzaghi-mesh", "a", "63", "v1.2_b"] {
+            assert_eq!(refused_name(name), None, "{name}");
+        }
+        let long = "a".repeat(LONGEST + 1);
+        let others = [
+            "",
+            ".",
+            "..",
+            ".hidden",
+            "-a",
+            "a-",
+            "a.",
+            "MyStudy",
+            "ä",
+            "a b",
+            "a/b",
+            "a\\b",
+            "a\n",
+            "a--b",
+            "con:",
+            "references",
+            &long,
+        ];
+        for name in others {
+            assert!(refused_name(name).is_some(), "{name}");
         }
     }
 }

@@ -1,6 +1,6 @@
-//! A solver of somebody else's, checked: what is started for a case, and how its result is read.
+//! An external solver, checked: what is started for a case, and how its result is read.
 
-use oedometer_mpm::attached_method::Attached;
+use crate::case::solver::Attached;
 use std::path::PathBuf;
 
 /// Programs whose files are known; `import` has what their arrays mean.
@@ -19,7 +19,7 @@ pub const PLACEHOLDERS: [(&str, &str); 7] = [
 
 /// A program that solves a case of the study and leaves a result.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solver {
+pub struct ExternalSolver {
     /// Its name, with the digest of its command and files.
     pub attached: Attached,
     /// Folder of the study file, against which its files are named.
@@ -52,7 +52,7 @@ pub struct Solver {
     pub solve_seconds: Option<String>,
 }
 
-impl Solver {
+impl ExternalSolver {
     /// Whether its results are there already, and nothing is run.
     pub fn is_given(&self) -> bool {
         !self.files.is_empty()

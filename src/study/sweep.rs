@@ -94,7 +94,7 @@ mod tests {
         let methods = ["GIMP", "GC-SRI-patch"].iter().filter_map(|name| Method::named(name));
         Sweep {
             keys: vec![
-                swept("method", methods.map(Value::Method).collect()),
+                swept("method", methods.map(|method| Value::Method(method.into())).collect()),
                 swept("cells", [5, 10, 20].map(Value::Count).to_vec()),
                 swept("time_step", STEPS.map(|s| Value::TimeStep(TimeStepRule::Seconds(s))).to_vec()),
             ],

@@ -111,7 +111,7 @@ fn values(key: &Key) -> String {
     match key.kind {
         Kind::Method => "[a name, or a table](methods.md)".to_owned(),
         Kind::TimeStep => "[a rule](methods.md#steps-in-time)".to_owned(),
-        Kind::Word(words) => words().into_iter().map(code).collect::<Vec<_>>().join(", "),
+        Kind::Word(words) => words.iter().copied().map(code).collect::<Vec<_>>().join(", "),
         Kind::Flag => "`true`, `false`".to_owned(),
         Kind::Count(most) => format!("1 … {most}"),
         Kind::Number(Range::Positive) => "> 0".to_owned(),

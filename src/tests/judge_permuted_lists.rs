@@ -89,7 +89,7 @@ fn a_reference_that_is_not_named_is_the_scenes_own_or_the_only_one_and_never_the
     let named = "reference = 'terzaghi-incompressible'\n";
     assert_eq!(with("['terzaghi', 'terzaghi-incompressible']", named), told(other, own, &both));
     for (references, part) in [
-        ("[]", "held against no reference"),
+        ("[]", "compared with no reference"),
         ("['terzaghi', 'terzaghi']", "listed twice"),
         ("['nobody']", "no reference is called `nobody`"),
     ] {

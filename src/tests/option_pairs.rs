@@ -34,7 +34,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("base", Base::ALL.map(Base::name).to_vec()),
         ("load", vec!["at once", "while it grows", "after it has grown"]),
         ("points", vec!["regular", "shifted", "jittered", "top cell part filled"]),
-        ("layers", vec!["one", "two"]),
+        ("sets", vec!["one", "two"]),
         ("weight", vec!["none", "own"]),
         ("water", vec!["seed", "softer", "stiffer"]),
         words("law"),
@@ -60,7 +60,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
 fn words(name: &'static str) -> (&'static str, Vec<&'static str>) {
     let key = Key::named(name, "sweep").expect("a key");
     let Kind::Word(words) = key.kind else { panic!("`{name}` has no words") };
-    (name, words())
+    (name, words.to_vec())
 }
 
 /// The word that a case has for a key.
@@ -91,7 +91,7 @@ fn memory(memory: Memory) -> &'static str {
 
 /// What a case has of the options. Those of the explicit step mean nothing to the other integrators.
 fn choices_of(case: &Case) -> BTreeSet<Choice> {
-    let (column, soil, method) = (&case.column, &case.material, &case.method);
+    let (column, soil, method) = (&case.column, &case.material, case.method.own().expect("a method"));
     let mut choices: BTreeSet<Choice> = [
         ("scene", case.scene.name()),
         ("dimensions", if column.dimensions == 1 { "one" } else { "two" }),
@@ -127,7 +127,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
             _ => "seed",
         },
     ));
-    choices.extend(column.base.map(|base| ("base", base.name())));
+    choices.extend(column.base().map(|base| ("base", base.name())));
     if column.loading_time == 0.0 {
         choices.insert(("load", "at once"));
     }
@@ -145,7 +145,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
     if arranged.iter().all(|(is, _)| !is) {
         choices.insert(("points", "regular"));
     }
-    choices.insert(("layers", if points.has_two_layers() { "two" } else { "one" }));
+    choices.insert(("sets", if points.has_two_sets() { "two" } else { "one" }));
     choices.insert(("weight", if column.self_weight { "own" } else { "none" }));
     if case.integrator == IntegratorKind::Explicit {
         let settings = &case.settings;
@@ -187,8 +187,8 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
         Some("top cell part filled") => "points.filling = 0.5\n",
         _ => "",
     };
-    if asked("layers") == Some("two") {
-        text += "points.layers = 2\n";
+    if asked("sets") == Some("two") {
+        text += "points.sets = 2\n";
     }
     if asked("weight") == Some("own") {
         text += "column.self_weight = true\n";

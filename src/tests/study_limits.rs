@@ -62,7 +62,7 @@ fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
         ("time_step = [{ stable = # }]", &["0.8", "1.3"], &["0.0", "-1.0", "nan"]),
     ];
     held(&of_explicit, |sweep| said(&explicit, "", sweep, ""));
-    held(&[("layers = [#]", &["1", "2"], &["0", "3"])], |sweep| said(LAYERS, "", sweep, ""));
+    held(&[("sets = [#]", &["1", "2"], &["0", "3"])], |sweep| said(LAYERS, "", sweep, ""));
     let vortex = STUDY.replace("terzaghi", "manufactured-vortex");
     held(&[("amplitude = [#]", &["-4.0", "0.05", "4.0"], &["-4.000001", "4.000001"])], |sweep| {
         said(&vortex, "", sweep, "")
@@ -134,8 +134,8 @@ fn expectations_are_taken_up_to_their_limits_and_no_further() {
         said(STUDY, "", "", &format!("[[expect]]\n{time}\norder = {{ value = 2.0 }}"))
     });
     held(&OF_CASES, |asked| said(STUDY, "", "", &format!("[[expect_case]]\n{asked}")));
-    held(&[("one_layer_within = #", &["1e-9"], &["0.0", "-1.0", "nan"])], |asked| {
-        said(LAYERS, "", "layers = [1, 2]", &format!("[[expect_case]]\n{asked}"))
+    held(&[("one_set_within = #", &["1e-9"], &["0.0", "-1.0", "nan"])], |asked| {
+        said(LAYERS, "", "sets = [1, 2]", &format!("[[expect_case]]\n{asked}"))
     });
 }
 

@@ -389,7 +389,7 @@ fn figures_in_the_text_are_what_their_commands_print() {
     );
 }
 
-/// README's study file under its name, as it says.
+/// README's study file under its name.
 fn with_my_study(change: impl Fn(&str) -> String) -> TempDir {
     let text = readme();
     let (_, lines) = blocks(&text, "toml")
@@ -397,28 +397,34 @@ fn with_my_study(change: impl Fn(&str) -> String) -> TempDir {
         .find(|(_, lines)| lines.first().is_some_and(|line| line.starts_with("title = ")))
         .expect("a study file");
     let folder = place();
-    fs::write(folder.path().join("my.toml"), change(&(lines.join("\n") + "\n"))).expect("a file");
+    let file = folder.path().join("my-study.toml");
+    fs::write(file, change(&(lines.join("\n") + "\n"))).expect("a file");
     folder
 }
 
 #[test]
-fn the_study_file_runs_is_judged_and_is_reported() {
+fn the_study_file_is_the_one_that_new_writes_and_runs_is_judged_and_is_reported() {
     let folder = with_my_study(str::to_owned);
-    let told = call(folder.path(), &["run", "my.toml"]);
+    let shown = fs::read_to_string(folder.path().join("my-study.toml")).expect("a file");
+    let other = place();
+    assert_eq!(call(other.path(), &["new", "my-study"]).code, 0);
+    let written = fs::read_to_string(other.path().join("my-study.toml")).expect("a file");
+    assert_eq!(written.split_once("\n\n").map(|(_, body)| body), Some(shown.as_str()));
+    let told = call(folder.path(), &["run", "my-study.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
-    let told = call(folder.path(), &["check", "my.toml"]);
+    let told = call(folder.path(), &["check", "my-study.toml"]);
     assert_eq!(told.code, 5, "{}{}", told.out, told.err);
-    assert!(told.out.starts_with("my: 2 of 2 expectations met"), "{}", told.out);
-    let told = call(folder.path(), &["report", "my.toml", "--out", "my-report"]);
+    assert!(told.out.starts_with("my-study: 1 of 1 expectations met"), "{}", told.out);
+    let told = call(folder.path(), &["report", "my-study.toml", "--out", "my-report"]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert!(folder.path().join("my-report/index.html").is_file());
 }
 
 #[test]
 fn a_mistake_in_the_study_file_is_told_as_shown() {
-    let (key, typed) = ("hydraulic_conductivity = 1.0e-5", "hydraulic_conductivty = 1.0e-5");
+    let (key, typed) = ("hydraulic_conductivity = 1.0e-4", "hydraulic_conductivty = 1.0e-4");
     let folder = with_my_study(|text| text.replace(key, typed));
-    let told = call(folder.path(), &["check", "my.toml"]);
+    let told = call(folder.path(), &["check", "my-study.toml"]);
     assert_eq!(told.code, 2);
     let text = readme();
     let (line, shown) = blocks(&text, "text")

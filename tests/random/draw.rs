@@ -176,7 +176,7 @@ fn draw_motion(options: &mut Options, numbers: &mut Numbers) {
 /// Slopes of velocities and stresses where points may carry them.
 fn draw_slopes(options: &mut Options, numbers: &mut Numbers) {
     let bare = options.method.trim_end_matches("-cells");
-    let moves = !bare.starts_with("TL-") && options.value("points.layers").is_none();
+    let moves = !bare.starts_with("TL-") && options.value("points.sets").is_none();
     let follows = moves && !bare.starts_with('u') && !matches!(bare, "MPM") && !bare.starts_with('C');
     if moves && numbers.chance(0.3) {
         options.set("integrator.affine", true);
@@ -211,7 +211,7 @@ fn draw_column(options: &mut Options, numbers: &mut Numbers, is_plane: bool) {
         options.set("material.law", numbers.one_of(&["porosity-dependent", "engineering", "log-linear"]));
         options.set("material.continuity", numbers.one_of(&["conservative", "constant-porosity-gradient"]));
     }
-    if is_large && numbers.chance(0.2) && options.value("points.layers").is_none() {
+    if is_large && numbers.chance(0.2) && options.value("points.sets").is_none() {
         options.set("material.conductivity_mean", "chord");
     }
     if matches!(scene, "terzaghi" | "xie-leo" | "dynamic-column") && numbers.chance(0.12) {
@@ -241,7 +241,7 @@ fn draw_points(options: &mut Options, numbers: &mut Numbers) {
         1 => _ = options.set_rounded("points.offset", numbers.between(-0.5, 0.5)),
         2 => _ = options.set_rounded("points.filling", numbers.between(0.1, 1.0)),
         3 if options.integrator == "explicit" => {
-            options.set("points.layers", 2);
+            options.set("points.sets", 2);
             options.set("points.water_per_cell", numbers.count(1, 4));
         }
         _ => {}

@@ -69,7 +69,7 @@ fn numbers_are_finite(record: &Record) -> Vec<Violation> {
 /// in every study of it.
 fn may_lock(record: &Record) -> bool {
     let case = &record.case;
-    case.scene.is_a_layer() && !case.method.pressure.is_by_cells()
+    case.scene.is_a_layer() && case.method.own().is_some_and(|method| !method.pressure.is_by_cells())
 }
 
 /// Whether skeleton and water keep an inertia that the problem is about.
@@ -136,7 +136,8 @@ fn explained_error(record: &Record) -> Option<f64> {
     if case.settings.flip < 1.0 || (has_waves(record) && !case.scene.has_waves()) {
         return None;
     }
-    let mut most = if case.method.recovery.name() == "patch" { 0.05 } else { 0.12 };
+    let method = case.method.own()?;
+    let mut most = if method.recovery.name() == "patch" { 0.05 } else { 0.12 };
     // A front within its first way through the column; steps of first order; what runs longer has another phase.
     if case.scene.has_waves() {
         let soil = &case.material;
@@ -151,11 +152,11 @@ fn explained_error(record: &Record) -> Option<f64> {
     if case.integrator == IntegratorKind::SemiImplicit {
         most += 0.1;
     }
-    let configuration = case.method.configuration_or(case.scene.configuration());
-    if configuration == Configuration::Updated && matches!(case.method.basis, Basis::Hat | Basis::Ugimp) {
+    let configuration = case.configuration();
+    if configuration == Configuration::Updated && matches!(method.basis, Basis::Hat | Basis::Ugimp) {
         return None;
     }
-    if points.has_two_layers() {
+    if points.has_two_sets() {
         most += 0.1;
     }
     // Rows off their lattice by a share of their spacing: an error of that share which no mesh removes.

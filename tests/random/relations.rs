@@ -63,7 +63,7 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
     let is_column =
         !base.scene.starts_with("manufactured") && !matches!(base.scene, "cosine-layer" | "mandel");
     let is_line = is_column && base.value("column.dimensions").is_none();
-    let is_lattice = ["points.jitter", "points.offset", "points.filling", "points.layers"]
+    let is_lattice = ["points.jitter", "points.offset", "points.filling", "points.sets"]
         .iter()
         .all(|key| base.value(key).is_none());
     let bare =

@@ -17,7 +17,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod assembled;
-pub mod attached_method;
 pub mod body;
 pub mod critical_step;
 pub mod direct_solver;

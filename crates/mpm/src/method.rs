@@ -1,6 +1,5 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
-use crate::attached_method::{Attached, AttachedText};
 use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -180,10 +179,6 @@ pub struct Method {
     pub memory: Memory,
     /// Configuration of the weights, where the method insists on one.
     pub configuration: Option<Configuration>,
-    /// Somebody else's solver, which has operators of its own: those above are then looked at by nobody.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<AttachedText>")]
-    pub attached: Option<Attached>,
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
@@ -222,23 +217,15 @@ const TOTAL_PREFIX: &str = "TL-";
 const CELLS_SUFFIX: &str = "-cells";
 
 impl Method {
-    /// Somebody else's solver.
-    pub fn of_attached(attached: Attached) -> Self {
-        Self {
-            basis: Basis::Hat,
-            strain: StrainGradient::Standard,
-            pressure: PressureIntegration::Points,
-            recovery: Recovery::Constant,
-            memory: Memory::Points,
-            configuration: None,
-            attached: Some(attached),
-        }
-    }
-
-    /// Whether it is somebody else's solver.
-    pub fn is_attached(&self) -> bool {
-        self.attached.is_some()
-    }
+    /// The original MPM: hat functions, everything at the points.
+    pub const STANDARD: Self = Self {
+        basis: Basis::Hat,
+        strain: StrainGradient::Standard,
+        pressure: PressureIntegration::Points,
+        recovery: Recovery::Constant,
+        memory: Memory::Points,
+        configuration: None,
+    };
 
     /// Whether every point takes the pressure of its cell's centre: reduced integration without recovery.
     pub fn has_constant_recovery(&self) -> bool {
@@ -269,7 +256,7 @@ impl Method {
             (true, _) => return None,
         };
         let memory = Memory::Points;
-        Some(Self { basis, strain, pressure, recovery, memory, configuration: None, attached: None })
+        Some(Self { basis, strain, pressure, recovery, memory, configuration: None })
     }
 
     /// Every name that `named` knows.
@@ -323,9 +310,6 @@ impl Method {
 impl fmt::Display for Method {
     /// The name where there is one, the four choices otherwise.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(attached) = self.attached {
-            return out.write_str(attached.name());
-        }
         let name_of = |method: Self| KNOWN.iter().find(|(known, _)| *known == method).map(|(_, name)| name);
         if let Some(name) = name_of(*self) {
             return out.write_str(name);
@@ -377,7 +361,6 @@ mod tests {
             recovery: Recovery::Patch,
             memory: Memory::Points,
             configuration: Some(Configuration::Updated),
-            attached: None,
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
     }

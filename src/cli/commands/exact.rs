@@ -5,7 +5,7 @@ use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides;
 use crate::cli::overrides::StudyLines;
 use crate::cli::stream::{print_data, say};
-use crate::study::check::checker::Purpose;
+use crate::study::check::Purpose;
 use clap::ValueEnum;
 use oedometer_exact::consolidation;
 use oedometer_exact::cosine_layer::LayerFields;

@@ -2,9 +2,8 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::print_data;
-use crate::study::check::Study;
 use crate::study::diagnostic::nearest;
-use crate::study::shipped::{shipped_names, shipped_studies, shipped_study};
+use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
@@ -52,9 +51,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         writeln!(out, "  {}", kind.name())?;
     }
     writeln!(out, "shipped studies")?;
-    for source in shipped_studies() {
-        let study = Study::check(&source)?;
-        writeln!(out, "  {:<26} {}", study.name, study.title)?;
+    for (name, title) in shipped_titles() {
+        writeln!(out, "  {name:<26} {title}")?;
     }
     print_data(&out)?;
     Ok(Exit::Pass)

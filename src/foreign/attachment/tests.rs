@@ -1,9 +1,9 @@
 use super::*;
-use oedometer_mpm::attached_method::Attached;
+use crate::case::solver::Attached;
 
 /// A solver in a folder by a command, with the convention's mapping.
-pub(crate) fn solver(folder: &Path, command: &[&str]) -> Solver {
-    Solver {
+pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
+    ExternalSolver {
         files: Vec::new(),
         time_step: None,
         attached: Attached::new("toy", "0123456789abcdef").expect("a plain name"),
@@ -28,15 +28,14 @@ mod runs {
     use crate::case::Task;
     use crate::case::norm::Norm;
     use crate::case::quantity::Quantity;
-    use oedometer_mpm::method::Method;
     use oedometer_mpm::run::results::outcome::FailureKind;
     use oedometer_mpm::scene::SceneKind;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A case on two cells with one output.
-    fn case(solver: &Solver) -> Case {
+    fn case(solver: &ExternalSolver) -> Case {
         Case {
-            method: Method::of_attached(solver.attached),
+            method: crate::case::solver::Solver::Attached(solver.attached),
             cells: 2,
             time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
@@ -45,7 +44,7 @@ mod runs {
     }
 
     /// Runs a shell script in the place of a solver.
-    fn run(script: &str, change: impl Fn(&mut Solver)) -> Record {
+    fn run(script: &str, change: impl Fn(&mut ExternalSolver)) -> Record {
         let folder = tempfile::TempDir::new().expect("a folder");
         let mut solver = solver(folder.path(), &["sh", "-c", script]);
         change(&mut solver);

@@ -114,7 +114,7 @@ impl Preset {
     /// What is wrong in the user's mapping, all at once.
     pub fn mapping(self, own: Option<&StudySource>, is_plane: bool) -> Result<Mapping, StudyError> {
         let base = StudySource { name: format!("the preset {}", self.name()), text: self.text().to_owned() };
-        let mut merged: toml::Table = base.read()?;
+        let mut merged = base.table()?;
         let source = own.unwrap_or(&base);
         let mut optional: Vec<String> = merged
             .get("columns")
@@ -123,7 +123,7 @@ impl Preset {
         if let Some(own) = own {
             // Unknown keys and words are told at their place in the user's text.
             let _typed: Mapping = own.read()?;
-            let own: toml::Table = own.read()?;
+            let own = own.table()?;
             if let Some(named) = own.get("columns").and_then(toml::Value::as_table) {
                 optional.retain(|key| !named.contains_key(key));
             }

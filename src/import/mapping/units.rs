@@ -2,8 +2,6 @@
 
 use oedometer_soil::wording::words;
 
-use serde::Deserialize;
-
 /// A unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
@@ -46,8 +44,7 @@ pub enum StressUnit {
 }
 
 /// A vertical direction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VerticalSense {
     /// Against gravity.
     #[default]
@@ -56,9 +53,10 @@ pub enum VerticalSense {
     Down,
 }
 
+words!(VerticalSense: Up "up", Down "down");
+
 /// A horizontal direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HorizontalSense {
     /// Away from the scene's `x = 0`: the crest of a layer's load.
     Right,
@@ -66,9 +64,10 @@ pub enum HorizontalSense {
     Left,
 }
 
+words!(HorizontalSense: Right "right", Left "left");
+
 /// Which stress counts as positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressSign {
     /// Soil mechanics.
     CompressionPositive,
@@ -76,9 +75,10 @@ pub enum StressSign {
     TensionPositive,
 }
 
+words!(StressSign: CompressionPositive "compression-positive", TensionPositive "tension-positive");
+
 /// A configuration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StatedPlace {
     /// Places before the load came.
     #[default]
@@ -86,6 +86,8 @@ pub enum StatedPlace {
     /// Places at the time of the row.
     Current,
 }
+
+words!(StatedPlace: Reference "reference", Current "current");
 
 words!(TimeUnit: S "s", Min "min", H "h", D "d", A "a", TimeFactor "time-factor");
 
@@ -243,10 +245,14 @@ mod tests {
         // No word is missing above: of an unknown one a message lists all there are.
         for (table, key) in words.map(|(table, key, ..)| (table, key)) {
             let told = mapping(table, key, "nonsense").expect_err("no word");
-            let all = told.split("the words here are ").nth(1).expect("a list");
+            let all = told.split("it can be ").nth(1).expect("a list");
             let of_key = words.iter().filter(|(other, name, ..)| (*other, *name) == (table, key));
             let known: Vec<&str> = of_key.map(|(_, _, word, ..)| *word).collect();
-            assert_eq!(all.trim().split(", ").collect::<Vec<_>>(), known, "{table}.{key}: {told}");
+            assert_eq!(
+                all.trim().split(", ").map(|word| word.trim_matches('`')).collect::<Vec<_>>(),
+                known,
+                "{table}.{key}: {told}"
+            );
         }
     }
 

@@ -2,6 +2,7 @@
 //! stable step and cost; and their errors over the stiffness of the water and of the skeleton, at the start and
 //! through consolidation.
 
+use crate::case::solver::Solver;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{first_error, first_measure, grouped, paths};
 use crate::measure::fields::PlaneField;
@@ -12,7 +13,6 @@ use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
 use oedometer_mpm::critical_step::formula;
-use oedometer_mpm::method::Method;
 use oedometer_soil::material::Material;
 
 /// `K_w/E` from which on stiffer water should change nothing.
@@ -22,7 +22,7 @@ const STIFF_WATER: f64 = 1e3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
     /// The method.
-    pub method: Method,
+    pub method: Solver,
     /// Mean of its ranks over the criteria, from 1.
     pub rank: f64,
     /// Relative L2 error of the nodal displacement at the undrained start.
@@ -69,7 +69,7 @@ pub fn standings(study: &Study, records: &[Record]) -> Result<Vec<Standing>, Exa
 }
 
 /// The methods of records, each once, in their order.
-fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Method> {
+fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Solver> {
     let groups = grouped(records, |record| record.case.method.to_string());
     groups.into_iter().map(|(_, records)| records[0].case.method).collect()
 }
@@ -80,12 +80,12 @@ fn is_plain(record: &Record) -> bool {
 }
 
 /// Most cells that every method ran to the last output.
-fn common_cells(records: &[Record], methods: &[Method]) -> usize {
+fn common_cells(records: &[Record], methods: &[Solver]) -> usize {
     let last = records.iter().filter_map(|record| record.case.time_factors.last());
     let last = last.copied().fold(0.0, f64::max);
     let is_whole = |record: &&Record| is_plain(record) && record.case.time_factors.contains(&last);
     let runs: Vec<&Record> = records.iter().filter(is_whole).collect();
-    let has_run = |method: &Method, cells: usize| {
+    let has_run = |method: &Solver, cells: usize| {
         runs.iter().any(|record| record.case.method == *method && record.case.cells == cells)
     };
     let cells = runs.iter().map(|record| record.case.cells);
@@ -94,7 +94,7 @@ fn common_cells(records: &[Record], methods: &[Method]) -> usize {
 
 fn standing(
     records: &[Record],
-    method: Method,
+    method: Solver,
     cells: usize,
     reference: &str,
 ) -> Result<Standing, ExactError> {
@@ -156,7 +156,7 @@ fn seconds_of_work(record: &Record) -> Option<f64> {
 /// Class of the undrained errors over the meshes and the order on the finest window.
 fn series_order(
     records: &[Record],
-    method: Method,
+    method: Solver,
     quantity: Quantity,
     sample: Sample,
     reference: &str,
@@ -252,7 +252,7 @@ impl Showing {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepRow {
     /// The method.
-    pub method: Method,
+    pub method: Solver,
     /// Time factor of the output.
     pub time_factor: f64,
     /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
@@ -309,7 +309,7 @@ impl StiffnessSweep {
         let methods = methods_of(alike.iter().copied());
         let time_factors = hardest.case.time_factors.to_vec();
         let reference = study.references[0].name();
-        let found = |method: Method, time_factor: f64, value: f64| {
+        let found = |method: Solver, time_factor: f64, value: f64| {
             let record = alike
                 .iter()
                 .find(|record| record.case.method == method && stiffness.of(&record.case) == value);

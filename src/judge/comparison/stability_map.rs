@@ -122,7 +122,7 @@ fn settings_of(case: &Case) -> String {
     let mapping = if settings.mapping_back { "" } else { ", no mapping back" };
     let scheme =
         if settings.scheme.is_paper() { String::new() } else { format!(", {}", settings.scheme.name()) };
-    let slopes = if settings.affine { ", slopes of velocities" } else { "" };
-    let stresses = if settings.stress_slopes { ", slopes of stresses" } else { "" };
+    let slopes = if settings.affine { ", APIC" } else { "" };
+    let stresses = if settings.stress_slopes { ", stress slopes" } else { "" };
     format!("{} drag{mapping}{slopes}{stresses}{scheme}", settings.drag.name())
 }

@@ -1,12 +1,12 @@
 //! Runs that differ in one input alone: the cost and the benefit of the input.
 
 use crate::case::keys::{Key, Value};
+use crate::case::solver::Solver;
 use crate::case::{Quantity, Sample};
 use crate::judge::comparison::situation::Situation;
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::median;
 use crate::record::{Record, Status};
-use oedometer_mpm::method::Method;
 use std::collections::HashMap;
 
 /// Two runs that are equal in everything but one input.
@@ -43,7 +43,7 @@ pub struct TwinsOfSituation {
     /// The situation.
     pub situation: Situation,
     /// The method; `None` for all methods that have equal errors on both sides.
-    pub method: Option<Method>,
+    pub method: Option<Solver>,
     /// Number of pairs.
     pub pairs: usize,
     /// Error of the pressure at the points of the second over that of the first: least, median and largest of the pairs
@@ -77,7 +77,7 @@ fn by_method(situation: Situation, pairs: Vec<&Twins<'_>>) -> Vec<TwinsOfSituati
     differing.chain(alike).collect()
 }
 
-fn in_numbers(situation: Situation, method: Option<Method>, own: &[&Twins<'_>]) -> TwinsOfSituation {
+fn in_numbers(situation: Situation, method: Option<Solver>, own: &[&Twins<'_>]) -> TwinsOfSituation {
     let mut ratios: Vec<f64> = own.iter().flat_map(|pair| ratios_of(pair)).collect();
     ratios.sort_by(f64::total_cmp);
     let failed = |status: for<'a> fn(&'a Twins<'_>) -> &'a Status| {
@@ -165,11 +165,11 @@ mod tests {
     fn runs_of_two_layers_have_their_twins_in_one() {
         let records = records_of(
             "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [1e-4]\n[[sweep]]\nmethod = ['GIMP-SRI-patch']\n\
-             cells = [4]\nlayers = [1, 2]\n",
+             cells = [4]\nsets = [1, 2]\n",
         );
-        let key = Key::named("layers", "points").expect("a key");
+        let key = Key::named("sets", "points").expect("a key");
         let pairs = twins(&records, key, (Value::Count(1), Value::Count(2)));
         assert_eq!((records.len(), pairs.len()), (2, 1));
-        assert!(pairs[0].other.case.column.points.has_two_layers());
+        assert!(pairs[0].other.case.column.points.has_two_sets());
     }
 }

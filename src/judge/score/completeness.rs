@@ -23,8 +23,7 @@ const PROFILES: usize = 3;
 const PER_BIN: usize = 12;
 
 /// In what way a result is incomplete.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// Volumes do not add up to that of the scene, or not to the same at all times.
     VolumeDiffers,

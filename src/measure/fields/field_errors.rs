@@ -112,7 +112,7 @@ pub fn snapshot_errors(
     time_factor: f64,
     snapshot: &Snapshot,
 ) -> Result<Vec<ErrorRow>, ExactError> {
-    let load = case.column.load;
+    let load = case.column.pressure_scale();
     let final_settlement = reference.displacement_scale(LONG_AFTER)?;
     let resolution = resolution(reference, time_factor);
     let mut rows = Vec::new();

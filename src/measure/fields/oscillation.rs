@@ -111,7 +111,8 @@ impl PlaneField {
         let columns = across * case.points_per_cell;
         let rows = case.cells * case.points_per_cell;
         let per_height = 1.0 / rows as f64;
-        let over_load = |pressures: &[f64]| pressures.iter().map(|p| p / case.column.load).collect();
+        let over_load =
+            |pressures: &[f64]| pressures.iter().map(|p| p / case.column.pressure_scale()).collect();
         Ok(Some(Self {
             columns,
             x_edges: (0..=columns).map(|i| i as f64 * per_height).collect(),

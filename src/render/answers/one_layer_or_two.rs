@@ -14,11 +14,11 @@ use crate::render::tables::golden_changes::count_of;
 pub const QUESTION: Question = Question { heading: "One layer of material points, or two?", id: "layers" };
 
 /// The key that says how many, and the table of a study file that has it.
-const KEY: [&str; 2] = ["layers", "points"];
+const KEY: [&str; 2] = ["sets", "points"];
 
 /// Error, robustness and cost of two layers beside one.
 pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
-    let needed = "runs that differ in `points.layers` alone";
+    let needed = "runs that differ in `points.sets` alone";
     Key::named(KEY[0], KEY[1])
         .and_then(|key| compare(results, key, links))
         .unwrap_or_else(|| QUESTION.open(needed))

@@ -1,204 +1,284 @@
-//! Checks of where the soil is and what loads it: the tables `[column]` and `[layer]`.
+//! Checks of where the soil is, what it is made of and what loads it: the tables `[column]`, `[layer]`,
+//! `[manufactured]` and `[material]`.
 
 use crate::case::keys::{Key, Value};
 use crate::case::planned::PlannedCase;
 use crate::case::{Case, Task};
-use crate::study::check::checker::Checker;
+use crate::study::check::Checker;
 use crate::study::diagnostic::Diagnostic;
-use crate::study::file::{StudyFile, SweepTable};
-use crate::study::inputs::{One, TypedInput};
+use crate::study::file::StudyFile;
+use crate::study::inputs::{Inputs, TypedInput};
+use crate::study::reading::Placed;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::xie_leo::XieLeo;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;
+use oedometer_soil::wording::short;
 use std::ops::Range;
-use toml::Spanned;
 
-/// Final strain `m_vl q` up to which small-strain theory is taken without a word.
+/// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 
-impl Checker<'_> {
-    /// The values of the column's or the layer's table, whichever the scene is about; the other is refused.
-    pub(crate) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let (scene, name) = (seed.scene, seed.scene.name());
-        if scene.is_manufactured() {
-            return self.motion(file, seed);
-        }
-        if let Some(motion) = &file.manufactured {
-            self.complain(
-                motion.span(),
-                format!("the motion of `{name}` is not chosen: the scene has no [manufactured]"),
-                "it belongs to \"manufactured-box\", \"manufactured-shear\" and \"manufactured-vortex\"",
-            );
-        }
-        if scene.is_a_layer() {
-            if let Some(span) =
-                file.column.inputs.iter().map(|(_, typed)| typed.span()).min_by_key(|s| s.start)
-            {
-                self.complain(
-                    span,
-                    format!("the scene `{name}` has no [column]"),
-                    "its geometry and load stand in the table [layer]: length, height, base, load",
-                );
-            }
-            let layer = file.layer.as_ref().map(|layer| layer.get_ref());
-            return self.inputs("layer", layer.map_or(&[], |layer| &layer.inputs), seed);
-        }
-        if let Some(layer) = &file.layer {
-            self.complain(
-                layer.span(),
-                format!("the scene `{name}` has no [layer]"),
-                "its geometry and load stand in the table [column]: height, width, load, dimensions",
-            );
-        }
-        if let Some(typed) = file.column.typed("loading_time").filter(|_| !scene.takes_loading_time()) {
-            self.complain(
-                typed.span(),
-                format!("the load of `{name}` acts at once"),
-                "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
-            );
-        }
-        if let Some(typed) = file.column.typed("self_weight").filter(|_| !scene.takes_self_weight()) {
-            self.complain(
-                typed.span(),
-                format!("the soil of `{name}` has no weight"),
-                "own weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
-            );
-        }
-        let has_weight = |typed: &&One| matches!(typed.get_ref(), TypedInput::Flag(true));
-        let of_stability = seed.task == Task::Stability && scene.takes_self_weight();
-        if let Some(typed) = file.column.typed("self_weight").filter(has_weight).filter(|_| of_stability) {
-            self.complain(
-                typed.span(),
-                "a weight is a force that does not change: the critical step is that of the weightless column",
-                "leave `self_weight` out of a study of stability",
-            );
-        }
-        let in_a_line = |typed: &&One| !matches!(typed.get_ref(), TypedInput::Count(2));
-        if let Some(typed) =
-            file.column.typed("dimensions").filter(|_| scene.needs_two_dimensions()).filter(in_a_line)
-        {
-            self.complain(
-                typed.span(),
-                format!("`{name}` has two dimensions"),
-                "leave the key out: the plate presses across the direction in which the water flows",
-            );
-        }
-        self.inputs("column", &file.column.inputs, seed)
-    }
+/// Values outside the range of any soil, usually a unit mistake: key, range, message, help.
+const UNIT_MISTAKES: [(&str, Range<f64>, &str, &str); 3] = [
+    (
+        "hydraulic_conductivity",
+        10.0..f64::INFINITY,
+        "no soil has a hydraulic conductivity of {} m/s",
+        "give metres per second: gravel has 1e-2, clay 1e-10",
+    ),
+    (
+        "youngs_modulus",
+        f64::MIN_POSITIVE..1e2,
+        "no soil has a Young's modulus of {} Pa",
+        "give pascals, not kPa or MPa: 1000 kPa is 1.0e6",
+    ),
+    (
+        "water_bulk_modulus",
+        f64::MIN_POSITIVE..1e3,
+        "no liquid has a bulk modulus of {} Pa",
+        "give pascals: water has 2.2e9",
+    ),
+];
 
-    /// The values of the table of a chosen motion; the other tables of geometry are refused, for the body is the unit
-    /// square and its points begin on the regular lattice.
-    fn motion(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
-        let name = seed.scene.name();
-        let of_column = file.column.inputs.iter().map(|(_, typed)| typed.span());
-        let of_column = of_column.chain(file.column.strain.as_ref().map(|typed| typed.span()));
-        let of_points = file.points.inputs.iter().map(|(_, typed)| typed.span());
+/// What belongs in the table of a kind of body.
+fn contents_of(table: &str) -> &'static str {
+    match table {
+        "layer" => "its geometry and load stand in [layer]: length, height, base, load",
+        "manufactured" => {
+            "its body is the unit square with points on the regular lattice; [manufactured] holds its amplitudes, \
+             frequency and pressure"
+        }
+        _ => "its geometry and load stand in [column]: height, width, load, dimensions",
+    }
+}
+
+impl Checker<'_> {
+    /// The inputs of the table that the scene's geometry stands in; other tables of geometry are refused.
+    pub(super) fn geometry(&mut self, file: &StudyFile, seed: &Case) -> Vec<(&'static Key, Value)> {
+        let (scene, own) = (seed.scene, seed.scene.table_of_geometry());
+        let [layer, manufactured] = [&file.layer, &file.manufactured];
+        let of_column = file.column.inputs.first_span();
+        let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.is_manufactured());
+        let of_points = file.points.inputs.first_span().filter(|_| scene.is_manufactured());
         for (table, place) in [
-            ("column", of_column.min_by_key(|span| span.start)),
-            ("layer", file.layer.as_ref().map(|layer| layer.span())),
-            ("points", of_points.min_by_key(|span| span.start)),
+            ("column", of_column.or(strain)),
+            ("layer", layer.as_ref().map(Placed::span)),
+            ("manufactured", manufactured.as_ref().map(Placed::span)),
+            ("points", of_points),
         ] {
-            if let Some(place) = place {
+            if let Some(place) = place.filter(|_| table != own) {
                 self.complain(
                     place,
-                    format!("the scene `{name}` has no [{table}]"),
-                    "its body is the unit square, points on the regular lattice; what it does stands in the table \
-                     [manufactured]: amplitudes, frequency, pressure",
+                    format!("the scene `{}` has no [{table}]", scene.name()),
+                    contents_of(own),
                 );
             }
         }
-        let Some(table) = &file.manufactured else { return Vec::new() };
-        for (key, typed) in &table.get_ref().inputs {
-            self.moves_by(key, typed.span(), seed.scene);
+        match own {
+            "layer" => layer.as_ref().map_or(Vec::new(), |table| self.inputs(own, &table.inputs, seed)),
+            "manufactured" => manufactured.as_ref().map_or(Vec::new(), |table| {
+                for (key, typed) in &table.inputs.0 {
+                    self.amplitude_fits(key, typed.span(), scene);
+                }
+                self.inputs(own, &table.inputs, seed)
+            }),
+            _ => self.column(&file.column.inputs, seed),
         }
-        self.inputs("manufactured", &table.get_ref().inputs, seed)
+    }
+
+    /// The inputs of `[column]`, where the scene takes them.
+    fn column(&mut self, inputs: &Inputs, seed: &Case) -> Vec<(&'static Key, Value)> {
+        let (scene, name) = (seed.scene, seed.scene.name());
+        let is =
+            |key: &str, wanted: fn(&TypedInput) -> bool| inputs.typed(key).is_some_and(|typed| wanted(typed));
+        for (key, is_refused, message, help) in [
+            (
+                "loading_time",
+                !scene.takes_loading_time(),
+                format!("the load of `{name}` acts at once"),
+                "a load that grows belongs to the scenes \"xie-leo\" and \"dynamic-column\"",
+            ),
+            (
+                "self_weight",
+                !scene.takes_self_weight(),
+                format!("the soil of `{name}` has no weight"),
+                "self-weight belongs to the scenes \"terzaghi\", \"xie-leo\", \"dynamic-column\" and \"at-rest\"",
+            ),
+            (
+                "self_weight",
+                seed.task == Task::Stability
+                    && scene.takes_self_weight()
+                    && is("self_weight", |typed| matches!(typed, TypedInput::Flag(true))),
+                "a weight does not change the critical step: it is that of the weightless column".to_owned(),
+                "leave `self_weight` out of a study of stability",
+            ),
+            (
+                "dimensions",
+                scene.needs_two_dimensions()
+                    && is("dimensions", |typed| !matches!(typed, TypedInput::Count(2))),
+                format!("`{name}` has two dimensions"),
+                "leave the key out: the plate presses across the direction in which the water flows",
+            ),
+        ] {
+            if let Some(place) = inputs.span(key).filter(|_| is_refused) {
+                self.complain(place, message, help);
+            }
+        }
+        self.inputs("column", inputs, seed)
     }
 
     /// Complains where a motion has no such amplitude.
-    fn moves_by(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
+    fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
         if let Some(why) = scene.refuses_input_of_motion(key.name) {
             self.complain(place, format!("the scene `{}` has no `{}`", scene.name(), key.name), why);
         }
     }
 
-    /// Complains where a sweep names an input of another kind of body: a width of a layer, a base of a column.
-    pub(crate) fn geometry_is_the_scenes(&mut self, table: &SweepTable, scene: SceneKind) {
+    /// Complains where a sweep names an input of another kind of body: the width of a layer, the base of a column.
+    pub(super) fn swept_geometry(&mut self, inputs: &Inputs, scene: SceneKind) {
         let own = scene.table_of_geometry();
-        let is_foreign = |key: &Key| {
-            let of_geometry =
-                ["column", "layer", "manufactured"].iter().any(|table| key.tables.contains(table));
-            let of_points = scene.is_manufactured() && key.tables.contains(&"points");
-            of_points || of_geometry && !key.tables.contains(&own)
-        };
-        for (key, list) in &table.inputs {
-            self.moves_by(key, list.span(), scene);
-            if is_foreign(key) {
-                let names: Vec<&str> = Key::of(own).map(|key| key.name).collect();
-                self.complain(
-                    list.span(),
-                    format!("the scene `{}` has no `{}`", scene.name(), key.name),
-                    if scene.is_manufactured() {
-                        format!(
-                            "its points begin on the regular lattice of the unit square; it has {}",
-                            names.join(", ")
-                        )
-                    } else {
-                        format!("its geometry and load are {}", names.join(", "))
-                    },
-                );
+        for (key, list) in &inputs.0 {
+            self.amplitude_fits(key, list.span(), scene);
+            let takes = |table: &str| key.tables.contains(&table);
+            let is_geometry = ["column", "layer", "manufactured"].into_iter().any(takes);
+            if (scene.is_manufactured() && takes("points")) || (is_geometry && !takes(own)) {
+                let message = format!("the scene `{}` has no `{}`", scene.name(), key.name);
+                self.complain(list.span(), message, contents_of(own));
             }
         }
     }
 
-    /// A load that would press out more water than the pores hold has no end state: the exact
-    /// solutions say so before anything runs.
-    pub(crate) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
+    /// Complains of values outside the range of any soil.
+    pub(super) fn units_are_si(&mut self, material: &Inputs) {
+        for (name, strange, message, help) in UNIT_MISTAKES {
+            let Some(typed) = material.typed(name) else { continue };
+            if let TypedInput::Number(number) = &**typed
+                && strange.contains(number)
+            {
+                self.complain(typed.span(), message.replace("{}", &number.to_string()), help);
+            }
+        }
+    }
+
+    /// The strain that a study gives in place of its load.
+    pub(super) fn given_strain(&mut self, file: &StudyFile, seed: &Case) -> Option<f64> {
+        let typed = file.column.strain.as_ref()?;
+        let has_load = file.column.inputs.typed("load").is_some()
+            || file.sweep.iter().any(|block| block.inputs.typed("load").is_some());
+        let (message, help) = if has_load {
+            (
+                "the column has a `load` and a `strain`".to_owned(),
+                "leave one of them out: the load follows from the strain",
+            )
+        } else if !seed.scene.is_loaded() {
+            (
+                format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name()),
+                "leave `strain` out",
+            )
+        } else if **typed > 0.0 && **typed < 1.0 {
+            return Some(**typed);
+        } else {
+            (
+                format!("`column.strain` is {}", **typed),
+                "it is the share by which the column gets shorter: between 0 and 1, both excluded",
+            )
+        };
+        self.complain(typed.span(), message, help);
+        None
+    }
+
+    /// Complains of a load that would press out more water than the pores hold: it has no end state.
+    pub(super) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
         let Case { scene, column, material: soil, .. } = base;
         if !scene.is_large_strain() || scene.is_manufactured() || !self.diagnostics.is_empty() {
             return;
         }
         let parameters = column_parameters(column, soil);
-        if let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) {
-            if let Some(strain) = &file.column.strain {
-                let (value, porosity) = (strain.get_ref(), soil.porosity);
-                self.complain(
-                    strain.span(),
-                    format!("a strain of {value} leaves no pores: the porosity is {porosity}"),
-                    format!("write `strain` below {porosity}, or in [material] a `porosity` above {value}"),
-                );
-                return;
-            }
-            let typed = file.column.typed("load").or(file.material.typed("porosity"));
-            let typed = typed.or(file.material.typed("youngs_modulus")).map(Spanned::span);
-            let most = limit * soil.oedometric_modulus();
-            let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
+        let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) else { return };
+        if let Some(strain) = &file.column.strain {
+            let (value, porosity) = (**strain, soil.porosity);
             self.complain(
-                typed.unwrap_or_else(|| file.scene.span()),
-                error.to_string(),
-                format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
+                strain.span(),
+                format!("a strain of {value} leaves no pores: the porosity is {porosity}"),
+                format!("write `strain` below {porosity}, or in [material] a `porosity` above {value}"),
             );
+            return;
         }
+        let place = file.column.inputs.span("load").or(file.material.inputs.span("porosity"));
+        let place = place.or(file.material.inputs.span("youngs_modulus"));
+        let most = limit * soil.oedometric_modulus();
+        let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
+        self.complain(
+            place.unwrap_or_else(|| file.scene.span()),
+            error.to_string(),
+            format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
+        );
     }
 
-    /// A load under which a theory of small strain is off by more than a percent.
-    pub(crate) fn large_for_small_strain(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+    /// Complains of a case whose pores would close before its end, and of a motion that cannot be. Whether it did.
+    pub(super) fn has_no_end(&mut self, place: &Range<usize>, case: &Case) -> bool {
+        if let Some(error) = case.scene.refuses_motion(&case.column, &case.material) {
+            let help = "the case is impossible: see the tables [manufactured] and [material]";
+            self.complain(place.clone(), error.to_string(), help);
+            return true;
+        }
+        let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
+        let (soil, strain) = (&case.material, final_strain(case));
+        if !is_loaded || strain < soil.porosity {
+            return false;
+        }
+        self.complain(
+            place.clone(),
+            format!(
+                "with E = {} Pa, ν = {} and n = {} the load {} Pa strains the column by {}: the pores close at {}",
+                short(soil.youngs_modulus),
+                soil.poissons_ratio,
+                soil.porosity,
+                short(case.column.load),
+                short(strain),
+                soil.porosity
+            ),
+            format!(
+                "load less than {} Pa, or write `strain` in [column] for the load, below {}",
+                short(load_of(soil.porosity, case)),
+                soil.porosity
+            ),
+        );
+        true
+    }
+
+    /// Warns of a load under which a theory of small strain is off by more than a percent.
+    pub(super) fn large_for_small_strain(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         let small = planned.iter().map(|planned| &planned.case).filter(|case| !case.scene.is_large_strain());
         let strains = small.map(|case| case.column.load / case.material.oedometric_modulus());
         let strain = strains.fold(0.0, f64::max);
         if strain <= LARGEST_SMALL_STRAIN {
             return;
         }
-        let typed = file.column.typed("load").or(file.material.typed("youngs_modulus")).map(Spanned::span);
+        let place = file.column.inputs.span("load").or(file.material.inputs.span("youngs_modulus"));
         let diagnostic = Diagnostic::at(
-            typed.unwrap_or_else(|| file.scene.span()),
+            place.unwrap_or_else(|| file.scene.span()),
             format!(
                 "the load strains the column by m_vl q = {strain:.2e}: real soil is off this scene's small-strain \
                  theory by a share of that size"
             ),
             "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
         );
-        self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
+        self.warn(&diagnostic);
     }
+}
+
+/// Load, Pa, under which a case ends with a vertical strain, by the law of its soil.
+pub(super) fn load_of(strain: f64, case: &Case) -> f64 {
+    let soil = &case.material;
+    let compression =
+        if case.scene.is_large_strain() { -soil.law.uniaxial_stress_ratio(-strain) } else { strain };
+    soil.oedometric_modulus() * compression
+}
+
+/// Vertical strain at the end of a case, by the law of its soil.
+pub(super) fn final_strain(case: &Case) -> f64 {
+    case.material.law.shrinkage(case.column.load / case.material.oedometric_modulus())
 }

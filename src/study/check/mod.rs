@@ -1,40 +1,41 @@
 //! From what was typed to what will run: every value judged, every complaint at its place.
 
-pub mod check_layers;
-pub mod check_material;
-pub mod check_method;
-pub mod check_result;
-pub mod check_solver;
-pub mod check_sweep;
-pub mod checker;
-pub mod default_integrator;
-pub mod distinct_labels;
-pub mod end_state;
-pub mod expectations;
-pub mod geometry;
-pub mod step_rule;
-pub mod value;
+mod expectations;
+mod geometry;
+pub mod solvers;
+mod sweeps;
+mod values;
 
 use crate::case::keys::{Key, Value};
 use crate::case::planned::{PlannedCase, Planner};
 use crate::case::shared::Shared;
+use crate::case::solver::Solver;
 use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::record::Record;
-use crate::study::case_expectation::CaseExpectation;
-use crate::study::check::checker::{Checker, Common, Purpose};
-use crate::study::check::end_state::load_of;
-use crate::study::choice_tables::Placed;
-use crate::study::diagnostic::StudyError;
-use crate::study::expectation::SeriesExpectation;
+use crate::study::check::expectations::Subject;
+use crate::study::check::geometry::load_of;
+use crate::study::check::sweeps::{start_of, tell_apart};
+use crate::study::diagnostic::{Diagnostic, StudyError};
+use crate::study::expectation::{CaseExpectation, SeriesExpectation};
 use crate::study::file::{OutputTable, StudyFile, StudySource};
-use crate::study::name::name_of;
-use crate::study::solver::Solver;
+use crate::study::reading::Placed;
+use crate::study::shipped::name_of;
+use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::integrator::Formulation;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::Column;
-use toml::Spanned;
+use std::ops::Range;
+
+/// What a study is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Its cases are to be solved.
+    Solving,
+    /// Only its problem is wanted, for an exact solution: no grid has to fit it.
+    Theory,
+}
 
 /// Time factors where a study names none.
 const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
@@ -42,6 +43,7 @@ const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
+
 /// A study that can run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
@@ -53,7 +55,7 @@ pub struct Study {
     pub summary: String,
     /// Scene.
     pub scene: SceneKind,
-    /// References its results are held against.
+    /// References that its results are compared with.
     pub references: Vec<ReferenceKind>,
     /// Cases in the order of the sweeps, each once.
     pub planned: Vec<PlannedCase>,
@@ -63,8 +65,8 @@ pub struct Study {
     pub case_expectations: Vec<CaseExpectation>,
     /// Longest wall time of a case, s.
     pub case_seconds: f64,
-    /// Solvers of somebody else's that it attaches.
-    pub solvers: Vec<Solver>,
+    /// External solvers that it attaches.
+    pub solvers: Vec<ExternalSolver>,
     /// Whether those may be started: no file can say so of itself, only whoever calls this program.
     pub may_start_solvers: bool,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
@@ -87,21 +89,17 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
-        let file: StudyFile = source.read()?;
+        let file = StudyFile::read(source)?;
         let mut checker = Checker {
             source,
             diagnostics: Vec::new(),
-            column_height: None,
             multiplied_out: 0,
             purpose,
             solvers: Vec::new(),
             warnings: Vec::new(),
         };
-        let study = checker.study(&file);
-        match study {
-            Some(study) if checker.diagnostics.is_empty() => Ok(study),
-            _ => Err(source.error(checker.diagnostics)),
-        }
+        let study = checker.study(file);
+        if checker.diagnostics.is_empty() { Ok(study) } else { Err(source.error(checker.diagnostics)) }
     }
 
     /// Whether a case would start a program that may not be started.
@@ -110,9 +108,8 @@ impl Study {
     }
 
     /// The solver that a case is given to, where that is not this program.
-    pub fn solver_of(&self, case: &Case) -> Option<&Solver> {
-        let attached = case.method.attached?;
-        self.solvers.iter().find(|solver| solver.attached == attached)
+    pub fn solver_of(&self, case: &Case) -> Option<&ExternalSolver> {
+        self.solvers.iter().find(|solver| case.method == Solver::Attached(solver.attached))
     }
 
     /// Whether an expectation says that a record is to end as it did.
@@ -126,110 +123,76 @@ impl Study {
     }
 }
 
-/// The height that all cases have, or that of the study where there are none; none where they have several.
-fn common_height(planned: &[PlannedCase], of_the_study: f64) -> Option<f64> {
-    let height = planned.first().map_or(of_the_study, |planned| planned.case.column.height);
-    planned.iter().all(|planned| planned.case.column.height == height).then_some(height)
+/// Complaints as they come up; every method gives a usable value or none.
+struct Checker<'a> {
+    source: &'a StudySource,
+    diagnostics: Vec<Diagnostic>,
+    /// Cases that the sweeps seen so far multiply out to.
+    multiplied_out: usize,
+    purpose: Purpose,
+    /// Attached solvers, whose names are methods too.
+    solvers: Vec<ExternalSolver>,
+    /// Warnings, ready to print.
+    warnings: Vec<String>,
+}
+
+/// What the cases of a study share where a sweep does not say otherwise.
+struct Common {
+    /// The seed values of the scene.
+    seed: Case,
+    /// What the study gives by its own tables.
+    given: Vec<(&'static Key, Value)>,
+}
+
+impl Common {
+    /// A case of the study before anything is swept.
+    fn base(&self) -> Case {
+        let mut case = self.seed.clone();
+        for (key, value) in &self.given {
+            key.set(&mut case, *value);
+        }
+        case
+    }
 }
 
 impl Checker<'_> {
-    fn study(&mut self, file: &StudyFile) -> Option<Study> {
-        let scene = self.named(&file.scene, "scene")?;
-        let task = self.choice(file.task.as_deref(), "task", Task::default())?;
-        let case_seconds =
-            self.positive(file.case_seconds.as_deref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
-        self.task_fits(file, task, scene);
-        self.solvers = self.solvers(file, case_seconds);
-        let common = self.common(file, Case::seed(task, scene));
-        let mut base = common.base();
-        let strain = self.given_strain(file, &base);
-        if let Some(strain) = strain {
-            base.column.load = load_of(strain, &base);
-        }
-        self.porosity_at_the_end(file, &base);
-        let time_factors = Shared::from(match &file.output.time_factors {
-            Some(list) => self.time_factors(list),
-            None => DEFAULT_TIME_FACTORS.to_vec(),
-        });
-        let references = self.references(&file.output, scene, &base.column);
-        let given = self.results(file);
-        self.sweep_is_there(file);
-        let mut planner = Planner::default();
-        for block in &file.sweep {
-            let table = block.get_ref();
-            base.time_factors = match &table.time_factors {
-                Some(list) => self.time_factors(list).into(),
-                None => time_factors.clone(),
-            };
-            let Some(mut sweep) = self.sweep(table, block.span(), &common, &base) else { continue };
-            if self.purpose == Purpose::Solving {
-                self.cells_fill_the_width(table, sweep.cases(&base).filter(|case| !case.is_attached()));
-                self.memory_fits(table, sweep.cases(&base).filter(|case| !case.is_attached()));
-                self.default_integrator(table, block.span().start, &common, &base, &mut sweep);
-            }
-            let tier = self.choice(table.tier.as_deref(), "tier", Tier::default()).unwrap_or_default();
-            self.layers_fit(file, table, block.span().start, || sweep.cases(&base).map(Case::for_attached));
-            let loaded = |case: Case| {
-                let mut case = case.for_attached();
-                case.column.points.name_water_points(case.points_per_cell);
-                if let Some(strain) = strain {
-                    case.column.load = load_of(strain, &case);
-                }
-                case
-            };
-            let start = block.span().start;
-            self.attached_are_solved(start, sweep.cases(&base));
-            self.pores_stay_open(start..start + 1, sweep.cases(&base).map(loaded));
-            planner.reserve(sweep.count().unwrap_or(0));
-            for case in sweep.cases(&base).map(loaded) {
-                planner.put(case, tier);
-            }
-        }
-        base.time_factors = time_factors;
-        for meshes in given {
-            for case in meshes.cases(&base) {
-                planner.put(case, meshes.tier);
-            }
-        }
-        let mut planned = planner.into_cases();
-        Self::tell_apart(&mut planned);
-        self.large_for_small_strain(file, &planned);
-        self.column_height = common_height(&planned, base.column.height);
-        let (expectations, case_expectations) = self.expectations(file, scene, &references, &planned);
-        Some(Study {
-            name: name_of(&self.source.name).to_owned(),
-            title: file.title.get_ref().clone(),
-            summary: file.summary.clone().unwrap_or_default(),
-            scene,
-            references,
-            planned,
-            expectations,
-            case_expectations,
-            case_seconds,
-            solvers: std::mem::take(&mut self.solvers),
-            may_start_solvers: false,
-            timing_repeats: self
-                .count(file.timing.repeats.as_deref(), "timing.repeats", 0..=1000)
-                .unwrap_or(0),
-            warnings: std::mem::take(&mut self.warnings),
-        })
+    /// Notes a complaint.
+    fn complain(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::at(span, message, help));
     }
 
-    /// Complains where a critical step is to be observed of a body that is not left alone.
-    fn task_fits(&mut self, file: &StudyFile, task: Task, scene: SceneKind) {
+    /// Notes a warning: the study runs all the same.
+    fn warn(&mut self, diagnostic: &Diagnostic) {
+        self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
+    }
+
+    fn study(&mut self, file: StudyFile) -> Study {
+        let (scene, task) = (*file.scene, file.task.as_deref().copied().unwrap_or_default());
+        let case_seconds =
+            self.positive(file.case_seconds.as_ref(), "case_seconds", "s", DEFAULT_CASE_SECONDS);
         if let Some(typed) = file.task.as_ref().filter(|_| task == Task::Stability && scene.is_manufactured())
         {
             self.complain(
                 typed.span(),
                 "what acts on a manufactured motion hides what grows by itself: its critical step is predicted and \
                  not observed",
-                "leave `task` out, or take a scene that is left alone",
+                "leave `task` out, or take another scene",
             );
         }
-    }
-
-    /// Complains at the end of a study without a case.
-    fn sweep_is_there(&mut self, file: &StudyFile) {
+        self.attach_solvers(&file, case_seconds);
+        let common = self.common(&file, Case::seed(task, scene));
+        let mut base = common.base();
+        let strain = self.given_strain(&file, &base);
+        if let Some(strain) = strain {
+            base.column.load = load_of(strain, &base);
+        }
+        self.porosity_at_the_end(&file, &base);
+        let time_factors = Shared::from(match &file.output.time_factors {
+            Some(list) => self.time_factors(list),
+            None => DEFAULT_TIME_FACTORS.to_vec(),
+        });
+        let references = self.references(&file.output, scene, &base.column);
+        let given = self.attach_results(&file);
         if file.sweep.is_empty() && file.result.is_empty() {
             let end = self.source.text.trim_end().len();
             let last_line = self.source.text[..end].rfind('\n').map_or(0, |newline| newline + 1);
@@ -239,30 +202,61 @@ impl Checker<'_> {
                 "add one with at least `method` and `cells`",
             );
         }
-    }
-
-    /// What the study expects of its series and of single cases; each must have something to judge.
-    fn expectations(
-        &mut self,
-        file: &StudyFile,
-        scene: SceneKind,
-        references: &[ReferenceKind],
-        planned: &[PlannedCase],
-    ) -> (Vec<SeriesExpectation>, Vec<CaseExpectation>) {
-        let (mut of_series, mut of_cases) = (Vec::new(), Vec::new());
-        for entry in &file.expect {
-            if let Some(found) = self.expectation(entry, scene, references) {
-                self.series_is_there(entry, &found, planned);
-                of_series.push(found);
+        let mut planner = Planner::default();
+        for table in &file.sweep {
+            let start = start_of(table);
+            base.time_factors = match &table.time_factors {
+                Some(list) => self.time_factors(list).into(),
+                None => time_factors.clone(),
+            };
+            let Some(mut sweep) = self.sweep(table, &start, &common, &base) else { continue };
+            self.default_integrator((table, &start), &common, &base, &mut sweep);
+            let loaded = |case: Case| {
+                let mut case = case.for_attached();
+                case.column.points.name_water_points(case.points_per_cell);
+                if let Some(strain) = strain {
+                    case.column.load = load_of(strain, &case);
+                }
+                case
+            };
+            self.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(loaded));
+            planner.reserve(sweep.count().unwrap_or(0));
+            for case in sweep.cases(&base).map(loaded) {
+                planner.put(case, table.tier);
             }
         }
-        for entry in &file.expect_case {
-            if let Some(found) = self.case_expectation(entry, scene, references) {
-                self.case_is_there(entry, &found, planned);
-                of_cases.push(found);
+        base.time_factors = time_factors;
+        for meshes in given {
+            for case in meshes.cases(&base) {
+                planner.put(case, meshes.tier);
             }
         }
-        (of_series, of_cases)
+        let mut planned = planner.into_cases();
+        tell_apart(&mut planned);
+        self.large_for_small_strain(&file, &planned);
+        let height = planned.first().map_or(base.column.height, |planned| planned.case.column.height);
+        let is_common = planned.iter().all(|planned| planned.case.column.height == height);
+        let height = is_common.then_some(height);
+        let subject = Subject { scene, references: &references, planned: &planned, height };
+        let expectations = file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
+        let case_expectations =
+            file.expect_case.iter().filter_map(|table| self.case_expectation(table, &subject)).collect();
+        let timing_repeats = self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000);
+        Study {
+            name: name_of(&self.source.name).to_owned(),
+            title: file.title,
+            summary: file.summary,
+            scene,
+            references,
+            planned,
+            expectations,
+            case_expectations,
+            case_seconds,
+            solvers: std::mem::take(&mut self.solvers),
+            may_start_solvers: false,
+            timing_repeats: timing_repeats.unwrap_or(0),
+            warnings: std::mem::take(&mut self.warnings),
+        }
     }
 
     /// What the tables of the study give its cases.
@@ -270,22 +264,22 @@ impl Checker<'_> {
         let mut given = self.geometry(file, &seed);
         given.extend(self.inputs("points", &file.points.inputs, &seed));
         given.extend(self.inputs("material", &file.material.inputs, &seed));
-        self.units_of_thought(&file.material);
+        self.units_are_si(&file.material.inputs);
         given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
-        if seed.scene.needs_inertia() && file.integrator.typed("formulation").is_none() {
+        if seed.scene.needs_inertia() && file.integrator.inputs.typed("formulation").is_none() {
             let waves = Value::Word(Formulation::VW.name());
             given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
         }
         Common { seed, given }
     }
 
-    fn time_factors(&mut self, list: &Spanned<Vec<Placed<f64>>>) -> Vec<f64> {
-        if list.get_ref().is_empty() {
+    fn time_factors(&mut self, list: &Placed<Vec<Placed<f64>>>) -> Vec<f64> {
+        if list.is_empty() {
             self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
         }
         let mut factors = Vec::new();
-        for typed in list.get_ref() {
-            let factor = *typed.get_ref();
+        for typed in list.iter() {
+            let factor = **typed;
             if factor == 0.0 || (LEAST_TIME_FACTOR..=100.0).contains(&factor) {
                 factors.push(factor + 0.0);
                 continue;
@@ -306,14 +300,13 @@ impl Checker<'_> {
         factors
     }
 
-    /// The references that runs are held against, in the order of the scene, whose own comes first: a list of them is a
-    /// set.
+    /// The references that runs are compared with, in the order of the scene, whose own comes first.
     fn references(&mut self, table: &OutputTable, scene: SceneKind, column: &Column) -> Vec<ReferenceKind> {
         let own = scene.references_of(column);
         let Some(list) = &table.references else { return own.to_vec() };
         let names: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
         let mut references = Vec::new();
-        for typed in list.get_ref() {
+        for typed in list.iter() {
             let Some(index) = self.word(typed, "reference", &names) else { continue };
             let kind = scene.references()[index];
             if references.contains(&kind) {
@@ -324,7 +317,7 @@ impl Checker<'_> {
                 self.complain(
                     typed.span(),
                     format!("the load of `{kind}` acts at once, and this column's grows"),
-                    format!("hold it against \"{}\"", own[0]),
+                    format!("compare it with \"{}\"", own[0]),
                 );
             }
         }
@@ -332,3 +325,6 @@ impl Checker<'_> {
         references
     }
 }
+
+#[cfg(test)]
+mod tests;

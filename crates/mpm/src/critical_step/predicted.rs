@@ -217,8 +217,8 @@ mod tests {
     #[test]
     fn cells_that_press_with_one_rate_step_by_its_limit() {
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
-        let limit = |name: &str, scene: SceneKind, layers: usize| {
-            let points = Arrangement { layers, ..Arrangement::default() };
+        let limit = |name: &str, scene: SceneKind, sets: usize| {
+            let points = Arrangement { sets, ..Arrangement::default() };
             let column = Column { points, load: 2e5, ..Column::default() };
             let law = scene.default_law();
             let soil = Material { law, ..Material::default() };

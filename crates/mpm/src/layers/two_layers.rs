@@ -164,10 +164,10 @@ mod tests {
     fn problem<const D: usize>(scene: SceneKind, method: &str, points: [usize; 2], load: f64) -> Problem<D> {
         let [of_skeleton, of_water] = points;
         let layers = if of_water == 0 { 1 } else { 2 };
-        let arrangement = Arrangement { layers, water_per_cell: of_water, ..Arrangement::default() };
+        let arrangement = Arrangement { sets: layers, water_per_cell: of_water, ..Arrangement::default() };
         let base = if scene.needs_two_dimensions() { Column::layer() } else { Column::default() };
         let width = if scene.needs_two_dimensions() { 1.0 } else { 0.4 };
-        let column = Column { load, points: arrangement, dimensions: D, horizontal_extent: width, ..base };
+        let column = Column { load, points: arrangement, dimensions: D, ..base }.with_extent(width);
         let law = if scene == SceneKind::XieLeo { Law::LogLinear } else { Law::Linear };
         let soil = Material { law, hydraulic_conductivity: 1e-3, ..Material::default() };
         let method = Method::named(method).expect("a known method");

@@ -22,7 +22,7 @@ fn soft() -> Material {
 /// A slab of half width 1 m and of so many rows of cells between plates.
 fn slab(method: &str, soil: &Material, cells: usize, rows: usize) -> Problem<2> {
     let width = rows as f64 / cells as f64;
-    let column = Column { horizontal_extent: width, ..Column::slab() };
+    let column = Column::slab().with_extent(width);
     let method = Method::named(method).expect("a known method");
     column_problem::<2>(SceneKind::Mandel, &column, soil, method, cells, 2).expect("a possible slab")
 }
@@ -79,7 +79,7 @@ fn the_undrained_start_is_skemptons_and_the_plate_is_in_balance() {
         assert_eq!(body.plate.as_ref().map(|plate| plate.nodes.len()), Some(7));
         body.settle_undrained(1, TimeLimit::default()).expect("held");
         assert!(body.unbalanced_force() < 1e-9, "{}", body.unbalanced_force());
-        let parameters = column_parameters(&Column { horizontal_extent: 1.0 / 3.0, ..Column::slab() }, &soil);
+        let parameters = column_parameters(&Column::slab().with_extent(1.0 / 3.0), &soil);
         let exact = Mandel::new(&parameters).expect("possible");
         let settled = exact.settlement(0.0).expect("a time");
         assert!((body.settlement(1.0) / settled - 1.0).abs() < 1e-9);

@@ -95,7 +95,7 @@ mod tests {
             ..Material::default()
         };
         let width = 1.0 / CELLS as f64;
-        let column = Column { load: LOAD, horizontal_extent: width, dimensions: D, ..Column::default() };
+        let column = Column { load: LOAD, dimensions: D, ..Column::default() }.with_extent(width);
         let method = Method::named("TL-GIMP-SRI-patch").expect("a method");
         let problem =
             column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, CELLS, 3).expect("a column");

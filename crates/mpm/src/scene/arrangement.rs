@@ -1,5 +1,5 @@
 //! Where the points lie in their cells: the regular lattice, or one of the arrangements that moving
-//! points come to sooner or later; and in how many layers.
+//! points come to sooner or later; and in how many sets.
 
 use crate::state::points::Points;
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,10 @@ pub struct Arrangement {
     pub jitter: f64,
     /// Share of the top cell that is filled; its points share it.
     pub filling: f64,
-    /// Layers of points: one that carries skeleton and water, or one of each.
+    /// Point sets: 1 carries skeleton and water, 2 are one of each (double-point MPM).
     #[serde(default = "one", skip_serializing_if = "is_one")]
-    pub layers: usize,
-    /// Points of the water a cell and direction, where it has a layer of its own; 0 where it has none.
+    pub sets: usize,
+    /// Points of the water a cell and direction in double-point MPM; 0 otherwise.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub water_per_cell: usize,
 }
@@ -36,31 +36,31 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl Default for Arrangement {
-    /// The regular lattice, every cell full, in one layer.
+    /// The regular lattice, every cell full, in one set.
     fn default() -> Self {
-        Self { offset: 0.0, jitter: 0.0, filling: 1.0, layers: 1, water_per_cell: 0 }
+        Self { offset: 0.0, jitter: 0.0, filling: 1.0, sets: 1, water_per_cell: 0 }
     }
 }
 
 impl Arrangement {
-    /// Whether this is the regular lattice in one layer.
+    /// Whether this is the regular lattice in one set.
     pub fn is_regular(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether every point lies where the regular lattice has it, in however many layers.
+    /// Whether every point lies where the regular lattice has it, in however many sets.
     pub fn is_lattice(&self) -> bool {
-        Self { layers: 1, water_per_cell: 0, ..*self }.is_regular()
+        Self { sets: 1, water_per_cell: 0, ..*self }.is_regular()
     }
 
-    /// Whether the water has a layer of its own.
-    pub fn has_two_layers(&self) -> bool {
-        self.layers == 2
+    /// Whether the water has points of its own: double-point MPM.
+    pub fn has_two_sets(&self) -> bool {
+        self.sets == 2
     }
 
-    /// Names the water's points where nothing else does: as many as the skeleton's, or none in one layer.
+    /// Names the water's points where nothing else does: as many as the skeleton's, or none in one set.
     pub fn name_water_points(&mut self, points_per_cell: usize) {
-        if !self.has_two_layers() {
+        if !self.has_two_sets() {
             self.water_per_cell = 0;
         } else if self.water_per_cell == 0 {
             self.water_per_cell = points_per_cell;

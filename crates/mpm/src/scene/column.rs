@@ -1,40 +1,75 @@
-//! Geometry and load of columns and layers that drain at their top.
+//! Geometry and load of the body of soil that a scene is about.
 
 use crate::scene::arrangement::Arrangement;
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
 use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
 
-/// Geometry and load of a column, or of a layer.
+/// Geometry and load of a column, or of another body that drains at its top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Column {
     /// Initial height `H`, m.
     pub height: f64,
-    /// Horizontal extent, m: the width of a column in two dimensions, the length of a layer. One dimension
-    /// has none.
-    #[serde(rename = "width")]
-    pub horizontal_extent: f64,
+    /// What kind of body it is, with the inputs of that kind.
+    #[serde(flatten)]
+    #[schemars(with = "ShapeKeys")]
+    pub shape: Shape,
     /// Load `q` on the surface, Pa; the amplitude of the initial pressure where there is no load.
     pub load: f64,
     /// Directions that are solved, 1 or 2. Left out of the identity of a case where it is 1: older
     /// records keep theirs.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub dimensions: usize,
-    /// How a layer rests on its base; a column's base has no say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base: Option<Base>,
     /// Time over which the load grows linearly, s; 0 where it acts at once.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub loading_time: f64,
     /// Whether skeleton and water have a weight, under a water level that stands in the surface at the start.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_weight: bool,
     /// Where the points lie in their cells.
     #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
     pub points: Arrangement,
-    /// How a square moves whose motion is chosen.
-    #[serde(default, skip_serializing_if = "MotionParameters::is_none")]
-    pub motion: MotionParameters,
+}
+
+/// A kind of body with its own inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Shape {
+    /// A plane layer.
+    Layer {
+        /// Length, m.
+        length: f64,
+        /// How it rests on its base.
+        base: Base,
+    },
+    /// The unit square in a prescribed motion.
+    Square {
+        /// Amplitudes and frequency of the motion.
+        motion: MotionParameters,
+        /// Amplitude of the prescribed pressure, Pa.
+        pressure: f64,
+    },
+    /// A column, or half of a slab on its side.
+    Column {
+        /// Width in two dimensions, m.
+        width: f64,
+    },
+}
+
+/// The keys of every shape, for the schema.
+#[derive(schemars::JsonSchema)]
+#[expect(dead_code, reason = "only its schema is used")]
+struct ShapeKeys {
+    /// Width of a column in two dimensions, m.
+    width: Option<f64>,
+    /// Length of a layer, m.
+    length: Option<f64>,
+    /// How a layer rests on its base.
+    base: Option<Base>,
+    /// Prescribed motion of a square.
+    motion: Option<MotionParameters>,
+    /// Amplitude of the prescribed pressure of a square, Pa.
+    pressure: Option<f64>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -42,16 +77,11 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_false(value: &bool) -> bool {
-    !*value
-}
-
 fn one() -> usize {
     1
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_one(dimensions: &usize) -> bool {
     *dimensions == 1
 }
@@ -64,14 +94,12 @@ impl Default for Column {
     fn default() -> Self {
         Self {
             height: 1.0,
-            horizontal_extent: 0.1,
+            shape: Shape::Column { width: 0.1 },
             load: 1.0,
             dimensions: 1,
-            base: None,
             loading_time: 0.0,
             self_weight: false,
             points: Arrangement::default(),
-            motion: MotionParameters::default(),
         }
     }
 }
@@ -79,13 +107,44 @@ impl Default for Column {
 impl Column {
     /// The seed layer: as long as it is high, on a rough base.
     pub fn layer() -> Self {
-        Self { horizontal_extent: 1.0, dimensions: 2, base: Some(Base::Rough), ..Self::default() }
+        Self { shape: Shape::Layer { length: 1.0, base: Base::Rough }, dimensions: 2, ..Self::default() }
     }
 
     /// The seed slab, on its side: its half width stands as a column's height, and half the distance of its
     /// plates is the width.
     pub fn slab() -> Self {
         Self { dimensions: 2, ..Self::default() }
+    }
+
+    /// The body with another width or length, m; a square stays as it is.
+    #[must_use]
+    pub fn with_extent(mut self, extent: f64) -> Self {
+        match &mut self.shape {
+            Shape::Column { width: side } | Shape::Layer { length: side, .. } => *side = extent,
+            Shape::Square { .. } => {}
+        }
+        self
+    }
+
+    /// Horizontal extent, m: the width of a column, the length of a layer.
+    pub fn extent(&self) -> f64 {
+        match self.shape {
+            Shape::Column { width: side } | Shape::Layer { length: side, .. } => side,
+            Shape::Square { .. } => 1.0,
+        }
+    }
+
+    /// Pressure, Pa, by which pressures and stresses are measured: the load, or the prescribed pressure of a square.
+    pub fn pressure_scale(&self) -> f64 {
+        match self.shape {
+            Shape::Square { pressure, .. } => pressure,
+            Shape::Column { .. } | Shape::Layer { .. } => self.load,
+        }
+    }
+
+    /// How a layer rests on its base.
+    pub fn base(&self) -> Option<Base> {
+        if let Shape::Layer { base, .. } = self.shape { Some(base) } else { None }
     }
 
     /// Square cells over the width with `cells` over the height; `None` where they do not fill it.
@@ -95,14 +154,14 @@ impl Column {
         if self.dimensions == 1 {
             return Some(1);
         }
-        let across = self.horizontal_extent / self.height * cells as f64;
+        let across = self.extent() / self.height * cells as f64;
         let whole = across.round();
         (whole >= 1.0 && (across - whole).abs() <= WIDTH_TOLERANCE * whole).then_some(whole as usize)
     }
 
     /// Volume of the soil, m^D.
     pub fn volume(&self) -> f64 {
-        if self.dimensions == 1 { self.height } else { self.height * self.horizontal_extent }
+        if self.dimensions == 1 { self.height } else { self.height * self.extent() }
     }
 }
 
@@ -110,9 +169,9 @@ impl Column {
 pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
     ColumnParameters {
         height: column.height,
-        length: column.horizontal_extent,
-        base: column.base.unwrap_or_default(),
-        load: column.load,
+        length: column.extent(),
+        base: column.base().unwrap_or_default(),
+        load: column.pressure_scale(),
         youngs_modulus: soil.youngs_modulus,
         poissons_ratio: soil.poissons_ratio,
         porosity: soil.porosity,
@@ -123,6 +182,9 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         gravity: soil.gravity,
         loading_time: column.loading_time,
         self_weight: column.self_weight,
-        motion: column.motion,
+        motion: match column.shape {
+            Shape::Square { motion, .. } => motion,
+            Shape::Column { .. } | Shape::Layer { .. } => MotionParameters::default(),
+        },
     }
 }

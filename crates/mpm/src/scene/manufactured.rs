@@ -5,7 +5,7 @@
 
 use crate::forcing::{BodyForces, Forcing};
 use crate::formulation::Formulation;
-use crate::scene::column::{Column, column_parameters};
+use crate::scene::column::{Column, Shape, column_parameters};
 use crate::scene::definition::{
     ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
 };
@@ -78,13 +78,8 @@ pub(crate) fn square(motion: Option<Motion>) -> Column {
         Some(Motion::Shear) => [0.25, -0.2, 0.0],
         Some(Motion::Vortex) => [0.0, 0.0, 1.5],
     };
-    Column {
-        horizontal_extent: 1.0,
-        dimensions: 2,
-        load: 0.2,
-        motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: FRAC_PI_2 },
-        ..Column::default()
-    }
+    let motion = MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: FRAC_PI_2 };
+    Column { shape: Shape::Square { motion, pressure: 0.2 }, dimensions: 2, load: 0.0, ..Column::default() }
 }
 
 /// The exact solution, as it acts on a body whose points are known.

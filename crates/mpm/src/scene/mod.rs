@@ -210,11 +210,6 @@ impl SceneKind {
 
     /// Why the scene cannot take a method, where it cannot.
     pub fn refuses_method(self, method: Method) -> Option<&'static str> {
-        if self.is_manufactured() && method.is_attached() {
-            return Some(
-                "somebody else's solver is not told the body forces and the source of a manufactured motion",
-            );
-        }
         if self.is_manufactured() && method.strain.is_bbar() {
             return Some(
                 "B-bar changes the strain of a point by its volume alone, and a manufactured motion is followed by \

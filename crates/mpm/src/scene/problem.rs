@@ -33,8 +33,7 @@ pub enum SceneProblem {
 }
 
 impl SceneProblem {
-    /// The scene's problem in the dimensions of the column, as [`column_problem`] makes it. Without a type parameter: what
-    /// it makes is compiled here and not where it is asked for.
+    /// The scene's problem in the dimensions of the column, as [`column_problem`] makes it.
     ///
     /// # Errors
     /// When the parameters are impossible.
@@ -143,7 +142,7 @@ pub fn column_problem<const D: usize>(
     if let Some(start) = &start {
         initial_gradient[D - 1][D - 1] = start.vertical_gradient;
     }
-    let layer_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
+    let set_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
         let mut points = Points::lattice(cell_size, extent, per_cell);
         column.points.arrange(&mut points, cell_size, cells);
         if let Some(start) = &start {
@@ -154,11 +153,11 @@ pub fn column_problem<const D: usize>(
         }
         Ok(points)
     };
-    let points = layer_of(points_per_cell)?;
+    let points = set_of(points_per_cell)?;
     let of_water = column.points.water_per_cell;
     let water =
-        column.points.has_two_layers().then_some(if of_water == 0 { points_per_cell } else { of_water });
-    let water = water.map(layer_of).transpose()?;
+        column.points.has_two_sets().then_some(if of_water == 0 { points_per_cell } else { of_water });
+    let water = water.map(set_of).transpose()?;
     // A column at rest is there to show what a method leaves unbalanced.
     let is_integrated = column.points.is_lattice() && !method.basis.is_spline();
     let balanced_weight = if column.self_weight && !is_integrated && !scene.is_at_rest() {
@@ -176,13 +175,16 @@ pub fn column_problem<const D: usize>(
     if forcing.is_none() {
         extent[D - 1] += HEADROOM;
     }
-    let support = match column.base {
-        _ if scene.is_manufactured() => Support::closed(),
-        Some(Base::Rough) => Support::oedometer().on_rough_base(),
-        Some(Base::Smooth) | None if scene.has_plates() => Support::oedometer().with_movable_side(),
-        Some(Base::Smooth) | None => Support::oedometer(),
+    let support = if scene.is_manufactured() {
+        Support::closed()
+    } else if column.base() == Some(Base::Rough) {
+        Support::oedometer().on_rough_base()
+    } else if scene.has_plates() {
+        Support::oedometer().with_movable_side()
+    } else {
+        Support::oedometer()
     };
-    let load = column.load.abs();
+    let load = column.pressure_scale().abs();
     let weight = column.self_weight.then_some(soil.gravity);
     Ok(Problem {
         grid: Grid::new(cell_size, extent),
@@ -194,7 +196,7 @@ pub fn column_problem<const D: usize>(
         configuration: method.configuration_or(scene.configuration()),
         load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },
         load_shape: match definition.load {
-            SceneLoad::Cosine => LoadShape::Cosine { length: column.horizontal_extent },
+            SceneLoad::Cosine => LoadShape::Cosine { length: column.extent() },
             SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) | SceneLoad::Plates => {
                 LoadShape::Uniform
             }
@@ -238,7 +240,7 @@ mod tests {
             let (offset, jitter) = ([0.0, 0.3, 0.5, -0.5][number % 4], [0.0, 0.5, 0.3][number % 3]);
             for scene in SceneKind::ALL.into_iter().filter(|scene| !scene.is_manufactured()) {
                 let mut column = Column { height, ..scene.default_column() };
-                column.horizontal_extent = height;
+                column = column.with_extent(height);
                 column.points = Arrangement { offset, jitter, ..Arrangement::default() };
                 let cells = 3 + number % 5;
                 let problem = SceneProblem::of(scene, &column, &soil, method, cells, 2);

@@ -18,8 +18,8 @@ pub(crate) fn moving_column<const D: usize>(
     load: f64,
     soil: &Material,
 ) -> TwoLayers<D> {
-    let points = Arrangement { layers: 2, water_per_cell: of_water, ..Arrangement::default() };
-    let column = Column { load, points, dimensions: D, horizontal_extent: 0.4, ..Column::default() };
+    let points = Arrangement { sets: 2, water_per_cell: of_water, ..Arrangement::default() };
+    let column = Column { load, points, dimensions: D, ..Column::default() }.with_extent(0.4);
     let soil = Material { law: Law::LogLinear, ..*soil };
     let method = Method::named(method).expect("a known method");
     let mut problem =

@@ -343,7 +343,7 @@ fn a_plane_column_at_large_strain_is_the_column() {
 fn domains_that_drift_through_the_base_find_nothing_to_move_there() {
     // Its strain gradient and what carries its points differ, so that the lowest domains part from the base, and reach
     // through it at the sites of a node that nothing holds but a round-off.
-    let column = Column { load: 2e5, dimensions: 2, horizontal_extent: 0.5, ..Column::default() };
+    let column = Column { load: 2e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
     let method = named("GC-SRI-patch");
     let plane = column_problem::<2>(SceneKind::XieLeo, &column, &xie_leo_soil(), method, 4, 2);
     let line = Column { dimensions: 1, ..column };
@@ -358,11 +358,11 @@ fn domains_that_drift_through_the_base_find_nothing_to_move_there() {
 /// The paper's column in the plane, 200 kPa or more, as wide as `extent`, by implicit steps to a time.
 fn loaded_plane(
     method: &str,
-    [load, horizontal_extent, water_bulk_modulus]: [f64; 3],
+    [load, width, water_bulk_modulus]: [f64; 3],
     [cells, points]: [usize; 2],
     time_factor: f64,
 ) -> Outcome {
-    let column = Column { load, dimensions: 2, horizontal_extent, ..Column::default() };
+    let column = Column { load, dimensions: 2, ..Column::default() }.with_extent(width);
     let soil = Material { water_bulk_modulus, ..xie_leo_soil() };
     let plane = column_problem::<2>(SceneKind::XieLeo, &column, &soil, named(method), cells, points);
     let schedule = schedule(&soil, IntegratorKind::Implicit, TimeStepRule::Growth(0.1), &[time_factor]);

@@ -12,7 +12,7 @@ use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::run::results::outcome::RunStatus;
 use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
+use oedometer_mpm::scene::column::{Column, Shape};
 use oedometer_mpm::scene::problem::SceneProblem;
 use oedometer_soil::material::Material;
 
@@ -25,8 +25,11 @@ const SHARE: f64 = 0.8;
 fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> SceneProblem {
     let (scene, column) = match boundary {
         "rough" => (SceneKind::CosineLayer, Column::layer()),
-        "smooth" => (SceneKind::CosineLayer, Column { base: Some(Base::Smooth), ..Column::layer() }),
-        _ => (SceneKind::Mandel, Column { horizontal_extent: 0.5, ..Column::slab() }),
+        "smooth" => (
+            SceneKind::CosineLayer,
+            Column { shape: Shape::Layer { length: 1.0, base: Base::Smooth }, ..Column::layer() },
+        ),
+        _ => (SceneKind::Mandel, Column::slab().with_extent(0.5)),
     };
     let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
     let method = Method::named(method).expect("a known method");

@@ -11,7 +11,7 @@ use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
+use oedometer_mpm::scene::column::{Column, Shape};
 use oedometer_mpm::scene::problem::column_problem;
 use oedometer_mpm::time_limit::TimeLimit;
 use oedometer_soil::material::Material;
@@ -113,7 +113,8 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
 
 /// The seed layer on 6 × 6 cells.
 fn layer(method: &str, base: Base) -> Problem<2> {
-    let (column, soil) = (Column { base: Some(base), ..Column::layer() }, Material::default());
+    let (column, soil) =
+        (Column { shape: Shape::Layer { length: 1.0, base }, ..Column::layer() }, Material::default());
     let method = Method::named(method).expect("a known method");
     column_problem(SceneKind::CosineLayer, &column, &soil, method, 6, PER_CELL).expect("the seed layer")
 }

@@ -1,10 +1,10 @@
 //! `oedometer new solver`: an adapter for somebody else's solver, with its mapping and its study, that run as they are.
 
+use crate::case::solver::{Attached, DIGEST_DIGITS};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
-use crate::study::name::{name_of, refused_name};
+use crate::study::shipped::{name_of, refused_name};
 use clap::ValueEnum;
-use oedometer_mpm::attached_method::{Attached, DIGEST_DIGITS};
 use oedometer_mpm::method::Method;
 use std::fs;
 use std::path::Path;

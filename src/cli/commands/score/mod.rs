@@ -17,8 +17,8 @@ use crate::import::mapping::preset::Preset;
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
+use crate::study::check::Purpose;
 use crate::study::check::Study;
-use crate::study::check::checker::Purpose;
 use oedometer_mpm::scene::SceneKind;
 use std::path::PathBuf;
 

@@ -216,7 +216,7 @@ impl Read {
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
                 None if held.case.scene.has_plane_fields() => vec![column.volume()],
-                None => vec![column.height, column.height * column.horizontal_extent],
+                None => vec![column.height, column.height * column.extent()],
             };
             let whole = Whole {
                 parameters,

@@ -30,7 +30,7 @@ pub fn of(typed: &Typed, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let column = &case.column;
     let body = SolvedBody {
         height: column.height,
-        length: case.scene.has_plane_fields().then_some(column.horizontal_extent),
+        length: case.scene.has_plane_fields().then_some(column.extent()),
         seconds_per_time_factor: case.seconds_per_time_factor(),
     };
     let given = files_of(typed.results)?;

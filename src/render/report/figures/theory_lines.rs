@@ -161,7 +161,9 @@ fn thinned(points: &[(f64, f64)], slot: usize, runs: usize) -> Vec<(f64, f64)> {
 /// Why a constant in each cell is of first order at the points and of second at the centres, with
 /// the numbers.
 fn sampling_note(shown: &[&Record]) -> Option<String> {
-    let record = shown.iter().find(|record| record.case.method.has_constant_recovery())?;
+    let record = shown
+        .iter()
+        .find(|record| record.case.method.own().is_some_and(|method| method.has_constant_recovery()))?;
     let own = record.references.first()?.name.as_str();
     let time_factor = *record.case.time_factors.iter().rfind(|factor| **factor <= 0.2)?;
     let error =

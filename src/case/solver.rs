@@ -1,7 +1,41 @@
-//! Somebody else's solver in the place of a method: its name, and what it is made of.
+//! What solves a case: a method of this program, or an attached solver with its name and digest.
 
+use oedometer_mpm::method::Method;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+
+/// What solves a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(untagged)]
+pub enum Solver {
+    /// A method of this program.
+    Own(Method),
+    /// An external solver, attached by the study.
+    Attached(#[schemars(with = "AttachedText")] Attached),
+}
+
+impl Solver {
+    /// The method, where it is one of this program.
+    pub fn own(&self) -> Option<Method> {
+        if let Self::Own(method) = self { Some(*method) } else { None }
+    }
+}
+
+impl From<Method> for Solver {
+    fn from(method: Method) -> Self {
+        Self::Own(method)
+    }
+}
+
+impl fmt::Display for Solver {
+    /// The name of the method or of the attached solver.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Own(method) => method.fmt(out),
+            Self::Attached(attached) => out.write_str(attached.name()),
+        }
+    }
+}
 
 /// Letters that a name may have.
 pub const LONGEST_NAME: usize = 31;
@@ -9,7 +43,7 @@ pub const LONGEST_NAME: usize = 31;
 pub const DIGEST_DIGITS: usize = 16;
 
 /// The identity of an attached solver: the name that the study gives it, and a digest of its command and of the
-/// adapter's files. A small copyable value, so that a method stays one.
+/// adapter's files. A small copyable value, as a method is.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "AttachedText", into = "AttachedText")]
 pub struct Attached {
@@ -17,7 +51,7 @@ pub struct Attached {
     digest: [u8; DIGEST_DIGITS],
 }
 
-/// The same as text, as records have it.
+/// An identity as text, as records have it.
 #[derive(Clone, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct AttachedText {
     /// Name of the solver in its study.
@@ -26,7 +60,7 @@ pub struct AttachedText {
     pub digest: String,
 }
 
-/// Why a text is no identity of a solver.
+/// Why a text cannot identify a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NameError {
     /// The name is empty or has other letters.
@@ -44,7 +78,7 @@ impl Attached {
     /// A solver by its name and the digest of what it is made of.
     ///
     /// # Errors
-    /// When the name is not plain or too long, or the digest is none.
+    /// When the name is not plain or too long, or the digest is invalid.
     pub fn new(name: &str, digest: &str) -> Result<Self, NameError> {
         let is_inner = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
         if !name.starts_with(|first: char| first.is_ascii_alphabetic()) || !name.chars().all(is_inner) {

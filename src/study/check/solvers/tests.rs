@@ -47,7 +47,7 @@ fn variables_that_no_system_passes_on_are_refused() {
         checked(folder.path(), &text).err().unwrap_or_default()
     };
     for more in ["env = { \"A=B\" = \"1\" }", "env = { \"\" = \"1\" }", "env = { \"A\\u0000\" = \"1\" }"] {
-        assert!(refused(more).contains("is no name of a variable"), "{more}: {}", refused(more));
+        assert!(refused(more).contains("cannot be the name of a variable"), "{more}: {}", refused(more));
     }
     for more in ["env = { A = \"a\\u0000b\" }", "version = [\"sh\", \"\\u0000\"]"] {
         assert!(refused(more).contains("NUL"), "{more}: {}", refused(more));
@@ -99,7 +99,7 @@ fn what_cannot_be_a_solver_is_refused_at_its_place() {
         ("name = \"toy\"", "name = \"toy\"\nrepeats = 0", "`repeats` is 0"),
         ("name = \"toy\"", "name = \"toy\"\ntimeout = -1.0", "`timeout` is -1 s"),
         ("name = \"toy\"", "name = \"toy\"\nsolve_seconds = \"took [0-9]+\"", "no group for the seconds"),
-        ("name = \"toy\"", "name = \"toy\"\nsolve_seconds = \"took ([0-9]+\"", "no regular expression"),
+        ("name = \"toy\"", "name = \"toy\"\nsolve_seconds = \"took ([0-9]+\"", "not a regular expression"),
         ("name = \"toy\"", "name = \"toy\"\nversion = [\"sh\", \"{case}\"]", "has a placeholder, `{case}`"),
     ] {
         let solver = SOLVER.replacen(from, to, 1);
@@ -107,7 +107,11 @@ fn what_cannot_be_a_solver_is_refused_at_its_place() {
         assert!(error.contains(told) && error.contains("s.toml:"), "{to}: {error}");
     }
     let twice = format!("{SOLVER}{SOLVER}");
-    assert!(checked(folder.path(), &text(&twice, BESIDE)).expect_err("twice").contains("two solvers"));
+    assert!(
+        checked(folder.path(), &text(&twice, BESIDE))
+            .expect_err("twice")
+            .contains("the name of another solver")
+    );
     let unknown = checked(folder.path(), &text("", BESIDE)).expect_err("no solver");
     assert!(unknown.contains("no method is called `toy`"), "{unknown}");
     let searched = text(SOLVER, BESIDE).replacen("scene", "task = \"stability\"\nscene", 1);

@@ -1,0 +1,152 @@
+//! What a case cannot be, and why: combinations of inputs that are possible one by one.
+
+use crate::case::{Case, Task};
+use oedometer_mpm::method::{Basis, Configuration, Memory};
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::conductivity_mean::ConductivityMean;
+
+/// Why a case cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The input to blame, by its key.
+    pub key: &'static str,
+    /// A sentence.
+    pub why: &'static str,
+    /// What would be possible.
+    pub help: &'static str,
+}
+
+const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or tie both axes with `path`";
+const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds";
+
+impl Case {
+    /// Every reason why the case cannot be.
+    pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
+        let always = |key, why: Option<&'static str>, help| why.map(|why| Refusal { key, why, help });
+        let when = move |key, is_so: bool, why, help| always(key, is_so.then_some(why), help);
+        let Self { scene, integrator, formulation, settings, column, .. } = self;
+        let is_stability = self.task == Task::Stability;
+        let Some(method) = self.method.own() else {
+            return vec![when(
+                "task",
+                is_stability,
+                "an attached solver has no critical step that could be searched",
+                "name methods of this program alone, or leave `task` out",
+            )]
+            .into_iter()
+            .flatten();
+        };
+        let (points, is_explicit) = (&column.points, *integrator == IntegratorKind::Explicit);
+        let (two, by_limit) = (points.has_two_sets(), matches!(self.time_step, TimeStepRule::Stable(_)));
+        let configuration = method.configuration_or(scene.configuration());
+        let moves = configuration == Configuration::Updated;
+        let has_moving_points = is_explicit && configuration.moves_points() && !two;
+        let has_domains = has_moving_points && method.basis == Basis::Cpgimp;
+        let no_inertia = scene.needs_inertia() && *formulation == Formulation::QuasiStatic;
+        let chord = self.material.conductivity_mean == ConductivityMean::Chord;
+        let off_lattice = points.jitter != 0.0 || points.offset != 0.0;
+        vec![
+            always("time_step", integrator.refuses_rule(self.time_step), OWN_BLOCK),
+            always(
+                "integrator",
+                scene.refuses_integrator(*integrator),
+                "take `integrator = [\"explicit\"]`, or leave the key out",
+            ),
+            always(
+                "formulation",
+                integrator.refuses_formulation(*formulation),
+                "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
+            ),
+            when(
+                "formulation",
+                no_inertia,
+                "the quasi-static formulation leaves out the waves that this scene is about",
+                "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
+            ),
+            when(
+                "affine",
+                settings.affine && !has_moving_points,
+                "APIC needs points that move by explicit steps, in one set: a case of this sweep has none",
+                "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
+            ),
+            when(
+                "affine",
+                settings.affine && has_moving_points && by_limit,
+                "the critical step with APIC is not predicted: no share of it can be taken",
+                NAME_THE_STEP,
+            ),
+            when(
+                "stress_slopes",
+                settings.stress_slopes && !has_domains,
+                "stress slopes need GIMP domains that follow points which move by explicit steps, in one set: a case \
+                 of this sweep has no such domains",
+                "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
+            ),
+            when(
+                "stress_slopes",
+                settings.stress_slopes && has_domains && by_limit,
+                "the critical step with stress slopes is not predicted: no share of it can be taken",
+                NAME_THE_STEP,
+            ),
+            when(
+                "offset",
+                column.self_weight && points.offset != 0.0,
+                "domains shifted off their lattice do not integrate a weight exactly: the column would flow from the \
+                 start",
+                "leave `offset` out, or take `self_weight = false`",
+            ),
+            when(
+                "sets",
+                two && !is_explicit,
+                "double-point MPM is integrated explicitly only",
+                "take the integrator \"explicit\", or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && configuration == Configuration::Total,
+                "shape functions on the initial configuration stay with the skeleton, and a second point set does not",
+                "take a method without the prefix TL-, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && method.memory == Memory::Cells,
+                "cell averages need points that carry both phases, and here are two point sets",
+                "take a method without the suffix -cells, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && moves && !matches!(method.basis, Basis::Cpgimp | Basis::Cpdi),
+                "the domains of water points follow the water where points move, and this basis has none that follow",
+                "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && *scene == SceneKind::Mandel,
+                "a rigid plate is tied to one point set",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && column.self_weight,
+                "the weight of a column needs points that carry both phases",
+                "leave `self_weight` out, or take `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && chord,
+                "the chord mean is taken over points that carry both phases",
+                "take `conductivity_mean = \"points\"`, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && off_lattice,
+                "shifted domains of the water do not end where the soil does",
+                "leave `offset` and `jitter` out, or take `sets = 1`",
+            ),
+        ]
+        .into_iter()
+        .flatten()
+    }
+}

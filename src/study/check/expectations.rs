@@ -1,0 +1,473 @@
+//! Checks of what a study expects: the blocks `[[expect]]` of series, `[[expect_case]]` of single cases, and whether
+//! any case can answer them.
+
+use crate::case::keys::{MOST_CELLS, MOST_POINTS, Value};
+use crate::case::norm::Norm;
+use crate::case::planned::PlannedCase;
+use crate::case::quantity::{Quantity, Sample};
+use crate::case::{Case, Task};
+use crate::study::check::{Checker, Purpose};
+use crate::study::expectation::{
+    Axis, Bounds, CaseDemand, CaseExpectation, ErrorRange, Measure, NEXT_FINER, NO_REFERENCE, Selection,
+    SeriesExpectation,
+};
+use crate::study::file::{ExpectCaseTable, ExpectTable, LevelTable, RangeTable};
+use crate::study::inputs::Inputs;
+use crate::study::reading::{Placed, Typed};
+use oedometer_convergence::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
+use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_mpm::scene::SceneKind;
+use std::ops::Range;
+
+/// Half-width of an order's band where an expectation names none.
+const DEFAULT_BAND: f64 = 0.1;
+/// Values that a complaint lists.
+const MOST_LISTED: usize = 12;
+
+/// What the expectations of a study are checked against.
+#[derive(Clone, Copy)]
+pub(super) struct Subject<'a> {
+    pub(super) scene: SceneKind,
+    /// References that the runs are compared with.
+    pub(super) references: &'a [ReferenceKind],
+    pub(super) planned: &'a [PlannedCase],
+    /// Height of all cases, by which the levels of expectations are sized; none where they have several.
+    pub(super) height: Option<f64>,
+}
+
+impl Checker<'_> {
+    /// What a series must do.
+    pub(super) fn expectation(
+        &mut self,
+        table: &Placed<ExpectTable>,
+        subject: &Subject<'_>,
+    ) -> Option<SeriesExpectation> {
+        let before = self.diagnostics.len();
+        let (sample, norm) = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref())?;
+        let own_word = table.reference.as_deref().map(String::as_str);
+        let own_word = own_word.filter(|word| [NEXT_FINER, NO_REFERENCE].contains(word));
+        let reference = match own_word {
+            Some(_) => None,
+            None => Some(self.expected_reference(table.reference.as_ref(), table.span(), subject)?),
+        };
+        self.own_words_fit(table, subject.scene, sample, own_word);
+        let time_factor = self.time_factor_of(table.time_factor.as_ref(), table.span())?;
+        let selection = self.selection(&table.inputs, subject.scene);
+        let height = self.height_of(&selection, table.span(), subject.height)?;
+        let demand = Demand {
+            order: table.order.as_ref().map(|order| OrderBand {
+                value: order.value,
+                minus: order.minus.unwrap_or(DEFAULT_BAND),
+                plus: order.plus.unwrap_or(DEFAULT_BAND),
+            }),
+            at: table.at.as_ref().and_then(|level| self.error_bound(level, table.axis, height)),
+            class: table.class,
+            floor: table.floor.as_ref().map(|floor| FloorBand {
+                above: floor.above.unwrap_or(0.0),
+                below: floor.below.unwrap_or(f64::MAX),
+            }),
+            spread: table.spread.as_ref().and_then(|level| self.error_bound(level, table.axis, height)),
+            uncertainty_below: table.uncertainty.as_ref().map(|bound| bound.below),
+            oscillation_below: table.oscillation.as_ref().map(|bound| bound.below),
+            xfail: table.xfail.as_ref().map(|known| KnownFailure {
+                strict: known.strict.unwrap_or(true),
+                reason: known.reason.clone(),
+            }),
+        };
+        for problem in demand.problems() {
+            self.complain(table.span(), problem, "see the other expectations of the shipped studies");
+        }
+        self.series_is_there(table, &selection, time_factor, subject.planned);
+        let expectation = SeriesExpectation {
+            selection,
+            measure: Measure {
+                quantity: table.quantity,
+                sample,
+                norm,
+                reference: reference.map_or(own_word.unwrap_or_default(), |kind| kind.name()).to_owned(),
+                time_factor,
+                probe: table.probe.as_deref().copied(),
+            },
+            reference,
+            axis: table.axis,
+            demand,
+            tier: table.tier,
+            line: self.line_of(table),
+        };
+        (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// What single cases must do.
+    pub(super) fn case_expectation(
+        &mut self,
+        table: &Placed<ExpectCaseTable>,
+        subject: &Subject<'_>,
+    ) -> Option<CaseExpectation> {
+        let before = self.diagnostics.len();
+        let names: Vec<&str> = ["ok"].into_iter().chain(FailureKind::NAMES).collect();
+        let status = table
+            .status
+            .as_ref()
+            .and_then(|word| self.word(word, "status", &names).map(|index| names[index].to_owned()));
+        if let Some(range) = table.spurious_velocity.as_ref().filter(|_| !subject.scene.is_at_rest()) {
+            self.complain(
+                range.span(),
+                format!("the soil of the scene `{}` moves by itself", subject.scene.name()),
+                "a spurious velocity is measured in the scene \"at-rest\"",
+            );
+        }
+        let selection = self.selection(&table.inputs, subject.scene);
+        let error = table.error.as_ref().and_then(|range| self.error_range(table, range, subject));
+        let bound = |c: &mut Self, typed: &Typed<f64>, name: &str| {
+            typed.as_ref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
+        };
+        let demand = CaseDemand {
+            status,
+            critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
+            solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
+            water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
+            pore_water: self.bounds(&table.pore_water).map(|bounds| [bounds.above, bounds.below]),
+            water_left_within: bound(self, &table.water_left_within, "water_left_within"),
+            largest_pressure: self.bounds(&table.largest_pressure),
+            one_set_within: bound(self, &table.one_set_within, "one_set_within"),
+            spurious_velocity: self.bounds(&table.spurious_velocity),
+            peak_time_factor: self.bounds(&table.peak_time_factor),
+            peak_pressure: self.bounds(&table.peak_pressure),
+            error,
+        };
+        if demand == CaseDemand::default() && self.diagnostics.len() == before {
+            self.complain(
+                table.span(),
+                "the expectation asks for nothing",
+                "add `status = \"ok\"`, `critical_step_within = 0.02` or `error = { below = 1e-2 }`",
+            );
+        }
+        if let Some(cases) = self.selected(&table.inputs, &selection, "", table.span(), subject.planned)
+            && let Some(error) = &demand.error
+        {
+            let place = table.time_factor.as_ref().map_or(table.span(), Placed::span);
+            self.time_is_kept(&cases, error.measure.time_factor, place);
+        }
+        let line = self.line_of(table);
+        let expectation = CaseExpectation { selection, demand, tier: table.tier, line };
+        (self.diagnostics.len() == before).then_some(expectation)
+    }
+
+    /// Line of a block, for messages.
+    fn line_of<T>(&self, block: &Placed<T>) -> usize {
+        let start = block.span().start.min(self.source.text.len());
+        self.source.text[..start].matches('\n').count() + 1
+    }
+
+    fn time_factor_of(&mut self, typed: Option<&Placed<f64>>, place: Range<usize>) -> Option<f64> {
+        if typed.is_none() {
+            self.complain(place, "the expectation names no time factor", "add `time_factor = 0.1`");
+        }
+        typed.map(|typed| **typed)
+    }
+
+    /// Height by which the levels of an expectation are sized: the one that it names, or that all cases have.
+    fn height_of(&mut self, selection: &Selection, place: Range<usize>, common: Option<f64>) -> Option<f64> {
+        let named = selection.0.iter().find_map(|(key, value)| match value {
+            Value::Number(height) if key.name == "height" => Some(*height),
+            _ => None,
+        });
+        let height = named.or(common);
+        if height.is_none() && self.diagnostics.is_empty() {
+            self.complain(
+                place,
+                "the cases have several heights, and the expectation names none",
+                "add the one that it is about, like `height = 2.0`",
+            );
+        }
+        height
+    }
+
+    /// Complains of keys that do not go with the reference: `probe` and `uncertainty` belong to one number without a
+    /// reference; `at` and `oscillation` to an error.
+    fn own_words_fit(
+        &mut self,
+        table: &Placed<ExpectTable>,
+        scene: SceneKind,
+        sample: Sample,
+        own_word: Option<&str>,
+    ) {
+        let is_value = own_word == Some(NO_REFERENCE);
+        let is_field = table.quantity != Quantity::Settlement;
+        let depth = table.probe.as_deref().copied().unwrap_or(0.5);
+        let [probe, uncertainty, at, oscillation, reference] = [
+            table.probe.as_ref().map(Placed::span),
+            table.uncertainty.as_ref().map(Placed::span),
+            table.at.as_ref().map(Placed::span),
+            table.oscillation.as_ref().map(Placed::span),
+            table.reference.as_ref().map(Placed::span),
+        ];
+        let no_error = |key: &str| format!("without a reference there is no error for `{key}` to bound");
+        let without_probe = table.probe.is_none().then(|| table.span());
+        let is_measured = (table.quantity, sample) == (Quantity::Pressure, Sample::Points);
+        for (place, is_wrong, message, help) in [
+            (
+                reference,
+                own_word == Some(NEXT_FINER) && table.axis != Axis::TimeStep,
+                "the next finer level has other places".to_owned(),
+                "\"next-finer\" is for `axis = \"time_step\"`; a settlement or a `probe` takes \"none\"",
+            ),
+            (
+                probe.clone(),
+                !(depth > 0.0 && depth < 1.0),
+                format!("a probe at a depth of {depth}"),
+                "it lies between 0, the surface, and 1, the base, both excluded",
+            ),
+            (
+                probe,
+                !is_value || !is_field || scene.has_plane_fields(),
+                "a probe is for a field of a column that is compared with no reference".to_owned(),
+                "add `reference = \"none\"`, or leave the key out",
+            ),
+            (
+                uncertainty,
+                !is_value,
+                "an error against a reference needs no uncertainty".to_owned(),
+                "add `reference = \"none\"`, or bound the error itself with `at`",
+            ),
+            (
+                without_probe,
+                is_value && is_field,
+                format!("without a reference the {} is not a single number", table.quantity.name()),
+                if scene.has_plane_fields() {
+                    "ask for the settlement"
+                } else {
+                    "add a depth, like `probe = 0.5`"
+                },
+            ),
+            (at, is_value, no_error("at"), "bound the `uncertainty`, or name a reference"),
+            (
+                oscillation.clone(),
+                is_value,
+                no_error("oscillation"),
+                "bound the `uncertainty`, or name a reference",
+            ),
+            (
+                oscillation,
+                scene.has_plane_fields() && !is_measured,
+                format!("the scene `{}` measures the wiggle of the pressure at the points", scene.name()),
+                "leave `quantity` and `sample` out, or the oscillation",
+            ),
+        ] {
+            if let Some(place) = place.filter(|_| is_wrong) {
+                self.complain(place, message, help);
+            }
+        }
+    }
+
+    /// Which cases an expectation is about.
+    fn selection(&mut self, inputs: &Inputs, scene: SceneKind) -> Selection {
+        let seed = Case::seed(Task::Solve, scene);
+        let values = inputs.0.iter();
+        Selection(
+            values.filter_map(|(key, one)| Some((*key, self.input(key, one, key.name, &seed)?))).collect(),
+        )
+    }
+
+    /// Where a quantity is measured and in which norm: at the points in the mean square, but for the settlement.
+    fn measured(
+        &mut self,
+        quantity: Quantity,
+        sample: Option<&Placed<Sample>>,
+        norm: Option<&Placed<Norm>>,
+    ) -> Option<(Sample, Norm)> {
+        let is_settlement = quantity == Quantity::Settlement;
+        let (usual, subject, help) = if is_settlement {
+            (
+                (Sample::Surface, Norm::Relative),
+                "a settlement",
+                "it is measured at the \"surface\", \"relative\" to the exact one: leave the key out",
+            )
+        } else {
+            (
+                (Sample::Points, Norm::L2),
+                "a field",
+                "it is measured at \"points\", \"centres\" or \"nodes\", in the norm \"l1\", \"l2\" or \"linf\"",
+            )
+        };
+        let before = self.diagnostics.len();
+        if let Some(typed) = sample.filter(|typed| (***typed == Sample::Surface) != is_settlement) {
+            self.complain(typed.span(), format!("{subject} has no `sample = \"{}\"`", typed.name()), help);
+        }
+        if let Some(typed) = norm.filter(|typed| (***typed == Norm::Relative) != is_settlement) {
+            self.complain(typed.span(), format!("{subject} has no `norm = \"{}\"`", typed.name()), help);
+        }
+        let measured = (sample.map_or(usual.0, |typed| **typed), norm.map_or(usual.1, |typed| **typed));
+        (self.diagnostics.len() == before).then_some(measured)
+    }
+
+    /// The reference of an expectation: the one that it names; else the scene's own where the runs are compared with it,
+    /// or the only one that they are compared with.
+    fn expected_reference(
+        &mut self,
+        typed: Option<&Placed<String>>,
+        place: Range<usize>,
+        subject: &Subject<'_>,
+    ) -> Option<ReferenceKind> {
+        let names: Vec<&str> = subject.references.iter().map(|kind| kind.name()).collect();
+        if let Some(word) = typed {
+            return Some(subject.references[self.word(word, "reference", &names)?]);
+        }
+        let own = subject.scene.references().first().filter(|own| subject.references.contains(own));
+        match (own, subject.references) {
+            (Some(own), _) | (None, [own]) => return Some(*own),
+            (None, []) => self.complain(
+                place,
+                "the runs are compared with no reference, and the expectation names none",
+                format!("add `reference = \"{NO_REFERENCE}\"`, or list some in `output.references`"),
+            ),
+            (None, _) => self.complain(
+                place,
+                format!("the runs are compared with {}, and the expectation names none", names.join(" and ")),
+                format!("add `reference = \"{}\"`", names[0]),
+            ),
+        }
+        None
+    }
+
+    /// A bound at a level that is named in the words of its axis.
+    fn error_bound(&mut self, level: &Placed<LevelTable>, axis: Axis, height: f64) -> Option<ErrorBound> {
+        let size = match axis {
+            Axis::Cells => self
+                .count(level.cells.as_ref(), "at.cells", 1..=MOST_CELLS)
+                .map(|cells| height / cells as f64),
+            Axis::PointsPerCell => self
+                .count(level.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
+                .map(|points| 1.0 / points as f64),
+            Axis::TimeStep => level.seconds,
+            Axis::WaterBulkModulus => level.water_bulk_modulus.map(|modulus| 1.0 / modulus),
+        };
+        let (Some(size), Some(below)) = (size, level.below) else {
+            self.complain(
+                level.span(),
+                "the bound names no level of its axis, or no bound",
+                "write like { cells = 10, below = 5.0e-3 }",
+            );
+            return None;
+        };
+        Some(ErrorBound { size, below, above: level.above.unwrap_or(0.0) })
+    }
+
+    /// Bounds on one error of a case.
+    fn error_range(
+        &mut self,
+        table: &Placed<ExpectCaseTable>,
+        range: &Placed<RangeTable>,
+        subject: &Subject<'_>,
+    ) -> Option<ErrorRange> {
+        let (sample, norm) = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref())?;
+        let reference = self.expected_reference(table.reference.as_ref(), range.span(), subject)?;
+        let time_factor = self.time_factor_of(table.time_factor.as_ref(), range.span())?;
+        let Bounds { above, below } = self.bounds(&table.error)?;
+        let reference = reference.name().to_owned();
+        let measure = Measure { quantity: table.quantity, sample, norm, reference, time_factor, probe: None };
+        Some(ErrorRange { measure, below, above })
+    }
+
+    /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A complaint where no
+    /// value lies between them.
+    fn bounds(&mut self, range: &Typed<RangeTable>) -> Option<Bounds> {
+        let range = range.as_ref()?;
+        let bounds = Bounds { above: range.above.unwrap_or(0.0), below: range.below.unwrap_or(f64::MAX) };
+        let has_values = bounds.above < bounds.below;
+        if !has_values {
+            self.complain(
+                range.span(),
+                format!("no value is at least {} and below {}", bounds.above, bounds.below),
+                "`above`, 0 where it is left out, must be smaller than `below`",
+            );
+        }
+        Some(bounds)
+    }
+
+    /// Complains where no case of the study can answer an expectation of series.
+    fn series_is_there(
+        &mut self,
+        table: &Placed<ExpectTable>,
+        selection: &Selection,
+        time_factor: f64,
+        planned: &[PlannedCase],
+    ) {
+        let axis = table.axis.name();
+        let Some(cases) = self.selected(&table.inputs, selection, axis, table.span(), planned) else {
+            return;
+        };
+        let place = table.time_factor.as_ref().map_or(table.span(), Placed::span);
+        self.time_is_kept(&cases, time_factor, place);
+        let wanted = table.at.as_ref().and_then(|level| level.cells.as_ref());
+        let Some(wanted) = wanted.filter(|_| table.axis == Axis::Cells) else { return };
+        if !cases.iter().any(|case| i64::try_from(case.cells) == Ok(**wanted)) {
+            let levels = listed(cases.iter().map(|case| case.cells.to_string()));
+            let message = format!("no case that the expectation names has {} cells", **wanted);
+            self.complain(wanted.span(), message, format!("they have {levels}"));
+        }
+    }
+
+    /// The cases that a selection names along an axis; a complaint at the first key that leaves none. Nothing where
+    /// there are complaints already: they may be why.
+    fn selected<'a>(
+        &mut self,
+        inputs: &Inputs,
+        selection: &Selection,
+        axis: &str,
+        place: Range<usize>,
+        planned: &'a [PlannedCase],
+    ) -> Option<Vec<&'a Case>> {
+        if !self.diagnostics.is_empty() || self.purpose != Purpose::Solving {
+            return None;
+        }
+        let mut cases: Vec<&Case> = planned.iter().map(|planned| &planned.case).collect();
+        for (key, value) in selection.0.iter().filter(|(key, _)| key.name != axis) {
+            let before = cases.clone();
+            cases.retain(|case| key.get(case) == *value);
+            if cases.is_empty() {
+                let others = listed(before.iter().map(|case| key.get(case).to_string()));
+                let with =
+                    if selection.0.len() > 1 { " with the others that the expectation names" } else { "" };
+                self.complain(
+                    inputs.span(key.name).unwrap_or(place),
+                    format!("no case of the study has `{} = {value}`{with}", key.name),
+                    format!("the cases have {others}"),
+                );
+                return None;
+            }
+        }
+        Some(cases)
+    }
+
+    /// Complains where none of the cases keeps its state at a time factor.
+    fn time_is_kept(&mut self, cases: &[&Case], time_factor: f64, place: Range<usize>) {
+        let is_kept = |case: &&Case| case.task == Task::Stability || case.time_factors.contains(&time_factor);
+        if !cases.iter().any(is_kept) {
+            let factors =
+                listed(cases.iter().flat_map(|case| case.time_factors.iter()).map(ToString::to_string));
+            self.complain(
+                place,
+                format!("no case keeps its state at T_v = {time_factor}"),
+                format!("the outputs are at {factors}: name one of them, or add it to `output.time_factors`"),
+            );
+        }
+    }
+}
+
+/// Words in the order in which they come, each once.
+fn listed(words: impl Iterator<Item = String>) -> String {
+    let mut once: Vec<String> = Vec::new();
+    for word in words {
+        if once.contains(&word) {
+            continue;
+        }
+        if once.len() == MOST_LISTED {
+            once.push("…".to_owned());
+            break;
+        }
+        once.push(word);
+    }
+    once.join(", ")
+}

@@ -1,0 +1,360 @@
+//! Checks of attached solvers and of results that they have left: names, commands, placeholders, files; and the digest
+//! that identifies them.
+
+use crate::case::Case;
+use crate::case::keys::MOST_CELLS;
+use crate::case::solver::{Attached, DIGEST_DIGITS, Solver};
+use crate::case::tier::Tier;
+use crate::study::check::Checker;
+use crate::study::diagnostic::one_of;
+use crate::study::file::{ResultTable, SolverTable, StudyFile};
+use crate::study::reading::Placed;
+use crate::study::solver::{ExternalSolver, PLACEHOLDERS, PRESETS, file_beside, placeholders_of};
+use oedometer_formats::input_file;
+use oedometer_mpm::method::Method;
+use std::path::{Path, PathBuf};
+
+/// Most timed runs of a case.
+const MOST_REPEATS: i64 = 100;
+/// Most runs of a solver at the same time.
+const MOST_AT_ONCE: i64 = 1024;
+/// Longest pattern of a time, letters.
+const LONGEST_PATTERN: usize = 500;
+/// What stands for the mesh in the names of files.
+const MESH: &str = "cells";
+
+/// The meshes of a result that is there.
+pub(super) struct GivenMeshes {
+    method: Solver,
+    cells: Vec<usize>,
+    /// Smallest tier that includes it.
+    pub(super) tier: Tier,
+}
+
+impl GivenMeshes {
+    /// A case a mesh.
+    pub(super) fn cases(&self, base: &Case) -> Vec<Case> {
+        let of_mesh =
+            |cells: &usize| Case { method: self.method, cells: *cells, ..base.clone() }.for_attached();
+        self.cells.iter().map(of_mesh).collect()
+    }
+}
+
+impl Checker<'_> {
+    /// The solvers that a study attaches.
+    pub(super) fn attach_solvers(&mut self, file: &StudyFile, case_seconds: f64) {
+        for table in &file.solver {
+            if self.name_is_free(&table.name, "solver") {
+                let solver = self.solver(table, case_seconds);
+                self.solvers.extend(solver);
+            }
+        }
+    }
+
+    /// The results of a study, whose names join those of its solvers.
+    pub(super) fn attach_results(&mut self, file: &StudyFile) -> Vec<GivenMeshes> {
+        let mut all = Vec::new();
+        for table in &file.result {
+            if self.name_is_free(&table.name, "result") {
+                all.extend(self.given_result(table));
+            }
+        }
+        all
+    }
+
+    fn name_is_free(&mut self, name: &Placed<String>, what: &str) -> bool {
+        let taken = if Method::named(name).is_some() {
+            "a method of this program"
+        } else if self.solvers.iter().any(|solver| solver.name() == name.as_str()) {
+            "the name of another solver or result"
+        } else {
+            return true;
+        };
+        let message = format!("`{}` is {taken}", **name);
+        self.complain(name.span(), message, format!("give the {what} another name"));
+        false
+    }
+
+    /// The identity of a solver or result by its name and digest.
+    fn identity(&mut self, name: &Placed<String>, what: &str, digest: &str) -> Option<Attached> {
+        Attached::new(name, digest)
+            .map_err(|why| {
+                let message = format!("a {what} cannot be called `{}`", **name);
+                self.complain(name.span(), message, why.to_string());
+            })
+            .ok()
+    }
+
+    fn solver(&mut self, table: &SolverTable, case_seconds: f64) -> Option<ExternalSolver> {
+        let before = self.diagnostics.len();
+        let command = words_of(&table.command);
+        if command.is_empty() {
+            let help = "write the program and its arguments, like [\"python3\", \"adapter.py\", \"{case}\", \"{out}\"]";
+            self.complain(table.command.span(), "the command is empty", help);
+        }
+        self.words_can_be_passed_on(table);
+        self.result_is_fresh(&table.result);
+        for word in table.version.iter().flat_map(|list| &***list) {
+            if let Some(name) = placeholders_of(word).next() {
+                let message = format!("the command for the version has a placeholder, `{{{name}}}`");
+                self.complain(word.span(), message, "it is called without a case: write it as it stands");
+            }
+        }
+        let preset = self.preset_of(table.preset.as_ref());
+        let folder = folder_of(&self.source.name);
+        let mapping = self.file_of_study(table.mapping.as_ref(), &folder);
+        for file in table.files.iter().flat_map(|list| &***list) {
+            self.file_of_study(Some(file), &folder);
+        }
+        self.pattern_has_a_group(table);
+        let repeats = self.count(table.repeats.as_ref(), "repeats", 1..=MOST_REPEATS).unwrap_or(1);
+        let at_once = self.count(table.at_once.as_ref(), "at_once", 1..=MOST_AT_ONCE).unwrap_or(1);
+        let timeout = self.positive(table.timeout.as_ref(), "timeout", "s", case_seconds);
+        let attached = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
+        (self.diagnostics.len() == before).then(|| ExternalSolver {
+            attached,
+            folder,
+            command,
+            result: table.result.to_string(),
+            files: Vec::new(),
+            time_step: None,
+            mapping,
+            preset,
+            version: table.version.as_ref().map_or(Vec::new(), |list| words_of(list)),
+            timeout,
+            repeats,
+            warm_up: table.warm_up.unwrap_or(repeats > 1),
+            at_once,
+            environment: pairs_of(table),
+            solve_seconds: table.solve_seconds.as_deref().cloned(),
+        })
+    }
+
+    fn given_result(&mut self, table: &ResultTable) -> Option<GivenMeshes> {
+        let before = self.diagnostics.len();
+        let cells: Vec<usize> =
+            table.cells.iter().filter_map(|typed| self.count(Some(typed), "cells", 1..=MOST_CELLS)).collect();
+        let files = words_of(&table.files);
+        for typed in table.files.iter() {
+            if let Some(other) = placeholders_of(typed).find(|name| *name != MESH) {
+                let message = format!("`{{{other}}}` stands for nothing in the files of a result");
+                self.complain(typed.span(), message, "`{cells}` stands for the cells over the height");
+            }
+        }
+        let names_mesh = files.iter().any(|file| placeholders_of(file).any(|name| name == MESH));
+        for (place, is_wrong, message, help) in [
+            (
+                table.cells.span(),
+                table.cells.is_empty(),
+                "no mesh".to_owned(),
+                "name the cells over the height of each, like [10, 20]",
+            ),
+            (
+                table.files.span(),
+                files.is_empty(),
+                "no file".to_owned(),
+                "name the files of one mesh, like [\"ogs-{cells}/col.pvd\"]",
+            ),
+            (
+                table.files.span(),
+                cells.len() > 1 && !names_mesh,
+                format!("{} meshes have the same files", cells.len()),
+                "write `{cells}` where their names differ, or one [[result]] a mesh",
+            ),
+        ] {
+            if is_wrong {
+                self.complain(place, message, help);
+            }
+        }
+        let time_step =
+            table.time_step.as_ref().map(|typed| self.positive(Some(typed), "time_step", "s", 1.0));
+        let preset = self.preset_of(table.preset.as_ref());
+        let folder = folder_of(&self.source.name);
+        let mapping = self.file_of_study(table.mapping.as_ref(), &folder);
+        let digest = digest_of_result(table, &files, &cells, &folder);
+        let attached = self.identity(&table.name, "result", &digest)?;
+        if self.diagnostics.len() > before {
+            return None;
+        }
+        self.solvers.push(ExternalSolver {
+            attached,
+            folder,
+            command: Vec::new(),
+            result: String::new(),
+            files,
+            time_step,
+            mapping,
+            preset,
+            version: Vec::new(),
+            timeout: 0.0,
+            repeats: 1,
+            warm_up: false,
+            at_once: 1,
+            environment: Vec::new(),
+            solve_seconds: None,
+        });
+        Some(GivenMeshes { method: Solver::Attached(attached), cells, tier: table.tier })
+    }
+
+    /// No system passes on a zero letter, nor a variable's name with `=` in it: it would set another variable.
+    fn words_can_be_passed_on(&mut self, table: &SolverTable) {
+        let known = PLACEHOLDERS.map(|(name, _)| name);
+        for text in table.command.iter().chain([&table.result]).chain(table.env.values()) {
+            for name in placeholders_of(text).filter(|name| !known.contains(name)) {
+                let message = format!("no placeholder is called `{{{name}}}`");
+                self.complain(text.span(), message, one_of(name, &known));
+            }
+        }
+        let version = table.version.iter().flat_map(|list| &***list);
+        for word in table.command.iter().chain(version).chain(table.env.values()) {
+            if word.contains('\0') {
+                let message = "it contains the letter NUL, which cannot be passed to a program";
+                self.complain(word.span(), message, "leave it out");
+            }
+        }
+        for (name, value) in &table.env {
+            if name.is_empty() || name.contains(['=', '\0']) {
+                let message = format!("`{}` cannot be the name of a variable", name.escape_debug());
+                let help = "write the name and the value apart, like env = { OMP_NUM_THREADS = \"1\" }";
+                self.complain(value.span(), message, help);
+            }
+        }
+    }
+
+    /// A result elsewhere than in the fresh folder could be that of an earlier run.
+    fn result_is_fresh(&mut self, result: &Placed<String>) {
+        let below = result.strip_prefix("{out}/");
+        let is_below = below.is_some_and(|rest| !rest.is_empty() && rest.split('/').all(|part| part != ".."));
+        if !is_below {
+            self.complain(
+                result.span(),
+                "the result does not lie below `{out}`, where it is fresh",
+                "write it like \"{out}/result.csv\", and have the adapter write it there",
+            );
+        }
+    }
+
+    /// A program whose files are known.
+    fn preset_of(&mut self, typed: Option<&Placed<String>>) -> Option<String> {
+        let index = self.word(typed?, "preset", &PRESETS)?;
+        Some(PRESETS[index].to_owned())
+    }
+
+    /// The name of a file of the adapter, which must be there.
+    fn file_of_study(&mut self, typed: Option<&Placed<String>>, folder: &Path) -> Option<String> {
+        let typed = typed?;
+        let path = folder.join(typed.as_str());
+        if !path.is_file() {
+            let help = "name a file by its path from the folder of the study";
+            self.complain(typed.span(), format!("there is no file {}", path.display()), help);
+        }
+        Some(typed.to_string())
+    }
+
+    fn pattern_has_a_group(&mut self, table: &SolverTable) {
+        let Some(typed) = &table.solve_seconds else { return };
+        let example = "like \"It took ([0-9.e+-]+) s\"";
+        let (message, help) = match regex_lite::Regex::new(typed) {
+            _ if typed.len() > LONGEST_PATTERN => (
+                format!("the pattern has more than {LONGEST_PATTERN} letters"),
+                format!("write a short one, {example}"),
+            ),
+            Err(error) => (format!("this is not a regular expression: {error}"), example.to_owned()),
+            Ok(regex) if regex.captures_len() < 2 => (
+                "the pattern has no group for the seconds".to_owned(),
+                format!("put the number into parentheses, {example}"),
+            ),
+            Ok(_) => return,
+        };
+        self.complain(typed.span(), message, help);
+    }
+}
+
+fn words_of(list: &[Placed<String>]) -> Vec<String> {
+    list.iter().map(|word| word.to_string()).collect()
+}
+
+fn pairs_of(table: &SolverTable) -> Vec<(String, String)> {
+    table.env.iter().map(|(name, value)| (name.clone(), value.to_string())).collect()
+}
+
+/// Folder of a study file; of a text without a file, the present one.
+fn folder_of(study: &str) -> PathBuf {
+    let folder = Path::new(study).parent().unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())
+}
+
+/// Gathers what decides a result beside the case.
+#[derive(Default)]
+struct Digest(blake3::Hasher);
+
+impl Digest {
+    fn take(&mut self, kind: &str, text: &str) {
+        self.0.update(format!("{kind} {}\n{text}\n", text.len()).as_bytes());
+    }
+
+    fn finish(&self) -> String {
+        self.0.finalize().to_hex()[..DIGEST_DIGITS].to_owned()
+    }
+}
+
+/// Digest of what decides the result of a solver beside the case: its command and environment as typed, how the
+/// result is read, and the contents of the adapter's files. Neither where it stands nor how long it may take.
+fn digest_of_solver(table: &SolverTable, folder: &Path) -> String {
+    let mut digest = Digest::default();
+    for word in table.command.iter() {
+        digest.take("word", word);
+    }
+    for (name, value) in pairs_of(table) {
+        digest.take("variable", &name);
+        digest.take("value", &value);
+    }
+    digest.take("result", &table.result);
+    if let Some(preset) = &table.preset {
+        digest.take("preset", preset);
+    }
+    let files = table.files.iter().flat_map(|list| &***list);
+    for word in table.command.iter().chain(files).chain(&table.mapping) {
+        if let Some(path) = file_beside(folder, word) {
+            digest.take("file", &digest_of_file(&path));
+        }
+    }
+    digest.finish()
+}
+
+/// Digest of what the result of a mesh is made of: how it is read, and what its files hold now. A file that changes
+/// makes other cases, so that no record of it is taken as theirs.
+fn digest_of_result(table: &ResultTable, files: &[String], cells: &[usize], folder: &Path) -> String {
+    let mut digest = Digest::default();
+    for file in files {
+        digest.take("name", file);
+        for cells in cells {
+            // What a pattern or a collection names is in the digest of the record.
+            let path = folder.join(file.replace("{cells}", &cells.to_string()));
+            if path.is_file() {
+                digest.take("file", &digest_of_file(&path));
+            }
+        }
+    }
+    if let Some(typed) = &table.mapping {
+        digest.take("mapping", &digest_of_file(&folder.join(typed.as_str())));
+    }
+    if let Some(typed) = &table.preset {
+        digest.take("preset", typed);
+    }
+    if let Some(typed) = &table.time_step {
+        digest.take("time step", &format!("{:e}", **typed));
+    }
+    digest.finish()
+}
+
+/// Digest of the content of a file; of one that cannot be read, a word.
+pub(crate) fn digest_of_file(path: &Path) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let read = input_file::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+    read.map_or_else(|_| "unreadable".to_owned(), |()| hasher.finalize().to_hex().to_string())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,247 @@
+//! Checks of the blocks `[[sweep]]`: their axes, the cases they multiply out to, the integrator and labels of these.
+
+use crate::case::keys::{Key, Value};
+use crate::case::planned::PlannedCase;
+use crate::case::work_estimate::estimated_seconds;
+use crate::case::{Case, Task};
+use crate::study::check::{Checker, Common, Purpose};
+use crate::study::diagnostic::Diagnostic;
+use crate::study::file::{StudyFile, SweepTable};
+use crate::study::inputs::{One, TypedInput};
+use crate::study::reading::Placed;
+use crate::study::sweep::{Sweep, SweptKey};
+use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_soil::wording::duration;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hasher};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Cases that a study may have, counted as its sweeps multiply out: as many as fit in memory and are still meant.
+const MOST_CASES: usize = 1_000_000;
+/// Memory that a case may ask for, bytes: a workstation's.
+const MOST_BYTES: f64 = 32e9;
+/// Estimated seconds of a case, on the machine of the constants, beyond which the explicit integrator is not chosen by
+/// default. Every shipped study whose sweeps name no integrator stays below it.
+const LONGEST_BY_DEFAULT: f64 = 120.0;
+
+impl Checker<'_> {
+    /// A block of cases, its axes checked one by one.
+    pub(super) fn sweep(
+        &mut self,
+        table: &SweepTable,
+        start: &Range<usize>,
+        common: &Common,
+        base: &Case,
+    ) -> Option<Sweep> {
+        let before = self.diagnostics.len();
+        for (name, example) in [("method", "[\"GC-SRI-patch\"]"), ("cells", "[5, 10, 20]")] {
+            if table.inputs.typed(name).is_none() {
+                let message = format!("the sweep names no {name}");
+                self.complain(start.clone(), message, format!("add `{name} = {example}`"));
+            }
+        }
+        let mut keys = Vec::new();
+        for key in Key::of("sweep") {
+            if let Some(typed) = table.inputs.typed(key.name) {
+                self.is_filled(key.name, typed.span(), table.inputs.list(key.name).len());
+                let one = |one: &One| self.input(key, one, key.name, &common.seed);
+                let values = table.inputs.list(key.name).iter().filter_map(one).collect();
+                keys.push(SweptKey { key, values });
+            } else if let Some((_, value)) = common.given.iter().find(|(given, _)| *given == key) {
+                // The study's own values stand with what is swept: an integrator would bring its own formulation.
+                keys.push(SweptKey { key, values: vec![*value] });
+            }
+        }
+        self.swept_geometry(&table.inputs, base.scene);
+        let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
+        let mut path = Vec::new();
+        if let Some(typed) = &table.path {
+            self.is_filled("path", typed.span(), typed.len());
+            path.extend(
+                typed.iter().filter_map(|word| Some(names[self.word(word, "axis", &names)?].to_owned())),
+            );
+        }
+        let sweep = Sweep { keys, path };
+        if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
+            self.complain(
+                path.span(),
+                format!("the path ties `{key}` with {own} values to an axis with {first}"),
+                "give the axes of a path lists of one length",
+            );
+        }
+        let is_sound = self.diagnostics.len() == before && self.can_be_multiplied_out(start, &sweep);
+        is_sound.then_some(sweep)
+    }
+
+    fn is_filled(&mut self, name: &str, place: Range<usize>, length: usize) {
+        if length == 0 {
+            let help = "give at least one value, or leave the key out";
+            self.complain(place, format!("`{name}` is empty"), help);
+        }
+    }
+
+    /// Whether the sweeps so far have no more cases than a study may; a complaint where they do, before any is made.
+    fn can_be_multiplied_out(&mut self, start: &Range<usize>, sweep: &Sweep) -> bool {
+        let count = sweep.count();
+        let so_far = self.multiplied_out;
+        self.multiplied_out = count.map_or(usize::MAX, |count| so_far.saturating_add(count));
+        if self.multiplied_out <= MOST_CASES {
+            return true;
+        }
+        let others =
+            if so_far > 0 { format!(", with {so_far} of the sweeps before it") } else { String::new() };
+        let count =
+            count.map_or("more cases than can be counted".to_owned(), |count| format!("{count} cases"));
+        self.complain(
+            start.clone(),
+            format!("the sweep multiplies out to {count}{others}"),
+            format!(
+                "a study has at most {MOST_CASES}: shorten its lists, tie axes with `path`, or split it into several"
+            ),
+        );
+        false
+    }
+
+    /// Complains of cases that cannot be, of each reason once: where the input stands that is to blame.
+    pub(super) fn cases_are_possible(
+        &mut self,
+        file: &StudyFile,
+        (table, start): (&SweepTable, &Range<usize>),
+        cases: impl Iterator<Item = Case>,
+    ) {
+        let place = |key: &str| {
+            let of_study = [&file.points.inputs, &file.integrator.inputs, &file.material.inputs];
+            let of_study = || of_study.iter().find_map(|inputs| inputs.span(key));
+            table.inputs.span(key).or_else(of_study)
+        };
+        let is_solved = self.purpose == Purpose::Solving;
+        let mut refused: Vec<&str> = Vec::new();
+        let mut gaps: HashMap<usize, String> = HashMap::new();
+        let (mut has_water_points, mut has_end) = (false, true);
+        let mut largest: Option<Case> = None;
+        for case in cases {
+            has_water_points |= case.column.points.has_two_sets();
+            for refusal in case.refusals() {
+                if !refused.contains(&refusal.why) {
+                    refused.push(refusal.why);
+                    self.complain(place(refusal.key).unwrap_or(start.clone()), refusal.why, refusal.help);
+                }
+            }
+            if is_solved && has_end && self.diagnostics.is_empty() {
+                has_end = !self.has_no_end(start, &case);
+            }
+            if !is_solved || case.is_attached() {
+                continue;
+            }
+            if case.column.cells_across(case.cells).is_none() {
+                gaps.entry(case.cells).or_insert_with(|| gap_of(&case));
+            }
+            if largest.as_ref().is_none_or(|other| other.estimated_bytes() < case.estimated_bytes()) {
+                largest = Some(case);
+            }
+        }
+        for typed in table.inputs.list("cells") {
+            let TypedInput::Count(cells) = **typed else { continue };
+            if let Some(gap) = usize::try_from(cells).ok().and_then(|cells| gaps.get(&cells)) {
+                let help = "take a number of cells that divides both sides into squares, or change a side";
+                self.complain(typed.span(), gap.as_str(), help);
+            }
+        }
+        let bytes = largest.as_ref().map_or(0.0, Case::estimated_bytes);
+        if let Some(case) = largest.filter(|_| bytes > MOST_BYTES) {
+            self.complain(
+                place("cells").unwrap_or(start.clone()),
+                format!(
+                    "{} cells over the height with {} points a cell need about {:.0} GB of memory",
+                    case.cells,
+                    case.points_per_cell,
+                    1e-9 * bytes
+                ),
+                format!("take fewer: {:.0} GB is the most", 1e-9 * MOST_BYTES),
+            );
+        }
+        if let Some(place) = place("water_per_cell").filter(|_| !has_water_points) {
+            self.complain(
+                place,
+                "`water_per_cell` needs two point sets, and every case has one set for both phases",
+                "add `sets = 2`, or leave `water_per_cell` out",
+            );
+        }
+    }
+
+    /// Takes the implicit integrator for a sweep that names none, where the explicit one would take minutes and
+    /// nothing in the study asks for it. All cases of the sweep change, so that a series stays of one kind.
+    pub(super) fn default_integrator(
+        &mut self,
+        (table, start): (&SweepTable, &Range<usize>),
+        common: &Common,
+        base: &Case,
+        sweep: &mut Sweep,
+    ) {
+        // Who says how steps are taken has chosen.
+        let is_chosen =
+            Key::of("sweep").filter(|key| key.is_of_integrator() || key.name == "time_step").any(|key| {
+                table.inputs.typed(key.name).is_some()
+                    || common.given.iter().any(|(given, _)| given.name == key.name)
+            });
+        let Case { task, scene, .. } = *base;
+        let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.has_waves());
+        let Some(key) = key.filter(|_| !is_chosen && self.purpose == Purpose::Solving) else { return };
+        let slowest =
+            |sweep: &Sweep| sweep.cases(base).map(|case| estimated_seconds(&case)).fold(0.0, f64::max);
+        let explicit = slowest(sweep);
+        if explicit < LONGEST_BY_DEFAULT {
+            return;
+        }
+        let place = sweep.keys.iter().position(|swept| swept.key.name != "method").unwrap_or(0);
+        let implicit = IntegratorKind::Implicit.name();
+        sweep.keys.insert(place, SweptKey { key, values: vec![Value::Word(implicit)] });
+        self.warn(&Diagnostic::at(
+            start.clone(),
+            format!(
+                "the sweep names no integrator, and `explicit` would take {} for its longest case: `{implicit}` is \
+                 taken, {}",
+                duration(explicit),
+                duration(slowest(sweep)),
+            ),
+            format!(
+                "write `integrator = [\"{implicit}\"]` to say so, or `integrator = [\"explicit\"]` to have it all the same"
+            ),
+        ));
+    }
+}
+
+/// What is said of cells that do not fill the width.
+fn gap_of(case: &Case) -> String {
+    let (column, size) = (&case.column, case.column.height / case.cells as f64);
+    let side = if case.scene.is_a_layer() { "length" } else { "width" };
+    format!("square cells of {size} m do not fill a {side} of {} m", column.extent())
+}
+
+/// Makes every case name the inputs that only tell some of them apart by their hashes. Golden values, tables and
+/// `explain` know a case by its label.
+pub(super) fn tell_apart(planned: &mut [PlannedCase]) {
+    // By the hash of its label: two labels with one hash make a name longer and no case another.
+    let mut first_with: HashMap<u64, usize> = HashMap::new();
+    let mut alike_so_far: Vec<&Key> = Key::of("sweep").collect();
+    for (place, PlannedCase { case, .. }) in planned.iter().enumerate() {
+        let mut hasher = DefaultHasher::new();
+        hasher.write(case.label().as_bytes());
+        let first = *first_with.entry(hasher.finish()).or_insert(place);
+        if first != place {
+            alike_so_far.retain(|key| key.get(&planned[first].case) == key.get(case));
+        }
+    }
+    let differ = Key::of("sweep").filter(|key| !alike_so_far.contains(key));
+    let names: Arc<[&'static str]> = differ.map(|key| key.name).collect();
+    for planned in planned {
+        planned.case.swept = Arc::clone(&names);
+    }
+}
+
+/// The place of the first letter of a block.
+pub(super) fn start_of<T>(block: &Placed<T>) -> Range<usize> {
+    let start = block.span().start;
+    start..start + 1
+}

@@ -1,0 +1,255 @@
+//! Tests of the checks of a study, on texts.
+
+mod point_sets {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn checked(scene: &str, method: &str, more: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"{scene}\"\ncolumn.load = 1e3\n[[sweep]]\nmethod = [{method}]\ncells = [4]\n{more}\n"
+        );
+        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_does_not_go_with_two_point_sets_is_refused_with_a_sentence() {
+        let two = "sets = [2]";
+        for (method, more, why) in [
+            ("\"GIMP\"", "sets = [2]\nintegrator = [\"implicit\"]", "integrated explicitly only"),
+            ("\"TL-GIMP\"", two, "stay with the skeleton"),
+            ("\"GIMP-SRI-patch-cells\"", two, "cell averages need points that carry both phases"),
+            ("\"MPM\"", two, "this basis has none that follow"),
+            ("\"uGIMP\"", two, "this basis has none that follow"),
+            (
+                "\"GIMP\"",
+                "sets = [2]\nconductivity_mean = [\"chord\"]",
+                "the chord mean is taken over points",
+            ),
+            ("\"GIMP\"", "sets = [2]\noffset = [0.25]", "do not end where the soil does"),
+            ("\"GIMP\"", "sets = [2]\njitter = [0.25]", "do not end where the soil does"),
+            ("\"GIMP\"", "water_per_cell = [3]", "every case has one set for both phases"),
+            ("\"GIMP\"", "sets = [3]", "`sets` is 3"),
+        ] {
+            let error = checked("xie-leo", method, more).expect_err(why);
+            assert!(error.contains(why) && error.contains("--> t.toml:"), "{error}");
+        }
+        for (scene, why) in [
+            ("xie-leo\"\ncolumn.self_weight = true #", "the weight of a column needs points"),
+            ("mandel\"\n#", "tied to one point set"),
+        ] {
+            let error = checked(scene, "\"GIMP\"", "sets = [2]\nintegrator = [\"explicit\"]").expect_err(why);
+            assert!(error.contains(why), "{error}");
+        }
+    }
+
+    #[test]
+    fn points_off_their_lattice_carry_no_weight() {
+        let scene = "xie-leo\"\ncolumn.self_weight = true #";
+        let error = checked(scene, "\"GIMP\"", "offset = [0.25]").expect_err("a shifted lattice");
+        assert!(
+            error.contains("do not integrate a weight exactly") && error.contains("--> t.toml:"),
+            "{error}"
+        );
+        assert!(checked(scene, "\"GIMP\"", "jitter = [0.1]").is_ok());
+    }
+
+    #[test]
+    fn the_water_has_as_many_points_as_the_skeleton_where_nothing_is_said() {
+        let study = checked("terzaghi", "\"MPM\"", "sets = [1, 2]\npoints_per_cell = [3]").expect("sound");
+        let of_water: Vec<usize> =
+            study.planned.iter().map(|planned| planned.case.column.points.water_per_cell).collect();
+        assert_eq!(of_water, [0, 3]);
+        let named = checked("terzaghi", "\"MPM\"", "sets = [2]\npoints_per_cell = [3]\nwater_per_cell = [3]");
+        assert_eq!(named.expect("sound").planned[0].case.hash(), study.planned[1].case.hash());
+        let plain = checked("terzaghi", "\"MPM\"", "points_per_cell = [3]").expect("sound");
+        assert_eq!(plain.planned[0].case.hash(), study.planned[0].case.hash());
+        assert_eq!(
+            study.planned[1].case.label(),
+            "MPM explicit cells=4 points=3 stable=0.8 (two point sets)"
+        );
+    }
+}
+
+mod strains {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn checked(column: &str, sweep: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"xie-leo\"\n[column]\n{column}\n[[sweep]]\nmethod = [\"MPM\"]\n\
+             integrator = [\"implicit\"]\ncells = [4]\n{sweep}\n"
+        );
+        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_strain_gives_each_case_the_load_of_its_own_soil() {
+        let study = checked(
+            "strain = 0.2",
+            "law = [\"log-linear\", \"porosity-dependent\"]\nyoungs_modulus = [1e6, 2e6]",
+        );
+        let study = study.expect("sound");
+        assert_eq!(study.planned.len(), 4);
+        for planned in &study.planned {
+            let case = &planned.case;
+            assert!((super::super::geometry::final_strain(case) - 0.2).abs() < 1e-14, "{}", case.label());
+        }
+        // Of the logarithmic law: σ = E_oed ln(1/J), E_oed = 1.2 E at ν = 0.25.
+        let load = study.planned[0].case.column.load;
+        assert!((load - 1.2e6 * 1.25_f64.ln()).abs() < 1e-6 * load, "{load}");
+    }
+
+    #[test]
+    fn a_strain_beyond_the_pores_or_beside_a_load_is_refused() {
+        let refused = |column: &str, sweep: &str| checked(column, sweep).expect_err("refused");
+        assert!(refused("strain = 0.3\nload = 1e5", "").contains("a `load` and a `strain`"));
+        assert!(refused("strain = 1.2", "").contains("`column.strain` is 1.2"));
+        // The seed's porosity is 0.3.
+        for (strain, line) in [("0.35", 4), ("0.3", 4)] {
+            let told = refused(&format!("strain = {strain}"), "");
+            assert!(
+                told.contains(&format!("a strain of {strain} leaves no pores: the porosity is 0.3")),
+                "{told}"
+            );
+            assert!(
+                told.contains(&format!("t.toml:{line}:")) && told.contains("a `porosity` above"),
+                "{told}"
+            );
+        }
+        assert!(checked("strain = 0.25", "").is_ok());
+        // One of the swept soils is too soft for the load, though the study's own is not.
+        let told = refused("load = 2e5", "youngs_modulus = [1e6, 3e5]");
+        assert!(told.contains("E = 300000 Pa") || told.contains("E = 3e5 Pa"), "{told}");
+        assert!(checked("load = 2e5", "youngs_modulus = [1e6, 7e5]").is_ok());
+    }
+}
+
+mod labels {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn labels(sweep: &str) -> Vec<String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\nintegrator = [\"implicit\"]\n\
+             cells = [4]\ntime_step = [{{ growth = 0.1 }}]\n{sweep}\n"
+        );
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        study.planned.iter().map(|planned| planned.case.label()).collect()
+    }
+
+    #[test]
+    fn cases_that_would_be_called_alike_name_what_they_differ_in() {
+        let plain = "MPM implicit cells=4 points=2 growth=0.1";
+        assert_eq!(labels("youngs_modulus = [2e5]"), [plain], "one soil needs no name");
+        assert_eq!(
+            labels("youngs_modulus = [2e5, 1e6]\nporosity = [0.4]"),
+            [format!("{plain} (youngs_modulus=200000)"), format!("{plain} (youngs_modulus=1000000)")]
+        );
+        assert_eq!(
+            labels("height = [1.0, 2.0]\nload = [1, 1e5]"),
+            ["1, load=1", "1, load=100000", "2, load=1", "2, load=100000"]
+                .map(|values| format!("{plain} (height={values})"))
+        );
+    }
+
+    #[test]
+    fn the_name_is_no_part_of_the_identity() {
+        let of = |sweep: &str| {
+            let text = format!(
+                "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n{sweep}\n"
+            );
+            Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound").planned[0]
+                .case
+                .clone()
+        };
+        let (alone, among) = (of("porosity = [0.4]"), of("porosity = [0.4, 0.5]"));
+        assert_ne!(alone.label(), among.label());
+        assert_eq!(alone.hash(), among.hash());
+    }
+}
+
+mod answers {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn said(expectation: &str) -> Option<String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1, 0.2]\n\n[[sweep]]\n\
+             method = [\"MPM\", \"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [4, 8, 16]\n\n{expectation}\n"
+        );
+        let source = StudySource { name: "t.toml".to_owned(), text };
+        Study::check(&source).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn an_expectation_that_no_case_can_answer_is_refused_at_its_line() {
+        let series = "[[expect]]\nmethod = \"GIMP\"\ntime_factor = 0.1\norder = { value = 2.0 }";
+        assert_eq!(said(series), None);
+        for (from, to, parts) in [
+            (
+                "\"GIMP\"",
+                "\"GIMP-SRI\"",
+                ["no case of the study has `method = GIMP-SRI`", "the cases have MPM, GIMP"],
+            ),
+            ("0.1", "0.15", ["no case keeps its state at T_v = 0.15", "the outputs are at 0.1, 0.2"]),
+            ("0.1", "0.1\nintegrator = \"explicit\"", ["`integrator = explicit`", "the cases have implicit"]),
+            ("order", "at = { cells = 10, below = 0.1 }\norder", ["has 10 cells", "they have 4, 8, 16"]),
+        ] {
+            let told = said(&series.replacen(from, to, 1)).expect("refused");
+            assert!(parts.iter().all(|part| told.contains(part)) && told.contains("t.toml:1"), "{told}");
+        }
+        let case = "[[expect_case]]\ncells = 4\nstatus = \"ok\"";
+        assert_eq!(said(case), None);
+        assert!(said(&case.replacen('4', "5", 1)).expect("refused").contains("`cells = 5`"));
+    }
+}
+
+mod results {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn checked(result: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n\n[[result]]\n{result}\n"
+        );
+        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_result_is_a_case_a_mesh_without_a_sweep() {
+        let sound = "name = \"ogs\"\nfiles = [\"ogs-{cells}/col.pvd\"]\ncells = [10, 20]\npreset = \"ogs\"\n";
+        let study = checked(sound).expect("sound");
+        let labels: Vec<String> = study.planned.iter().map(|planned| planned.case.label()).collect();
+        assert_eq!(labels, ["ogs cells=10", "ogs cells=20"]);
+        let expect = "\n[[expect_case]]\nmethod = \"ogs\"\ncells = 20\nstatus = \"ok\"";
+        assert!(checked(&format!("{sound}{expect}")).is_ok());
+        let other = expect.replace("20", "40");
+        assert!(checked(&format!("{sound}{other}")).is_err_and(|told| told.contains("`cells = 40`")));
+        assert_ne!(
+            checked(&sound.replace("\"ogs\"\n", "\"meshio\"\n").replacen("meshio", "ogs", 1))
+                .expect("sound")
+                .planned,
+            study.planned,
+            "another meaning is another case"
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_result_is_told_at_its_place() {
+        let sound = "name = \"ogs\"\nfiles = [\"ogs-{cells}/col.pvd\"]\ncells = [10, 20]\n";
+        for (from, to, told) in [
+            ("\"ogs\"", "\"MPM\"", "`MPM` is a method"),
+            ("\"ogs\"", "\"o g s\"", "cannot be called `o g s`"),
+            ("-{cells}", "", "2 meshes have the same files"),
+            ("{cells}", "{cell}", "`{cell}` stands for nothing"),
+            ("[10, 20]", "[]", "no mesh"),
+            ("[10, 20]", "[0]", "0"),
+            ("cells = [10, 20]", "cells = [10, 20]\ntime_step = -1.0", "time_step"),
+            ("cells = [10, 20]", "cells = [10, 20]\npreset = \"ogx\"", "ogs"),
+            ("cells = [10, 20]", "cells = [10, 20]\nmapping = \"none.toml\"", "there is no file"),
+        ] {
+            let refused = checked(&sound.replacen(from, to, 1)).expect_err(to);
+            assert!(refused.contains(told) && refused.contains("t.toml:"), "{to}: {refused}");
+        }
+    }
+}

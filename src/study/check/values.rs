@@ -1,0 +1,255 @@
+//! Checks of single values: inputs by the table of keys, methods, step rules, numbers in their range.
+
+use crate::case::Case;
+use crate::case::keys::{Key, Kind, Range, Value};
+use crate::case::solver::Solver;
+use crate::study::check::Checker;
+use crate::study::diagnostic::one_of;
+use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
+use crate::study::reading::Placed;
+use oedometer_mpm::method::{Method, PressureIntegration, Recovery};
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::law::Law;
+use std::ops::RangeInclusive;
+
+/// A place in the text.
+type TextSpan = std::ops::Range<usize>;
+
+/// A rule of the step size: its name in study files, what it makes of a number, and the least number with which a run
+/// comes to an end, with the reason.
+type Rule = (&'static str, fn(f64) -> TimeStepRule, f64, &'static str);
+
+const NO_ERROR_LEFT: &str = "smaller steps no longer reduce the error in time";
+
+/// The rules in the order of a table's keys.
+const RULES: [Rule; 5] = [
+    ("stable", TimeStepRule::Stable, 1e-9, NO_ERROR_LEFT),
+    ("courant", TimeStepRule::Courant, 1e-9, NO_ERROR_LEFT),
+    ("seconds", TimeStepRule::Seconds, 0.0, ""),
+    ("growth", TimeStepRule::Growth, 1e-9, "steps that grow by less are too many for any run"),
+    ("tolerance", TimeStepRule::Tolerance, 1e-12, "round-off is an error of that size"),
+];
+
+impl Checker<'_> {
+    /// The value of an input, called by its name in the file; `seed` has the values to compare it with.
+    pub(super) fn input(&mut self, key: &Key, typed: &One, name: &str, seed: &Case) -> Option<Value> {
+        let (span, scene) = (typed.span(), seed.scene);
+        match &**typed {
+            TypedInput::MethodName(name) => self.method_named(name, span, scene).map(Value::Method),
+            TypedInput::MethodChoices(table) => self.method_of(table, span, scene).map(Value::Method),
+            TypedInput::TimeStep(table) => self.time_step(table, span).map(Value::TimeStep),
+            TypedInput::Word(word) => self.word_fits(word, span, key, scene).then_some(Value::Word(word)),
+            TypedInput::Flag(flag) => Some(Value::Flag(*flag)),
+            TypedInput::Count(count) => {
+                let Kind::Count(most) = key.kind else { return None };
+                self.count(Some(&Placed::new(span, *count)), name, 1..=most).map(Value::Count)
+            }
+            TypedInput::Number(number) => {
+                let Kind::Number(range) = key.kind else { return None };
+                let usual = key.get(seed).to_string();
+                self.number(*number, span, &format!("`{name}`"), range, &usual, key.unit).map(Value::Number)
+            }
+            TypedInput::List(_) => None,
+        }
+    }
+
+    /// Every input of a table that the study shares, by the key.
+    pub(super) fn inputs(&mut self, table: &str, inputs: &Inputs, seed: &Case) -> Vec<(&'static Key, Value)> {
+        let value = |(key, one): &(&'static Key, One)| {
+            self.input(key, one, &format!("{table}.{}", key.name), seed).map(|value| (*key, value))
+        };
+        inputs.0.iter().filter_map(value).collect()
+    }
+
+    /// Index of a word among its choices.
+    pub(super) fn word(&mut self, typed: &Placed<String>, name: &str, choices: &[&str]) -> Option<usize> {
+        let index = choices.iter().position(|choice| **choice == **typed);
+        if index.is_none() {
+            self.complain(typed.span(), format!("no {name} is called `{}`", **typed), one_of(typed, choices));
+        }
+        index
+    }
+
+    fn method_named(&mut self, name: &str, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+        let attached = self.solvers.iter().find(|solver| solver.name() == name);
+        let attached = attached.map(|solver| Solver::Attached(solver.attached));
+        let Some(method) = Method::named(name).map(Solver::Own).or(attached) else {
+            let mut names = Method::names();
+            names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            self.complain(span, format!("no method is called `{name}`"), one_of(name, &names));
+            return None;
+        };
+        self.method_fits(method, span, scene)
+    }
+
+    fn method_of(&mut self, table: &MethodTable, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+        let MethodTable { basis, strain, pressure, memory, .. } = *table;
+        let recovery = match &table.recovery {
+            Some(word) => **word,
+            None if pressure == PressureIntegration::Points => Recovery::Constant,
+            None => {
+                let help = format!("it can be {}", Recovery::NAMES.join(", "));
+                self.complain(span, "the method names no `recovery`", help);
+                return None;
+            }
+        };
+        if let (Some(why), Some(word)) = (recovery.refuses(pressure), &table.recovery) {
+            self.complain(word.span(), why, "leave the key out, or choose another");
+            return None;
+        }
+        let configuration = table.configuration.as_deref().copied();
+        let place = table.configuration.as_ref().map_or(span, Placed::span);
+        let method = Method { basis, strain, pressure, recovery, memory, configuration };
+        self.method_fits(Solver::Own(method), place, scene)
+    }
+
+    /// The method, where its scene allows it.
+    fn method_fits(&mut self, method: Solver, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+        let configuration = method.own().and_then(|method| method.configuration);
+        let refusal = if let Some(why) = configuration.and_then(|kind| scene.refuses_configuration(kind)) {
+            (why, "take \"updated\" or \"total\", or leave the key out")
+        } else if method.own().is_none() && scene.is_manufactured() {
+            (
+                "an external solver does not receive the body forces and the source of a manufactured motion",
+                "take a method of this program",
+            )
+        } else if let Some(why) = method.own().and_then(|method| scene.refuses_method(method)) {
+            let help = if scene.is_manufactured() {
+                "take \"GIMP-SRI-patch\", \"TL-GIMP-SRI-patch\", or another method of this program without B-bar"
+            } else {
+                "take \"GIMP-SRI-patch\", or another method without `TL-`"
+            };
+            (why, help)
+        } else {
+            return Some(method);
+        };
+        self.complain(span, refusal.0, refusal.1);
+        None
+    }
+
+    /// The one rule that a table names.
+    fn time_step(&mut self, table: &TimeStepTable, span: TextSpan) -> Option<TimeStepRule> {
+        let typed = [&table.stable, &table.courant, &table.seconds, &table.growth, &table.tolerance];
+        let given = RULES.iter().zip(typed).filter_map(|(rule, typed)| Some((rule, typed.as_ref()?)));
+        let given: Vec<_> = given.collect();
+        let [((name, rule, least, why), value)] = given.as_slice() else {
+            self.complain(
+                span,
+                format!("a time step by {} rules", given.len()),
+                "give exactly one: { stable = 0.5 }, { courant = 0.5 }, { seconds = 1e-6 }, { growth = 0.05 } or \
+                 { tolerance = 1e-4 }",
+            );
+            return None;
+        };
+        let number = ***value;
+        let (message, help) = if number > 0.0 && number < *least {
+            (format!("a time step by `{name} = {number:e}`"), format!("{why}: at least {least:e}"))
+        } else if *name == "growth" && number.is_finite() && number > 1.0 {
+            let message = format!("a step of {number} times the time that has passed");
+            (message, "a growth is a share: 0.05 is five percent, and 1 the most".to_owned())
+        } else if number.is_finite() && number > 0.0 {
+            return Some(rule(number));
+        } else {
+            (format!("a time step of {number}"), "it must be positive and finite".to_owned())
+        };
+        self.complain(value.span(), message, help);
+        None
+    }
+
+    /// Whether a scene takes a word where it is a law or a mean of the conductivity.
+    fn word_fits(&mut self, word: &str, span: TextSpan, key: &Key, scene: SceneKind) -> bool {
+        let refused = |law: Law| scene.refuses_law(law);
+        let law = Law::named(word).filter(|_| key.name == "law");
+        let is_chord = key.name == "conductivity_mean" && word == ConductivityMean::Chord.name();
+        if let Some(why) = law.and_then(refused) {
+            let fit = Law::ALL.into_iter().filter(|law| refused(*law).is_none());
+            let names: Vec<&str> = fit.map(Law::name).collect();
+            self.complain(span, why, format!("the scene `{}` takes {}", scene.name(), names.join(", ")));
+        } else if is_chord && scene.is_manufactured() {
+            self.complain(
+                span,
+                "the chord mean belongs to a flux out of a drained surface, and a manufactured motion has none",
+                "leave it out",
+            );
+        } else if is_chord && !scene.is_large_strain() {
+            self.complain(
+                span,
+                "at small strain the conductivity is the same everywhere, and so is every mean of it",
+                format!(
+                    "leave it out, or take a scene of large strain: the scene `{}` has small strains",
+                    scene.name()
+                ),
+            );
+        } else {
+            return true;
+        }
+        false
+    }
+
+    /// A whole number in a range.
+    pub(super) fn count(
+        &mut self,
+        typed: Option<&Placed<i64>>,
+        name: &str,
+        range: RangeInclusive<i64>,
+    ) -> Option<usize> {
+        let (count, place) = typed.map(|typed| (**typed, typed.span()))?;
+        if !range.contains(&count) {
+            let help = format!("it must lie between {} and {}", range.start(), range.end());
+            self.complain(place, format!("`{name}` is {count}"), help);
+            return None;
+        }
+        usize::try_from(count).ok()
+    }
+
+    /// A positive number, or the default where there is none.
+    pub(super) fn positive(
+        &mut self,
+        typed: Option<&Placed<f64>>,
+        name: &str,
+        unit: &str,
+        default: f64,
+    ) -> f64 {
+        let Some(typed) = typed else { return default };
+        let (name, usual) = (format!("`{name}`"), default.to_string());
+        self.number(**typed, typed.span(), &name, Range::Positive, &usual, unit).unwrap_or(default)
+    }
+
+    /// A number in a range; a complaint where it is not in it.
+    fn number(
+        &mut self,
+        value: f64,
+        span: TextSpan,
+        name: &str,
+        range: Range,
+        usual: &str,
+        unit: &str,
+    ) -> Option<f64> {
+        let mut message = format!("{name} is {value} {unit}");
+        let (fits, help) = match range {
+            Range::Positive => (
+                value.is_finite() && value > 0.0,
+                format!("it must be positive and finite; the seed column has {usual} {unit}"),
+            ),
+            Range::NotNegative => {
+                (value.is_finite() && value >= 0.0, "it must be 0 or positive, and finite".to_owned())
+            }
+            Range::Between(least, most) => (
+                value > least && value < most,
+                format!("it must lie between {least} and {most}, both excluded; the seed column has {usual}"),
+            ),
+            Range::Within(least, most, told, help) => {
+                message = told.replace("{}", &value.to_string());
+                ((least..=most).contains(&value), help.to_owned())
+            }
+        };
+        if !fits {
+            self.complain(span, message.trim_end(), help.trim_end());
+        }
+        // A zero with a sign is the same zero.
+        fits.then_some(value + 0.0)
+    }
+}
