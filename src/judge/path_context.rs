@@ -192,7 +192,7 @@ fn value_of(record: &Record, measure: &Measure) -> Option<f64> {
     Some(between(&snapshot.centres.initial_height, field, height)? / scale)
 }
 
-/// A field at a height between two of its own, which ascend; none beyond the ends.
+/// A field interpolated at a height, with heights in rising order; `None` beyond the ends.
 fn between(heights: &[f64], field: &[f64], height: f64) -> Option<f64> {
     let upper = heights.iter().position(|one| *one >= height)?;
     if heights[upper] == height {

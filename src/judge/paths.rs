@@ -259,7 +259,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
 
-    /// Whether two cases differ along an axis at most, held against each other input by input.
+    /// Whether two cases differ along an axis at most, compared input by input.
     fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
         let mut b = Case { time_factors: a.time_factors.clone(), swept: a.swept.clone(), ..b.clone() };
         match axis {

@@ -53,7 +53,7 @@ pub fn spread_of(
     };
     let differing = || both().filter(|(_, a, b)| a.to_bits() != b.to_bits());
     // Errors are relative themselves: a value this near zero has no digits left to compare.
-    let compared = differing().filter(|(_, a, b)| !((a - b).abs() <= ROUND_OFF));
+    let compared = differing().filter(|(_, a, b)| (a - b).is_nan() || (a - b).abs() > ROUND_OFF);
     let worst = compared
         .map(|(name, a, b)| (name, relative(a, b)))
         .filter(|(_, relative)| *relative > 0.0)

@@ -6,7 +6,7 @@ use crate::measure::record_checks;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 
-/// A reference must be better than this share of the smallest error held against it.
+/// A reference must be more accurate than this share of the smallest error against it.
 const TAIL_SHARE: f64 = 0.1;
 
 /// What is wrong with a record, as sentences; empty where it is sound.

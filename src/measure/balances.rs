@@ -1,4 +1,4 @@
-//! What a run keeps: the state at its start, masses, forces, and its settlement curve.
+//! Conservation checks of a run: the state at its start, masses, forces, and its settlement curve.
 
 use crate::case::Case;
 use crate::measure::statistics::largest;

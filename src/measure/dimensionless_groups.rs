@@ -1,4 +1,4 @@
-//! Dimensionless groups of a case, and where they leave a quasi-static reference behind.
+//! Dimensionless groups of a case, and when they rule out a quasi-static reference.
 
 use crate::case::Case;
 use crate::record::Groups;
@@ -31,10 +31,10 @@ const MOST_RELATIVE_INERTIA: f64 = 0.3;
 /// Share of the slowest wave that steps may have taken at an output beyond what the drag took of it.
 const MOST_DAMPED: f64 = 0.1;
 
-/// Why a reference does not hold for a case: it leaves out the inertia that the case is solved with, or the case leaves
-/// out or damps the waves that it has.
+/// Why a reference does not hold for a case: it neglects the inertia that the case is solved with, or the case neglects
+/// or damps the waves of the reference.
 pub fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
-    // The undrained start is an equilibrium, whatever comes after it.
+    // The undrained start is an equilibrium.
     let moves = case.time_factors.iter().any(|time_factor| *time_factor > 0.0);
     if !moves || case.formulation == Formulation::QuasiStatic || case.scene.is_manufactured() {
         return None;
@@ -42,7 +42,7 @@ pub fn inertia_rules(case: &Case, reference: ReferenceKind) -> Option<String> {
     let name = reference.name();
     if case.scene.has_waves() {
         let wave = SlowestWave::of(case);
-        // A load that grows over many of its periods excites none.
+        // A load that grows over many periods excites no waves.
         if case.column.loading_time * wave.frequency > LONG_LOADING {
             return None;
         }

@@ -1,4 +1,5 @@
-//! What is measured of a run besides errors of fields: the peak of a pressure, and what moves where nothing may.
+//! Measures of a run besides errors of fields: the peak of a pressure, spurious velocities at rest, and balances of two
+//! layers.
 
 use crate::case::Case;
 use crate::record::{Balance, MeasureRow};

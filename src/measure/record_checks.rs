@@ -1,5 +1,4 @@
-//! Start checks and balances of a record, each with the bound that it is held to: what shows a mark
-//! in a table is judged here, and nowhere else.
+//! Start checks and balances of a record, each with its bound; tables mark what fails here.
 
 use crate::record::{Balance, Record, Status};
 use oedometer_mpm::run::integrator::IntegratorKind;
@@ -8,49 +7,52 @@ use oedometer_mpm::scene::arrangement::Arrangement;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::typed;
 
-/// The check that is told in numbers of points.
+/// The check whose complaint names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
-/// What sums of numbers of like size leave.
+/// Round-off of sums of numbers of similar size.
 const ROUND_OFF: f64 = 1e-9;
-/// Force over the load that a direct solver may leave of an equilibrium.
+/// Unbalanced force over the load that a direct solver may leave.
 const UNBALANCED: f64 = 1e-6;
-/// The same, a spacing that points are off their lattice: each gives a node what its neighbour there does not.
+/// Added to [`UNBALANCED`] for each spacing that points are off their lattice, because a node then receives from them
+/// what its neighbour lacks.
 const SHIFTED: f64 = 2.0;
-/// Residual of the equilibrium of points that stay where they are, on the coarsest meshes: one beyond it is of a pressure or
-/// a stress that is wrong by the load.
+/// Residual of the equilibrium of points that do not move, on the coarsest meshes: a larger one means a pressure or a
+/// stress that is wrong by the load.
 const OUT_OF_BALANCE: f64 = 1.0;
-/// Why splines are let go.
-const SPLINES: &str = "points integrate no spline exactly, and what that leaves is no share of a load";
+/// Why splines are not judged.
+const SPLINES: &str = "points do not integrate splines exactly, and the error is no share of a load";
 /// Gap between outputs and settlement curve that a smooth curve explains.
 const CURVE_GAP: f64 = 2e-3;
-/// Velocity over the hydraulic conductivity that round-off leaves of a column at rest: some 1e-12 are seen.
+/// Velocity over the hydraulic conductivity that round-off causes in a column at rest; about 1e-12 is observed.
 const AT_REST: f64 = 1e-9;
-/// Water over what the load presses out, on a lattice at rest: ten times what the methods leave on
+/// Water imbalance over what the load presses out, on a lattice at rest: ten times that of the methods on
 /// ten cells (3e-6 for a patch at `T_v = 0.05`, 3e-5 within the first steps of an explicit run).
 const WATER_AT_REST: f64 = 3e-4;
-/// The same where points move or deform: twice the worst of the methods at half the height lost,
-/// where operators follow the points and the storage of cells with them.
+/// [`WATER_AT_REST`] where points move or deform: twice the worst of the methods at half the height lost,
+/// where operators and the storage of cells follow the points.
 const WATER_MOVING: f64 = 5e-2;
 
-/// Water in the soil over its pores, less one, where both are counted apart, times the square of the number of cells:
-/// twice what the cut at the surface leaves of it (0.2 on ten cells with two points).
+/// Water in the soil over its pores, less one, where both are counted separately, times the square of the number of
+/// cells: twice the error of the cut at the surface (0.2 on ten cells with two points).
 const WATER_IN_PORES: f64 = 0.5;
-/// Pressure over the load that consolidation cannot reach: it begins at most at the load, the first front overshoots that by
-/// a quarter on coarse meshes, and what is beyond half of it is a burst, where forces of the water and of the skeleton end in domains that are cut differently.
+/// Pressure over the load that consolidation cannot reach: it starts at most at the load, and the first front overshoots
+/// by a quarter on coarse meshes. A pressure above this is a burst: the forces of the water and of the skeleton end in
+/// domains that are cut differently.
 const NO_BURST: f64 = 1.5;
-/// What `WATER_IN_PORES` is on meshes so fine that other errors rule; a wrong continuity makes fifty times as much.
+/// Least bound by [`WATER_IN_PORES`], on meshes so fine that other errors dominate; a wrong continuity causes fifty times
+/// as much.
 const LEAST_WATER_IN_PORES: f64 = 1e-3;
 
-/// A value of a record, and what it is held to.
+/// A value of a record, and its bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
-    /// What it is, as a row of a table names it.
+    /// What it is, as in a row of a table.
     pub what: &'static str,
     /// Value.
     pub value: f64,
-    /// Largest size that passes; none where a value is told and not judged.
+    /// Largest size that passes; `None` where a value is shown and not judged.
     pub bound: Option<f64>,
-    /// Why it is not judged, where it is not.
+    /// Why it is not judged, where that is so.
     pub unjudged: &'static str,
 }
 
@@ -59,18 +61,18 @@ impl RecordCheck {
         Self { what, value, bound: bound.into(), unjudged: "" }
     }
 
-    /// A check with its bound, or the reason why there is none.
+    /// A check with its bound, or the reason why it has no bound.
     fn judged(what: &'static str, value: f64, bound: Result<f64, &'static str>) -> Self {
         Self { what, value, bound: bound.ok(), unjudged: bound.err().unwrap_or_default() }
     }
 
-    /// Whether it is within its bound; what is no number never is. What is not judged holds.
+    /// Whether it is within its bound; NaN never is. A check that is not judged holds.
     pub fn holds(&self) -> bool {
         self.bound.is_none_or(|bound| self.value.abs() <= bound)
     }
 }
 
-/// Checks of the start; none where there was none.
+/// Checks of the start; empty where the start was not reached.
 pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     let Some(start) = &record.start else { return Vec::new() };
     let missing = start.points_expected as f64 - start.points as f64;
@@ -93,7 +95,7 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
 /// Checks of the balances at an output.
 pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     let spurious = balance.spurious_velocity.map(|velocity| {
-        // Points integrate no spline exactly: what its start leaves unbalanced moves.
+        // Points do not integrate splines exactly: the unbalanced rest of the start moves.
         let bound = if record.case.is_spline() { Err(SPLINES) } else { Ok(AT_REST) };
         RecordCheck::judged("spurious velocity at rest, over the conductivity", velocity, bound)
     });
@@ -106,7 +108,7 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
         ),
         RecordCheck::of("sum of internal forces, relative", balance.internal_force_imbalance, ROUND_OFF),
         RecordCheck::of("settlement off the settlement curve", balance.settlement_curve_gap, CURVE_GAP),
-        // Constant recovery leaves both stresses wrong alike: zero is no evidence.
+        // With constant recovery both stresses have the same error: zero is no evidence.
         RecordCheck::judged(
             "equilibrium (σ' − p + q)/q, rms",
             balance.equilibrium_residual,
@@ -134,8 +136,8 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     checks
 }
 
-/// Whether a pressure burst in a run of two layers of points that move, whose continuity holds: between outputs, or at the
-/// end of a run that left what its scene can reach.
+/// Whether a pressure burst in a run of two layers of moving points with a conservative continuity: between outputs, or at
+/// the end of a run that became unstable or closed its pores.
 pub fn has_burst(record: &Record) -> bool {
     let case = &record.case;
     let is_sound = case.material.continuity == Continuity::Conservative;
@@ -157,31 +159,31 @@ fn volume_bound(record: &Record) -> f64 {
     ROUND_OFF + if deforms(record) { compression } else { 0.0 }
 }
 
-/// Pressure over the load that round-off leaves: of strains, times the water's stiffness over the
-/// skeleton's where a solver has found them.
+/// Error of the pressure over the load by round-off: that of strains, times the stiffness of the water over that of the
+/// skeleton where a solver has found them.
 fn pressure_bound(record: &Record) -> f64 {
     let (case, soil) = (&record.case, &record.case.material);
     let stiffness = soil.coupling_modulus() / soil.oedometric_modulus();
     ROUND_OFF + if case.scene.start_is_solved() { 100.0 * f64::EPSILON * stiffness } else { 0.0 }
 }
 
-/// Whether the weights follow the points, or their deformation.
+/// Whether the shape functions follow the points or their deformation.
 fn deforms(record: &Record) -> bool {
     record.case.configuration().deforms()
 }
 
-/// Force over that of the load on a cell that a start may leave unbalanced.
+/// Unbalanced force that a start may have, over the force of the load on a cell.
 fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
     let (case, soil) = (&record.case, &record.case.material);
     if case.scene.is_manufactured() {
-        return Err("the body forces that make the motion begin at once");
+        return Err("the body forces that make the motion start suddenly");
     }
     let is_spline = case.is_spline() && !case.scene.start_is_solved();
     if is_spline && case.scene.is_at_rest() {
         return Err(SPLINES);
     }
     if case.scene.has_waves() || case.column.loading_time > 0.0 || is_spline {
-        // What sets out is no more than the load itself.
+        // At most the load itself is unbalanced.
         return Ok(1.0 + ROUND_OFF);
     }
     // Points that have moved by the undrained strain lie off their lattice by as much: in the plane by a shear strain, which
@@ -196,19 +198,19 @@ fn unbalanced_bound(record: &Record) -> Result<f64, &'static str> {
 fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
     if case.scene.is_manufactured() {
-        return Err("a motion that is made by body forces is in no balance with a load");
+        return Err("a motion made by body forces does not balance a load");
     }
     if case.scene.has_waves() || case.column.loading_time > 0.0 {
-        return Err("waves are no fault; the energy of the run is watched");
+        return Err("waves are no error; the energy of the run is checked");
     }
     if deforms(record) {
-        return Err("stresses of points that cross cells jump; the forces of the run are watched");
+        return Err("stresses of points that cross cells jump; the forces of the run are checked");
     }
     if case.is_spline() {
         return Err(SPLINES);
     }
     if case.scene.needs_two_dimensions() && case.integrator == IntegratorKind::Implicit {
-        // Of the nodes, which the solver balances.
+        // The residual of the nodes, which the solver balances.
         return Ok(UNBALANCED);
     }
     Ok(OUT_OF_BALANCE + SHIFTED * shift(record))
@@ -220,12 +222,12 @@ fn shift(record: &Record) -> f64 {
     points.offset.abs() + points.jitter.abs()
 }
 
-/// Share of the water that may be missing, over what the load presses out; or why the equations or the points conserve
-/// none.
+/// Share of the water that may be missing, over what the load presses out; or why the equations or the points do not
+/// conserve water.
 fn water_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
     if case.material.continuity == Continuity::ConstantPorosityGradient {
-        return Err("this form of the continuity conserves no water");
+        return Err("this form of the continuity does not conserve water");
     }
     if case.column.points.jitter != Arrangement::default().jitter {
         return Err("domains of scattered points overlap: their volumes are not those of the cells");
@@ -238,13 +240,13 @@ fn water_bound(record: &Record) -> Result<f64, &'static str> {
         return Ok(ROUND_OFF);
     }
     let discretisation = if deforms(record) { WATER_MOVING } else { WATER_AT_REST };
-    // A patch conserves pressures and not their storage: at worst it misplaces all of that.
+    // A patch conserves pressures and not their storage: at worst all of the storage is missing.
     let storage = record.groups.storage;
     Ok(discretisation + storage / (1.0 + storage))
 }
 
-/// Of every check the one nearest to its bound, or the farthest beyond it, in the order of a record's;
-/// of those that no run judges the largest.
+/// The result of every check nearest to its bound, or farthest beyond it, in the order of a record's checks; the largest
+/// of those that are not judged.
 pub fn worst_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<RecordCheck> {
     let mut worst: Vec<RecordCheck> = Vec::new();
     for record in records {
@@ -260,8 +262,8 @@ pub fn worst_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Record
     worst
 }
 
-/// Whether a check says more against its run than another of the same kind; what is judged says more
-/// than what is not, and what is no number most of all.
+/// Whether a check is worse than another of the same kind; a judged one is worse than one that is not judged, and NaN is
+/// worst.
 fn is_worse(one: &RecordCheck, other: &RecordCheck) -> bool {
     let size = |check: &RecordCheck| match check.bound {
         _ if check.value.is_nan() => (check.bound.is_some(), f64::INFINITY),
@@ -272,7 +274,7 @@ fn is_worse(one: &RecordCheck, other: &RecordCheck) -> bool {
     size(one) > size(other)
 }
 
-/// Sentences on all that is beyond its bound.
+/// Sentences on everything beyond its bound.
 pub fn complaints(record: &Record) -> Vec<String> {
     let told = |check: RecordCheck, when: &str| {
         let bound = check.bound.filter(|_| !check.holds())?;

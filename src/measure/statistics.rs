@@ -64,8 +64,8 @@ pub fn spread(samples: &[f64]) -> Option<WallSpread> {
     })
 }
 
-/// Ratios of times first over second, paired by round; none where the lists cannot be paired or hold what is no
-/// positive time.
+/// Ratios of times first over second, paired by round; `None` where the lists cannot be paired or a time is not
+/// positive.
 pub fn paired_ratio(first: &[f64], second: &[f64]) -> Option<PairedRatio> {
     let is_time = |time: &f64| time.is_finite() && *time > 0.0;
     let are_times = first.len() == second.len() && first.iter().chain(second).all(is_time);
@@ -77,7 +77,7 @@ pub fn paired_ratio(first: &[f64], second: &[f64]) -> Option<PairedRatio> {
     Some(PairedRatio { ratios: spread, interval })
 }
 
-/// How far from 1 the ratio of the same code against itself may lie: the far end of the median's
+/// How far from 1 the ratio of a code to itself may lie: the far end of the median's
 /// interval, or for fewer than six rounds the furthest ratio seen.
 pub fn noise_floor(against_itself: &PairedRatio) -> f64 {
     let ratios = against_itself.ratios;

@@ -1,5 +1,5 @@
-//! References and theory lines of a case, cached: runs and reports use the same ones again and again, and one at large
-//! strain takes a march in time.
+//! References and theory lines of a case, cached: runs and reports use the same ones repeatedly, and one at large
+//! strain has to march in time.
 
 use crate::case::Case;
 use crate::record::Record;

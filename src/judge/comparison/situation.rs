@@ -77,8 +77,8 @@ const NAMES_AND_MEANINGS: [[&str; 2]; 11] = [
         "the same layer: is its pressure right, or does it jump from cell to cell?",
     ],
     [
-        "The same, skeleton nearly incompressible: displacement",
-        "the same layer with the largest Poisson's ratio that was tried",
+        "Undrained layer, skeleton nearly incompressible: displacement",
+        "the layer with the largest Poisson's ratio that was tried",
     ],
     [
         "Large strain, load at once",

@@ -154,7 +154,7 @@ pub fn score(
     Ok(score)
 }
 
-/// One state beside one reference.
+/// A state and a reference.
 struct ScoredState<'a> {
     parameters: &'a ColumnParameters,
     reference: &'a Reference,

@@ -1,5 +1,5 @@
-//! Orders and classes of external results on finer and finer meshes, and which of their times are the same time: no
-//! two programs, and no two meshes of an explicit one, stop at the same instant.
+//! Orders and classes of external results on finer and finer meshes, and the grouping of their times: no two programs,
+//! and no two meshes of an explicit one, stop at the same instant.
 
 use crate::case::{Norm, Quantity, Sample};
 use crate::import::table::SampledState;

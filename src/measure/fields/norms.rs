@@ -71,7 +71,7 @@ fn mean_norm(norm: Norm, values: &[f64], volumes: &[f64]) -> f64 {
     }
 }
 
-/// One place's part in the error of a field.
+/// One place's contribution to the error of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
     /// Place in the list of samples, from 0.
@@ -82,7 +82,7 @@ pub struct Contribution {
     pub share: f64,
 }
 
-/// The largest part of all places, the first of several alike; none where the error vanishes or is no number.
+/// The largest contribution of all places, the first of equal ones; `None` where the error vanishes or is not finite.
 pub fn largest_contribution(computed: &[f64], exact: &[f64], volumes: &[f64]) -> Option<Contribution> {
     // Scaled by the largest, so that the squares of tiny errors do not vanish.
     let errors = || computed.iter().zip(exact).map(|(computed, exact)| computed - exact);

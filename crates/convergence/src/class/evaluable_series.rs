@@ -147,7 +147,7 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// The first and the last value, in words.
-    fn from_to(&self) -> String {
+    fn first_to_last(&self) -> String {
         let [first, last] = [self.values[0], self.values[self.values.len() - 1]].map(|value| short(value.1));
         format!("the error goes from {first} to {last}")
     }
@@ -157,7 +157,7 @@ impl<'a> EvaluableSeries<'a> {
         let target = 0.1 * (found.at(self.finest().0) - found.limit).abs();
         let told = format!(
             "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a floor that",
-            self.from_to(),
+            self.first_to_last(),
             order(found.order),
             short(found.limit)
         );
@@ -169,7 +169,7 @@ impl<'a> EvaluableSeries<'a> {
         let next = 0.5 * self.finest().0;
         let reason = format!(
             "{} as if towards a limit of {} at order {}: {} levels cannot tell a limit from growth",
-            self.from_to(),
+            self.first_to_last(),
             short(found.limit),
             order(found.order),
             self.points.len()

@@ -1,38 +1,38 @@
 //! A single level that the others contradict: a run of another case, an output of another time, a wrong unit.
 //!
-//! Wherever it lies, an order on the finest window says nothing of it. It is told where no smooth curve goes through all
-//! levels and one goes through all but this.
+//! The order on the finest window may not show it. It is named where no smooth curve goes through all levels and one goes
+//! through all levels but this.
 
 use crate::fit::approach_to_limit::fit_cancelling;
 use crate::fit::two_terms::{TwoTerms, fit_two_terms};
 use crate::fit::{Exponent, solve};
 use oedometer_soil::elementary::{exp, ln};
 
-/// A level off what the others say.
+/// A level that contradicts the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OddLevel {
     /// Size of the level.
     pub size: f64,
-    /// Its error over what the others say that it is.
+    /// Its error over the value that the others suggest.
     pub factor: f64,
 }
 
-/// Fewest levels: three to say something, and one to contradict.
+/// Fewest levels: three that agree, and one that contradicts.
 const LEAST_LEVELS: usize = 4;
 
-/// A curve that goes by the levels within this (root mean square, of ln *e*) explains them.
+/// A curve with a smaller residual than this (root mean square, of ln *e*) explains the levels.
 const SMOOTH: f64 = 0.01;
 
-/// How many times worse than that through the others the best curve through all has to be.
+/// Factor by which the best curve through all levels must be worse than that through the others.
 const WORSE: f64 = 5.0;
 
 /// Least factor, in ln *e*, by which a level is off: a fifth.
 const OFF: f64 = 0.2;
 
-/// How many times what the others scatter it is off.
+/// Factor over the scatter of the others by which it must be off.
 const CLEAR: f64 = 10.0;
 
-/// Exponents of two terms that may both be real; a term that is gone after one level is no explanation.
+/// Largest difference of the exponents of two terms; a term that vanishes after one level is no explanation.
 const NEAR_EXPONENTS: f64 = 3.0;
 
 /// The level that stands alone among (size, error) points, where there is one.
@@ -46,7 +46,7 @@ pub(crate) fn odd_level(points: &[(f64, f64)]) -> Option<OddLevel> {
     let [(scatter, odd), (next, _), ..] = *without.as_slice() else { return None };
     let off = ln(odd.factor).abs();
     let stands_alone = scatter * WORSE < next && off > OFF && off > CLEAR * scatter;
-    // With noise in the others too a curve through all needs not be as good as without it.
+    // With noise in the others too, a curve through all levels need not be as good as without noise.
     (stands_alone && !is_smooth(points, SMOOTH.max(WORSE * scatter))).then_some(odd)
 }
 

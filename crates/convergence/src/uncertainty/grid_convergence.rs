@@ -31,7 +31,7 @@ pub enum Behaviour {
     Equal,
 }
 
-/// What three grids tell about a value.
+/// The behaviour of a value on three grids.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ThreeGrids {
     /// The behaviour.

@@ -38,7 +38,7 @@ pub enum Estimator {
     Range,
 }
 
-/// What refinement tells about a value.
+/// The numerical uncertainty of a value, with what it is derived from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NumericalUncertainty {
     /// Sizes and values from coarse to fine.

@@ -4,7 +4,7 @@
 use crate::case::IntegratorKind;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::peers::{Comparison, Peer};
-use crate::judge::comparison::work_precision::{NextLevel, TimedRun, WorkPrecision};
+use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
 use crate::render::chart::describe::{Chart, ChartAxis, Series, Style};
 use crate::render::page::Block;
 use crate::render::report::{StudyResults, labels};
@@ -30,9 +30,6 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
             &precision,
         )),
     ];
-    if !precision.next_levels.is_empty() {
-        blocks.push(Block::Table(next_table(&precision.next_levels)));
-    }
     if peers::solve_their_column(&precision.runs) {
         blocks.push(Block::Table(peers_table(&peers::compare(&precision.runs))));
     }
@@ -123,32 +120,6 @@ fn runs_table(title: &str, runs: &[&TimedRun<'_>], precision: &WorkPrecision<'_>
         }),
     );
     Table::of(title, run_columns(), runs.iter().map(|run| run_cells(run).to_vec())).notes(notes)
-}
-
-fn next_table(levels: &[NextLevel]) -> Table {
-    let share = |off: Option<f64>| Cell::of(off, Cell::Percent, "the coarser levels predict none");
-    let rows = levels.iter().map(|level| {
-        let held = level.finest_predicted;
-        vec![
-            Cell::Text(level.label.clone()),
-            Cell::Number(1e3 * level.finest.cost),
-            Cell::Error(level.finest.error),
-            Cell::Number(1e3 * level.next.cost),
-            Cell::of(level.next.error, Cell::Error, "the series does not converge"),
-            Cell::Order(level.next.cost_exponent),
-            share(held.map(|held| held.cost / level.finest.cost - 1.0)),
-            share(held.and_then(|held| held.error).map(|error| error / level.finest.error - 1.0)),
-        ]
-    });
-    Table::of(
-        "One more level: cells half as large",
-        columns(
-            "runs | > finest mesh: wall [ms] | > error | > next mesh, predicted: wall [ms] | > error | > cost \
-                 exponent | > finest mesh predicted from the coarser ones: wall off by | > error off by",
-        ),
-        rows,
-    )
-    .note("the cost grows as h^−exponent; the error falls with the order and the floor of its class")
 }
 
 /// What a program is, on how many cells, by which steps, and where its errors were sampled.
