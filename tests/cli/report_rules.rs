@@ -201,7 +201,7 @@ fn a_failing_expectation_stands_open_in_the_red_box_and_what_is_not_answered_in_
         .next()
         .expect("its end");
     assert!(red.contains("0 of 1 expectations are met") && red.contains("cells=8"), "{red}");
-    assert!(red.contains("outside 5.0e-1 … 9.0e-1"), "{red}");
+    assert!(red.contains("outside 0.5 … 0.9"), "{red}");
     let front = fs::read_to_string(at.join("made/README.md")).expect("a page");
     assert_eq!(front.matches("## Not in these records").count(), 1, "{front}");
     assert!(front.contains("Not as expected: `short`"), "{front}");
