@@ -351,7 +351,7 @@ const CYCLES: usize = 8;
 
 /// The moving step of `GC-SRI-patch` and its passes, in a column of one dimension and of two.
 ///
-/// `operators` builds all weights anew; `to nodes` is the pass that sums masses, momenta and forces, `back` the one
+/// `operators` builds all weights anew; `to nodes` is the pass that sums masses and momenta, `back` the one
 /// that maps velocities back; what is left are the nodes, the points' motion, their stresses and their pressures.
 /// Two bounds of the pass to the nodes stand beside it: `adding to nodes`, its multiply-adds with nothing to wait
 /// for, each with a coefficient and a value from the cache; and `waiting`: neighbours give to the same node, so every
@@ -390,15 +390,15 @@ fn moving_cost<const D: usize>(problem: Problem<D>, points_per_cell: usize) -> [
     let mut body = Body::new(problem);
     let count = body.points.len();
     let mut node_sums = vec![0.0; count / points_per_cell + 1];
-    // Three masses, two momenta, the forces on the mixture and on the water, at three nodes a direction.
+    // Three masses and two momenta at three nodes a direction.
     let nodes: usize = (0..D).map(|_| 3).product();
-    let mut adding = streaming(count, nodes * (3 + 2 * D + D * D + D));
+    let mut adding = streaming(count, nodes * (3 + 2 * D));
     let (mut least, mut chain) = ([f64::INFINITY; PASSES.len()], 1);
     for _ in 0..MOVING_ROUNDS {
         let mut time = |pass: usize, one: &mut dyn FnMut()| keep_least(&mut least[pass], MOVING_STEPS, one);
         time(0, &mut || body.explicit_step(black_box(dt), &settings));
         time(1, &mut || body.build_operators());
-        time(2, &mut || body.map_masses_velocities_and_forces());
+        time(2, &mut || body.map_masses_and_velocities());
         time(3, &mut || body.map_velocities());
         time(5, &mut || {
             for point in 0..count {

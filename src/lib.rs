@@ -40,30 +40,30 @@
 //! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/momentum.rs:accelerations` |
 //! | 3, 5 | porosity | `crates/soil/src/material.rs:porosity_at` |
 //! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/body.rs:volume_rate` |
-//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/law.rs:conductivity` |
+//! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/conductivity.rs:conductivity` |
 //! | 8 | selective reduced integration | `crates/mpm/src/explicit/mod.rs:update_pressure` |
-//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/critical_step/formula.rs:combined_limit` |
+//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/drag/mod.rs:step_limit`, `crates/mpm/src/critical_step/formula.rs:combined_limit` |
 //! | 12 | consolidation | `crates/exact/src/consolidation/mod.rs:isochrone` |
 //! | 13 | Xie & Leo's column | `crates/exact/src/xie_leo.rs:fields` |
 //! | 14 | modes of the dynamic column | `crates/exact/src/dynamic_column/modes.rs:amplitude` |
 //! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `crates/exact/src/mandel/eigenmode_series.rs:sum`, `crates/exact/src/mandel/early.rs:ratios` |
-//! | 17 | chord mean of the conductivity | `crates/mpm/src/operators/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity_mean.rs:flow_potential` |
+//! | 17 | chord mean of the conductivity | `crates/mpm/src/drag/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
 //! | 18 | rigid plate | `crates/mpm/src/operators/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/bordered.rs:solve` |
 //! | 19 | own weight, free water | `crates/mpm/src/weighing_body.rs:add_weight` |
-//! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal_field.rs:fit` |
-//! | 21 | domains of water points | `crates/mpm/src/layers/water_domains.rs:take_domains` |
-//! | 22 | balances of two layers | `crates/mpm/src/layers/water_to_nodes.rs:map_water_masses`, `crates/mpm/src/layers/water_to_nodes.rs:map_forces` |
-//! | 23 | pressure along the water | `crates/mpm/src/layers/water_pressure.rs:update_pressure` |
+//! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |
+//! | 21 | domains of water points | `crates/mpm/src/double_point/water_points.rs:take_domains` |
+//! | 22 | balances of double-point MPM | `crates/mpm/src/double_point/mod.rs:map_water_masses`, `crates/mpm/src/double_point/mod.rs:map_forces` |
+//! | 23 | pressure along the water | `crates/mpm/src/double_point/water_pressure.rs:update_pressure` |
 //! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:of`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
 //! | 28 | neo-Hookean stress | `crates/soil/src/law.rs:neo_hookean_stress` |
-//! | 29 | the middle of a step | `crates/mpm/src/forced_body.rs:update_forced_pressure`, `crates/mpm/src/explicit/deformation.rs:middle_gradient` |
-//! | 30 | weights of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/state/domains.rs:follow` |
-//! | 31 | cells that remember a confined soil | `crates/mpm/src/state/confined_points.rs:share_out`, `crates/mpm/src/state/cell_memory.rs:spread_over_points` |
-//! | 32 | forces of cells with one rate | `crates/mpm/src/layers/cell_forces.rs:map_cell_forces`, `crates/mpm/src/layers/cell_pressures.rs:keep_cell_rates` |
-//! | 33 | slopes of velocities | `crates/mpm/src/explicit/affine.rs:add_slopes` |
-//! | 34 | lines that pressures fade to | `crates/mpm/src/layers/pressure_lines.rs:fade_beyond_lines` |
-//! | 35 | slopes of stresses | `crates/mpm/src/explicit/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/state/stress_planes.rs:fit` |
+//! | 29 | the middle of a step | `crates/mpm/src/forced_body.rs:update_forced_pressure`, `crates/mpm/src/explicit/stresses.rs:middle_gradient` |
+//! | 30 | shape functions of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/operators/corners.rs:follow` |
+//! | 31 | cell-averaged projection of a confined soil | `crates/mpm/src/probation/confined_points.rs:share_out`, `crates/mpm/src/probation/cell_averaged.rs:spread_over_points` |
+//! | 32 | forces of cells with one rate | `crates/mpm/src/double_point/water_pressure.rs:add_cell_forces`, `crates/mpm/src/double_point/water_pressure.rs:keep_cell_rates` |
+//! | 33 | velocities with their gradients (APIC) | `crates/mpm/src/explicit/apic.rs:add_velocity_gradients` |
+//! | 34 | lines that pressures fade to | `crates/mpm/src/probation/pressure_lines.rs:fade_beyond_lines` |
+//! | 35 | slopes of stresses | `crates/mpm/src/probation/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/probation/stress_slopes.rs:fit` |
 //!
 //! # The step
 //!
@@ -71,11 +71,11 @@
 //!
 //! | step | place |
 //! | :-- | :-- |
-//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:map_masses_velocities_and_forces` |
+//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:map_masses_and_velocities` |
 //! | 2, accelerations | `crates/mpm/src/explicit/points_to_nodes.rs:map_forces`, `crates/mpm/src/explicit/mod.rs:nodal_accelerations` |
-//! | 3, nodal velocities | `crates/mpm/src/explicit/nodal_step.rs:nodal_velocities` |
+//! | 3, nodal velocities | `crates/mpm/src/explicit/mod.rs:nodal_velocities` |
 //! | 4, points | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points` |
-//! | 5, mapping back | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points_and_map_back`, `crates/mpm/src/explicit/points_to_nodes.rs:map_velocities` |
+//! | 5, mapping back | `crates/mpm/src/explicit/points_to_nodes.rs:map_velocities` |
 //! | 6, effective stress | `crates/mpm/src/explicit/stresses.rs:update_effective_stress` |
 //! | 7, pressure | `crates/mpm/src/explicit/mod.rs:update_pressure`, `crates/mpm/src/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `crates/mpm/src/run/driver.rs:solve` |

@@ -11,7 +11,7 @@ use oedometer_mpm::explicit::scheme::Scheme;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::column::Shape;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use std::fmt;

@@ -4,7 +4,7 @@ use crate::case::keys::{Key, Value};
 use crate::case::{Case, Task, USUAL_POINTS, step_label};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::arrangement::Arrangement;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::typed;

@@ -5,7 +5,7 @@ use oedometer_mpm::method::{Basis, Configuration, Memory};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::SceneKind;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 
 /// Why a case cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

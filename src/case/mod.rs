@@ -260,7 +260,7 @@ mod tests {
     use oedometer_mpm::explicit::Drag;
     use oedometer_mpm::explicit::scheme::Scheme;
     use oedometer_mpm::scene::column::Shape;
-    use oedometer_soil::conductivity_mean::ConductivityMean;
+    use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::continuity::Continuity;
     use oedometer_soil::law::Law;
 

@@ -66,7 +66,7 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
             (squares / now.points.pressure.len() as f64).sqrt()
         },
         settlement_curve_gap: 0.0,
-        layers: now.totals.layers.map(|layers| {
+        layers: now.totals.double_point.map(|layers| {
             let pressed_out = now.settlement / (case.material.porosity * case.column.height);
             LayerBalance {
                 pore_water: layers.water_volume / layers.pore_volume - 1.0,

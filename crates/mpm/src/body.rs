@@ -2,25 +2,22 @@
 
 use crate::forcing::{Forced, Forcing};
 use crate::method::{Configuration, Method};
-use crate::operators::corners::{build_corners, corner_stencils};
+use crate::operators::corners::{Domains, build_corners, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::rigid_plate::RigidPlate;
-use crate::operators::self_weight::SelfWeight;
 use crate::operators::stencil::PointStencils;
 use crate::operators::strain_gradient::StrainOperator;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
-use crate::state::cell_memory::CellMemory;
+use crate::probation::cell_averaged::CellAverages;
+use crate::probation::confined_points::ConfinedPoints;
+use crate::probation::stress_slopes::StressPlanes;
 use crate::state::cells::Cells;
-use crate::state::confined_points::ConfinedPoints;
-use crate::state::domains::Domains;
 use crate::state::grid::Grid;
-use crate::state::nodes::each_of_runs;
 use crate::state::nodes::{Nodes, Support};
 use crate::state::points::Points;
-use crate::state::stress_planes::StressPlanes;
-use crate::state::velocity_slopes::VelocitySlopes;
+use crate::weighing_body::SelfWeight;
 use oedometer_soil::continuity::Continuity;
-use oedometer_soil::law::Stiffness;
+use oedometer_soil::law::StressLaw;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product};
 use std::sync::Arc;
@@ -104,8 +101,8 @@ pub struct Body<const D: usize> {
     pub cells: Cells<D>,
     /// Soil.
     pub material: Material,
-    /// Stiffness of the skeleton.
-    pub stiffness: Stiffness,
+    /// Law of the skeleton with its stiffness.
+    pub stress_law: StressLaw,
     /// Operators.
     pub method: Method,
     /// Configuration of the weights.
@@ -130,12 +127,13 @@ pub struct Body<const D: usize> {
     pub strain: StrainOperator<D>,
     /// Domains of the points where they turn with the material.
     pub domains: Option<Domains<D>>,
-    /// Slopes of the points' velocities, where they bring them to the nodes.
-    pub slopes: Option<VelocitySlopes<D>>,
+    /// Gradients of the velocities of skeleton and water at the points, 1/s, `[point][phase]`, where points bring them to
+    /// the nodes (APIC).
+    pub velocity_gradients: Vec<[Tensor<D>; 2]>,
     /// How stresses slope over the points' domains, where they do.
     pub stress_planes: Option<StressPlanes<D>>,
-    /// What the cells remember.
-    pub cell_memory: CellMemory<D>,
+    /// Means over the cells that the points follow, where they do.
+    pub cell_averages: CellAverages<D>,
     /// Faces that are held.
     support: Support<D>,
     /// Whether the basis reaches beyond a surface that moves through the grid.
@@ -186,7 +184,7 @@ impl<const D: usize> Body<D> {
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
-            stiffness: material.stiffness(),
+            stress_law: material.stress_law(),
             surface: LoadedSurface::of(&points, load)
                 .shaped(load_shape, &points)
                 .spread_by(method.basis, support)
@@ -197,10 +195,10 @@ impl<const D: usize> Body<D> {
             forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
             basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
             domains,
-            slopes: None,
+            velocity_gradients: Vec::new(),
             stress_planes: None,
             strain: StrainOperator::of(method.strain, count),
-            cell_memory: CellMemory::new(&grid, confined),
+            cell_averages: CellAverages::new(&grid, confined),
             support,
             splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),
@@ -296,7 +294,8 @@ impl<const D: usize> Body<D> {
     /// mean of its domain's ends where those are what its strain is taken between.
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
-        self.strain.carrier().map_or(of_basis, |ends| ends.value(self.grid.node_stride(), point, field))
+        let stride = self.grid.node_stride();
+        self.strain.carrier().map_or(of_basis, |ends| ends.values(stride, point, [field])[0])
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.
@@ -370,13 +369,6 @@ impl<const D: usize> Body<D> {
             }
         });
         value
-    }
-
-    /// `v_s + n (v_w − v_s)` at the nodes, with the nodal porosity: what docs/theory.md, Eq. 4
-    /// takes the divergence of.
-    pub fn nodal_flux(&mut self) {
-        let nodes = &mut self.nodes;
-        each_of_runs!(nodes, |first, N| nodes.flux_of::<N>(first));
     }
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.

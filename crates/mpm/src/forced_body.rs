@@ -8,11 +8,9 @@
 //! the divergence, and the time of the source.
 
 use crate::body::Body;
-use crate::explicit::deformation::to_middle;
+use crate::explicit::stresses::to_middle;
 use crate::method::PressureIntegration;
-use crate::operators::pairs::add_weighted;
-use crate::operators::recovery::points_in_cells::points_in_cells;
-use crate::operators::stencil::with_stencils;
+use crate::operators::recovery::points_in_cells;
 use crate::operators::volumetric::Place;
 use oedometer_soil::tensor::{Tensor, Vector, identity, product};
 
@@ -27,23 +25,19 @@ impl<const D: usize> Body<D> {
     /// Adds the body forces to those on the nodes, by the points' own volumes.
     pub(crate) fn add_body_forces(&mut self) {
         let Some(forced) = &self.forcing else { return };
-        let (stride, points, nodes) = (*self.grid.node_stride(), &self.points, &mut self.nodes);
-        with_stencils!(&self.basis, stencils => {
-            let blocks = stencils.blocks();
-            for (point, forces) in forced.forces().iter().enumerate() {
-                let volume = points.volume(point);
-                let [mixture, water] = forces.map(|force| force.map(|component| volume * component));
-                blocks.visit_filled_runs(&stride, point, |run| {
-                    let places = run.first..run.first + run.weights.len();
-                    let forces = nodes.mixture_force[places.clone()].iter_mut().zip(&mut nodes.water_force[places]);
-                    for (weight, (on_mixture, on_water)) in run.weights.iter().zip(forces) {
-                        let weight = run.across[0] * weight;
-                        add_weighted(on_mixture, weight, &mixture);
-                        add_weighted(on_water, weight, &water);
-                    }
-                });
+        let (points, nodes) = (&self.points, &mut self.nodes);
+        let given = |point: usize| {
+            let volume = points.volume(point);
+            forced.forces()[point].map(|force| force.map(|component| volume * component))
+        };
+        self.basis.sum_values(self.grid.node_stride(), given, &mut nodes.sums.phases);
+        for &node in &nodes.active {
+            let [mixture, water] = nodes.sums.phases[node];
+            for d in 0..D {
+                nodes.mixture_force[node][d] += mixture[d];
+                nodes.water_force[node][d] += water[d];
             }
-        });
+        }
     }
 
     /// Brings cells and nodes to the volumes of the middle of a step of points that have been strained, and back.
@@ -70,7 +64,7 @@ impl<const D: usize> Body<D> {
         self.find_centres();
         self.take_sources(0.5 * dt);
         self.enter_middle();
-        self.nodal_flux();
+        self.nodes.take_flux();
         self.evaluate_sites(|body, place, porosity| {
             let back = body.half_step_back(place, dt);
             let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));

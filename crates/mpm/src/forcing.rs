@@ -4,7 +4,7 @@
 //! A scene whose motion was chosen gives one ([`Forcing`]); [`Forced`] is what a body keeps of it during a run. It is
 //! asked for all points of a time at once: what is of the time alone is then made once.
 
-use crate::formulation::Formulation;
+use crate::run::integrator::Formulation;
 use crate::state::grid::Grid;
 use crate::state::points::Points;
 use oedometer_soil::tensor::{Tensor, Vector};

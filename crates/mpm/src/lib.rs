@@ -1,15 +1,14 @@
-//! The solver core: the v–w material point method for saturated soil, in one layer of points or in two.
+//! The solver core: the v–w material point method for saturated soil, with one set of material points or with two.
 //!
-//! A method is four independent operators (`method`), each sparse between points, nodes and cell
-//! centres: weights (`shape`, `stencil`), strain gradient (`stencil`), pressure divergence
-//! (`cells`) and recovery (`recovery`). A `body` joins them with points and nodes; `explicit` is
-//! the step of Zheng et al. (2021); `assembled` is the same step as one banded map where nothing
-//! moves; `layers` puts the water into points of its own; `run` drives any of them from output to
-//! output; `forcing` is what acts on every point from outside, `forced_body` what that does to a
-//! body; `implicit` takes steps of any size on the same operators, with the linear systems of
-//! `direct_solver`. Loops over points and dense fronts run in the widest registers that `wide` finds.
-//! `scene` describes the physical problems, and names the exact solutions that hold for each; the
-//! solver itself uses neither.
+//! A method is four independent operators (`method`), each sparse between points, nodes and cell centres: shape
+//! functions, strain gradient, pressure divergence and recovery (`operators`). A `body` joins them with points, nodes and
+//! cells (`state`); `explicit` is the step of Zheng et al. (2021); `assembled` is the same step as one banded map where
+//! nothing moves; `double_point` puts the water into points of its own; `implicit` takes steps of any size on the same
+//! operators, with the linear systems of `direct_solver`; `run` drives any of them from output to output. `drag` is the
+//! drag of a point, of a node, and what it allows as a step. `forcing` is what acts on every point from outside.
+//! `probation` holds own inventions that have to prove themselves. Loops over points and dense fronts run in the widest
+//! registers that `wide` finds. `scene` describes the physical problems and names the exact solutions that hold for each;
+//! the solver itself uses neither.
 //!
 //! Nothing here knows of studies, records or reports.
 
@@ -19,28 +18,28 @@
 pub mod assembled;
 pub mod body;
 pub mod critical_step;
-pub mod direct_solver;
-mod energy_of_body;
+mod direct_solver;
+mod double_point;
+mod drag;
 pub mod explicit;
-pub mod forced_body;
+mod forced_body;
 pub mod forcing;
-pub mod formulation;
 pub mod implicit;
-pub mod layers;
-pub mod loaded_body;
+mod loaded_body;
 pub mod method;
-pub mod momentum;
+mod momentum;
 pub mod operators;
+mod probation;
 pub mod run;
 pub mod scene;
 pub mod state;
 pub mod time_limit;
-pub mod undrained_start;
-pub mod weighing_body;
-pub mod wide;
+mod undrained_start;
+mod weighing_body;
+mod wide;
 
 #[cfg(test)]
 mod tests {
+    pub(crate) mod double_point_columns;
     mod registers;
-    pub(crate) mod two_layer_columns;
 }

@@ -168,10 +168,7 @@ impl<const D: usize> Body<D> {
         let pressures = rows.at_points(site_pressures);
         for point in 0..self.points.len() {
             let (gradient, dilation) = self.gradient_of(point, rows, strained);
-            let mut stress = self.stiffness.stress(&gradient);
-            for d in 0..D {
-                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(dilation);
-            }
+            let stress = self.stress_law.elastic_stress(&gradient, dilation);
             let of_basis = self.basis.value(self.grid.node_stride(), point, displacements);
             let moved = self.carrying(point, displacements, of_basis);
             self.points.pressure[point] += pressures[point];

@@ -1,5 +1,5 @@
 //! Stress–strain laws of the skeleton, docs/theory.md, section 2: `dσ'/dt = C(E, ν) : sym ∇v_s` on the current
-//! configuration, and the conductivity that goes with each.
+//! configuration. Every integrator updates stresses by [`StressLaw::update`].
 
 use crate::elementary;
 use crate::tensor::{Tensor, product_with_transpose};
@@ -76,27 +76,6 @@ impl Law {
             Self::NeoHookean => f64::NAN,
         }
     }
-
-    /// What the water has to overcome at some volume ratios, `γ_w/k` in N s/m⁴, from that of the initial one: the law is
-    /// asked once, and where the conductivity is constant nothing is divided.
-    #[inline]
-    pub fn resistivities<const N: usize>(self, initial: f64, volume_ratios: &[f64; N]) -> [f64; N] {
-        match self {
-            Self::Linear => [initial; N],
-            law => volume_ratios.map(|ratio| initial / law.conductivity(1.0, ratio)),
-        }
-    }
-
-    /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one.
-    #[inline]
-    pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {
-        match self {
-            Self::Linear => initial,
-            Self::LogLinear | Self::PorosityDependent | Self::Engineering | Self::NeoHookean => {
-                initial * volume_ratio * volume_ratio
-            }
-        }
-    }
 }
 
 /// Isotropic elastic stiffness.
@@ -152,21 +131,69 @@ impl Stiffness {
     }
 }
 
+/// What a step does to the skeleton at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainIncrement<const D: usize> {
+    /// Displacement gradient whose symmetric part is the strain, with the volume of B-bar shared by its diagonal.
+    pub gradient: Tensor<D>,
+    /// Volume that B-bar adds to the strain; zero without it.
+    pub dilation: f64,
+    /// Volume ratio `J` before and after the step.
+    pub volume_ratio: [f64; 2],
+}
+
+/// A law with the stiffness of a soil: what an effective stress follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressLaw {
+    /// The law.
+    pub law: Law,
+    /// Stiffness in the initial state.
+    pub stiffness: Stiffness,
+}
+
+impl StressLaw {
+    /// Stress, Pa, of a small strain in the initial state, with the volume that B-bar adds to it.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
+    pub fn elastic_stress<const D: usize>(&self, gradient: &Tensor<D>, dilation: f64) -> Tensor<D> {
+        let mut stress = self.stiffness.stress(gradient);
+        let shared = self.stiffness.shared_dilation_stress::<D>(dilation);
+        for d in 0..D {
+            stress[d][d] += shared;
+        }
+        stress
+    }
+
+    /// Takes the state of the soil at a point through a step. The state is the effective stress, Pa; a law with a memory
+    /// would have its variables beside it. `deformation` is the deformation gradient since the start, which hyperelastic
+    /// laws ask for.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
+    pub fn update<const D: usize>(
+        &self,
+        stress: &mut Tensor<D>,
+        strain: &StrainIncrement<D>,
+        deformation: impl FnOnce() -> Tensor<D>,
+    ) {
+        let [before, after] = strain.volume_ratio;
+        if self.law.is_hyperelastic() {
+            *stress = self.stiffness.neo_hookean_stress(&deformation(), after, elementary::ln(after));
+            return;
+        }
+        let change = self.elastic_stress(&strain.gradient, strain.dilation);
+        let modulus = self.law.modulus_ratio(before, after);
+        for i in 0..D {
+            for j in 0..D {
+                stress[i][j] += modulus * change[i][j];
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::material::Material;
-
-    #[test]
-    fn the_resistivity_is_the_weight_of_water_over_the_conductivity() {
-        for law in Law::ALL {
-            let ratios = [1.0, 0.7, 1.3];
-            for (ratio, resistivity) in ratios.iter().zip(law.resistivities(1e4 / 1e-3, &ratios)) {
-                let expected = 1e4 / law.conductivity(1e-3, *ratio);
-                assert!((resistivity / expected - 1.0).abs() < 1e-15, "{} at {ratio}", law.name());
-            }
-        }
-    }
 
     #[test]
     fn a_uniaxial_strain_meets_the_oedometric_modulus() {

@@ -4,7 +4,7 @@
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod conductivity_mean;
+pub mod conductivity;
 pub mod continuity;
 pub mod elementary;
 pub mod law;

@@ -1,9 +1,9 @@
 //! Saturated soil: its parameters and what follows from them.
 
-use crate::conductivity_mean::ConductivityMean;
+use crate::conductivity::ConductivityMean;
 use crate::continuity::Continuity;
 use crate::elementary;
-use crate::law::{Law, Stiffness};
+use crate::law::{Law, Stiffness, StressLaw};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the saturated soil in its initial state, SI.
@@ -104,7 +104,13 @@ impl Material {
         -self.water_bulk_modulus * elementary::ln_1p(strain / self.porosity)
     }
 
-    /// The skeleton's stiffness as the stress update uses it.
+    /// The law with its stiffness, by which stresses are updated.
+    #[inline]
+    pub fn stress_law(&self) -> StressLaw {
+        StressLaw { law: self.law, stiffness: self.stiffness() }
+    }
+
+    /// Isotropic stiffness in the initial state.
     #[inline]
     pub fn stiffness(&self) -> Stiffness {
         let shear = self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio));

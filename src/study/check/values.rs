@@ -10,7 +10,7 @@ use crate::study::reading::Placed;
 use oedometer_mpm::method::{Method, PressureIntegration, Recovery};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::law::Law;
 use std::ops::RangeInclusive;
 

@@ -12,10 +12,8 @@
 //! & Wanner 2006, section IX.8): `u` at the start of the last step times the force at its end, and the mean of both in the
 //! work.
 
-use crate::assembled::assembled_state::{LANES, MARGIN, SOLID, WATER, lanes};
-use crate::assembled::rows::RowStorage;
-use crate::assembled::rows::banded_rows::{BandsWithin, REACH};
-use crate::assembled::rows::block_products::{Displacements, Rows};
+use crate::assembled::rows::{BandsWithin, REACH, RowStorage, Rows};
+use crate::assembled::state::{Displacements, LANES, MARGIN, SOLID, WATER, lanes};
 use crate::assembled::step::{AssembledStep, BlockConstants};
 use crate::run::energy::Energy;
 use oedometer_soil::tensor::Vector;

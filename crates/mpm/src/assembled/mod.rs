@@ -13,12 +13,10 @@
 //! hold the two together to round-off. `operators` takes the maps from a body, `rows` stores them and
 //! `step` goes through time.
 
-pub mod assembled_state;
+mod constraints;
 mod energy;
-pub mod operators;
-pub mod rows;
-pub mod sliding_rows;
+mod operators;
+mod rows;
+mod state;
 pub mod step;
-pub mod step_operator;
 pub mod stiffness;
-pub mod tied_rows;

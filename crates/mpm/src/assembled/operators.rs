@@ -1,8 +1,7 @@
-//! What a frozen step needs of its body: rows between those nodes that move, and constants of each.
+//! What a frozen step needs of its body: rows between those nodes that move.
 
-use crate::assembled::sliding_rows::SlidingRows;
+use crate::assembled::constraints::{SlidingRows, TiedRows};
 use crate::assembled::stiffness::entry_of;
-use crate::assembled::tied_rows::TiedRows;
 use crate::body::Body;
 use crate::operators::volumetric::VolumetricRows;
 use oedometer_soil::tensor::{Tensor, Vector};
@@ -14,8 +13,8 @@ pub struct FrozenOperators<const D: usize> {
     pub nodes: Vec<usize>,
     /// Nodes of the body.
     pub node_count: usize,
-    /// Constants of each row.
-    pub constants: Vec<NodeConstants<D>>,
+    /// One where a component of a phase is free, else zero, by row.
+    pub free: Vec<[Vector<D>; 2]>,
     /// `D`: dilation at each site over the displacements, `[site] → (row, 1/m)`.
     pub divergence: Vec<Vec<(usize, Vector<D>)>>,
     /// `A Q`: force of a unit dilation of each site with its sign turned, `[row] → (site, N)`.
@@ -35,37 +34,9 @@ pub struct FrozenOperators<const D: usize> {
     pub volumetric: VolumetricRows<D>,
 }
 
-/// What is constant about one node, and its start.
-#[derive(Clone, Copy, Debug)]
-pub struct NodeConstants<const D: usize> {
-    /// One where a component of a phase is free, else zero.
-    pub free: [Vector<D>; 2],
-    /// Porosity.
-    pub porosity: f64,
-    /// One over the mass of the grains, 1/kg.
-    pub per_solid_mass: f64,
-    /// `ρ_w V`, kg.
-    pub water_inertia: f64,
-    /// Mass of the water over that of the grains.
-    pub water_share: f64,
-    /// Drag `n γ_w V/k`, N s/m.
-    pub drag: f64,
-    /// Force on the mixture, N.
-    pub mixture_force: Vector<D>,
-    /// Part of it that is the load, N.
-    pub load_force: Vector<D>,
-    /// Force on the water, N.
-    pub water_force: Vector<D>,
-    /// Velocity of both phases, m/s.
-    pub velocity: [Vector<D>; 2],
-}
-
 impl<const D: usize> FrozenOperators<D> {
-    /// Takes the present operators, forces and velocities of a body.
+    /// Takes the present operators of a body.
     pub fn of(body: &Body<D>) -> Self {
-        let mut body = body.clone();
-        body.map_velocities();
-        body.map_forces();
         let fields = &body.nodes;
         let is_free = |node: &usize| fields.free[*node] != [0.0; D] || fields.water_free[*node] != [0.0; D];
         let nodes: Vec<usize> = (0..fields.len()).filter(is_free).collect();
@@ -76,37 +47,19 @@ impl<const D: usize> FrozenOperators<D> {
         let volumetric = body.volumetric_rows();
         let skeleton = body.skeleton_stiffness(&volumetric).rows;
         let forces = body.coupled_pressure_forces(&volumetric);
-        let projection = projection(&body);
+        let projection = projection(body);
         Self {
-            constants: nodes.iter().map(|node| NodeConstants::of(&body, *node)).collect(),
+            free: nodes.iter().map(|node| [fields.free[*node], fields.water_free[*node]]).collect(),
             divergence: volumetric.divergence.iter().map(|row| numbered(row, &number)).collect(),
             pressure_force: nodes.iter().map(|node| forces[*node].clone()).collect(),
             skeleton_force: nodes.iter().map(|node| numbered(&skeleton[*node], &number)).collect(),
             projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),
             settling: numbered(&body.settling_weights(), &number),
-            tied: TiedRows::of(&body, &number),
-            sliding: SlidingRows::of(&body, &number),
+            tied: TiedRows::of(body, &number),
+            sliding: SlidingRows::of(body, &number),
             node_count: fields.len(),
             volumetric,
             nodes,
-        }
-    }
-}
-
-impl<const D: usize> NodeConstants<D> {
-    fn of(body: &Body<D>, node: usize) -> Self {
-        let fields = &body.nodes;
-        Self {
-            free: [fields.free[node], fields.water_free[node]],
-            porosity: fields.porosity[node],
-            per_solid_mass: fields.per_solid_mass[node],
-            water_inertia: body.material.water_density * fields.volume[node],
-            water_share: fields.water_mass[node] * fields.per_solid_mass[node],
-            drag: fields.drag[node],
-            mixture_force: fields.mixture_force[node],
-            load_force: fields.external_force[node],
-            water_force: fields.water_force[node],
-            velocity: [fields.solid_velocity[node], fields.water_velocity[node]],
         }
     }
 }

@@ -1,18 +1,21 @@
-//! The frozen step: accelerations, kick and drift.
+//! The frozen step: accelerations, kick and drift; and what it makes of states without loads, for stability analysis.
 
-use crate::assembled::assembled_state::{FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes};
-use crate::assembled::operators::{FrozenOperators, NodeConstants};
-use crate::assembled::rows::RowStorage;
-use crate::assembled::rows::banded_rows::{BandsWithin, REACH};
-use crate::assembled::rows::block_products::{Displacements, Rows};
-use crate::assembled::sliding_rows::SlidingRows;
-use crate::assembled::tied_rows::TiedRows;
+#![expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+
+use crate::assembled::constraints::{SlidingRows, TiedRows};
+use crate::assembled::operators::FrozenOperators;
+use crate::assembled::rows::{BandsWithin, REACH, RowStorage, Rows};
+use crate::assembled::state::{
+    Displacements, FIELDS, FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes,
+};
 use crate::body::Body;
+use crate::drag::NodalDrag;
 use crate::explicit::ExplicitSettings;
-use crate::momentum::{NodalBalance, implicit_drag, per_water_inertia};
+use crate::momentum::NodalBalance;
 use crate::operators::volumetric::VolumetricRows;
 use crate::run::profile::{Phase, enter};
 use crate::wide::wide;
+use nalgebra::DMatrix;
 use oedometer_soil::tensor::{Vector, dot};
 
 /// A frozen body with its step assembled.
@@ -72,7 +75,10 @@ pub(crate) struct BlockConstants<const D: usize> {
 impl<const D: usize> AssembledStep<D> {
     /// Assembles the step of a body on its present operators, velocities and forces.
     pub fn new(body: &Body<D>) -> Self {
-        let operators = FrozenOperators::of(body);
+        let mut body = body.clone();
+        body.map_velocities();
+        body.map_forces();
+        let (operators, fields) = (FrozenOperators::of(&body), &body.nodes);
         let count = operators.nodes.len();
         let mut step = Self {
             rows: RowStorage::of(&operators),
@@ -86,14 +92,15 @@ impl<const D: usize> AssembledStep<D> {
             tied: operators.tied,
             sliding: operators.sliding,
         };
-        for (row, node) in operators.constants.iter().enumerate() {
-            step.constants[row / LANES].set(row % LANES, node);
-            for phase in [SOLID, WATER] {
-                step.state.velocity[phase][MARGIN + row] = node.velocity[phase];
-            }
-            if node.load_force != [0.0; D] {
-                let unloaded_force = std::array::from_fn(|d| node.mixture_force[d] - node.load_force[d]);
-                step.loaded.push(LoadedRow { row, unloaded_force, load_force: node.load_force });
+        for row in 0..count {
+            let node = step.nodes[row];
+            step.constants[row / LANES].set(row % LANES, &body, node);
+            step.state.velocity[SOLID][MARGIN + row] = fields.solid_velocity[node];
+            step.state.velocity[WATER][MARGIN + row] = fields.water_velocity[node];
+            let load_force = fields.external_force[node];
+            if load_force != [0.0; D] {
+                let unloaded_force = std::array::from_fn(|d| fields.mixture_force[node][d] - load_force[d]);
+                step.loaded.push(LoadedRow { row, unloaded_force, load_force });
             }
         }
         step
@@ -104,11 +111,11 @@ impl<const D: usize> AssembledStep<D> {
         for block in &mut self.constants {
             for i in (0..LANES).filter(|i| block.water_inertia[*i] > 0.0) {
                 let (inertia, share) = (block.water_inertia[i], block.whole_water_share[i]);
-                let implicit = implicit_drag(settings.drag, kick, block.drag[i], share, inertia);
-                block.implicit_drag[i] = implicit;
+                let drag = NodalDrag::of(settings.drag, kick, block.drag[i], share, inertia);
+                block.implicit_drag[i] = drag.implicit;
                 for d in 0..D {
                     let (share, free) = (block.water_share[d][i], block.free[WATER][d][i]);
-                    block.per_water_inertia[d][i] = per_water_inertia(inertia, implicit, share, free);
+                    block.per_water_inertia[d][i] = free / drag.inertia(inertia, share);
                 }
             }
         }
@@ -150,7 +157,6 @@ impl<const D: usize> AssembledStep<D> {
     }
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn kick_and_drift_by_rows(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         let Self { rows, constants, state, tied, sliding, .. } = self;
         match rows {
@@ -281,38 +287,37 @@ impl<const D: usize> BlockConstants<D> {
 
     /// The balance of a component of a row, for the kick and drag last set.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
     fn balance(&self, d: usize, i: usize) -> NodalBalance {
         NodalBalance {
             per_solid_mass: self.per_solid_mass[d][i],
             water_share: self.water_share[d][i],
             per_water_inertia: self.per_water_inertia[d][i],
-            drag: self.drag[i],
-            implicit_drag: self.implicit_drag[i],
+            drag: NodalDrag { coefficient: self.drag[i], implicit: self.implicit_drag[i] },
         }
     }
 
     /// Takes over what is constant about one node.
-    fn set(&mut self, i: usize, node: &NodeConstants<D>) {
+    fn set(&mut self, i: usize, body: &Body<D>, node: usize) {
+        let fields = &body.nodes;
+        let water_share = fields.water_mass[node] * fields.per_solid_mass[node];
         for d in 0..D {
-            let free = node.free[SOLID][d];
+            let free = fields.free[node][d];
             self.free[SOLID][d][i] = free;
-            self.free[WATER][d][i] = node.free[WATER][d];
-            self.per_solid_mass[d][i] = free * node.per_solid_mass;
-            self.water_share[d][i] = free * node.water_share;
-            self.mixture_force[d][i] = node.mixture_force[d];
-            self.water_force[d][i] = node.water_force[d];
+            self.free[WATER][d][i] = fields.water_free[node][d];
+            self.per_solid_mass[d][i] = free * fields.per_solid_mass[node];
+            self.water_share[d][i] = free * water_share;
+            self.mixture_force[d][i] = fields.mixture_force[node][d];
+            self.water_force[d][i] = fields.water_force[node][d];
         }
-        self.porosity[i] = node.porosity;
-        self.water_inertia[i] = node.water_inertia;
-        self.whole_water_share[i] = node.water_share;
-        self.drag[i] = node.drag;
+        self.porosity[i] = fields.porosity[node];
+        self.water_inertia[i] = body.material.water_density * fields.volume[node];
+        self.whole_water_share[i] = water_share;
+        self.drag[i] = fields.drag[node];
     }
 }
 
 /// Accelerations of skeleton and water, and the velocities that they lead to within `kick` seconds.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn accelerate<const D: usize>(
     rows: &impl Rows<D>,
     constants: &[BlockConstants<D>],
@@ -353,7 +358,6 @@ fn accelerate<const D: usize>(
 
 /// Velocities mapped back after a kick, and the displacements that they make in a drift, both s.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 fn advance<const D: usize>(
     rows: &impl Rows<D>,
     constants: &[BlockConstants<D>],
@@ -404,6 +408,66 @@ fn advance<const D: usize>(
             set_lanes(strained, block, d, strain_displacement);
             set_lanes(flux, block, d, flux_displacement);
             set_lanes(moved, block, d, displacement);
+        }
+    }
+}
+
+impl<const D: usize> AssembledStep<D> {
+    /// Rows and components that are free in some phase, in order: the unknowns of the step operator.
+    fn free_components(&self) -> Vec<(usize, usize)> {
+        let is_free = |row: usize, d: usize| {
+            self.constants[row / LANES].free.iter().any(|free| free[d][row % LANES] > 0.0)
+        };
+        let components = (0..self.nodes.len()).flat_map(|row| (0..D).map(move |d| (row, d)));
+        components.filter(|(row, d)| is_free(*row, *d)).collect()
+    }
+
+    /// Number of unknowns of the step operator.
+    pub fn unknowns(&self) -> usize {
+        FIELDS * self.free_components().len()
+    }
+
+    /// The step as a matrix, loads removed: velocities of both phases, straining and flux displacement of
+    /// every free component, displacements in units of what a unit velocity makes in a step.
+    pub fn operator(&self, dt: f64, settings: &ExplicitSettings) -> DMatrix<f64> {
+        let mut step = self.clone();
+        step.forget_loads();
+        step.set_step(dt, settings);
+        let free = step.free_components();
+        // For a balanced matrix.
+        let unit = |field: usize| if field < 2 { 1.0 } else { dt };
+        let size = FIELDS * free.len();
+        let mut operator = DMatrix::zeros(size, size);
+        for (column, mut image) in operator.column_iter_mut().enumerate() {
+            let (field, (row, d)) = (column / free.len(), free[column % free.len()]);
+            step.come_to_rest();
+            step.state.field_mut(field)[MARGIN + row][d] = unit(field);
+            step.step(dt, settings);
+            for target in 0..FIELDS {
+                let values = step.state.field_mut(target);
+                for (place, (row, d)) in free.iter().enumerate() {
+                    image[target * free.len() + place] = values[MARGIN + row][*d] / unit(target);
+                }
+            }
+        }
+        operator
+    }
+
+    /// Forgets loads, stresses and displacements and sets every node in some motion: what grows from
+    /// there on grows by the step alone.
+    pub fn disturb(&mut self) {
+        self.forget_loads();
+        // A fixed sequence without a pattern on any grid (Knuth's multiplicative hash).
+        let mut seed = 1_u32;
+        for row in 0..self.nodes.len() {
+            for phase in [SOLID, WATER] {
+                for d in 0..D {
+                    seed = seed.wrapping_mul(2_654_435_761).wrapping_add(12_345);
+                    let free = self.constants[row / LANES].free[phase][d][row % LANES];
+                    self.state.velocity[phase][MARGIN + row][d] =
+                        free * (f64::from(seed) / f64::from(u32::MAX) - 0.5);
+                }
+            }
         }
     }
 }

@@ -154,11 +154,7 @@ impl<const D: usize> Body<D> {
             let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
             unit[e] = 1.0;
             entry.add_to(&mut displaced, &unit);
-            let mut stress = self.stiffness.stress(&displaced);
-            for d in 0..D {
-                stress[d][d] += self.stiffness.shared_dilation_stress::<D>(entry.dilation[e]);
-            }
-            stress
+            self.stress_law.elastic_stress(&displaced, entry.dilation[e])
         })
     }
 

@@ -1,6 +1,6 @@
 //! Wave speeds and the time-step limits that follow from them by formula.
 
-use crate::explicit::Drag;
+use crate::drag::{self, Drag};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
@@ -23,14 +23,6 @@ pub fn undrained_wave_speed(soil: &Material) -> f64 {
     ((soil.oedometric_modulus() + soil.coupling_modulus()) / density).sqrt()
 }
 
-/// Limit, s, of the explicit drag alone (docs/theory.md, Eq. 10):
-/// `2 / [(n² γ_w/k)(1/((1−n)ρ_s) + 1/(nρ_w))]`.
-pub fn drag_limit(soil: &Material) -> f64 {
-    let n = soil.porosity;
-    let drag = n * n * soil.unit_weight_of_water() / soil.hydraulic_conductivity;
-    2.0 / (drag * (1.0 / ((1.0 - n) * soil.grain_density) + 1.0 / (n * soil.water_density)))
-}
-
 /// Limit, s, by formula, safe for every method (docs/theory.md, Eq. 11): `Δt_w(√(1+z²) − z)` with `Δt_w = h/c` and
 /// `z = Δt_w/(2Δt_d)` where the drag is explicit.
 pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
@@ -38,7 +30,7 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
     match drag {
         Drag::Implicit | Drag::Centred => wave,
         Drag::Explicit => {
-            let z = wave / (2.0 * drag_limit(soil));
+            let z = wave / (2.0 * drag::step_limit(soil));
             // Rationalised: the difference of two large numbers where the drag rules.
             wave / ((1.0 + z * z).sqrt() + z)
         }
@@ -75,14 +67,14 @@ mod tests {
         let soil = Material::default();
         assert!((fastest_wave_speed(&soil, 0.3) - 2034.0).abs() < 1.0);
         assert!((undrained_wave_speed(&soil) - 1844.8).abs() < 0.5);
-        assert!((drag_limit(&soil) / 5.85e-5 - 1.0).abs() < 2e-3);
+        assert!((drag::step_limit(&soil) / 5.85e-5 - 1.0).abs() < 2e-3);
     }
 
     #[test]
     fn the_combined_limit_turns_into_the_drag_s_where_the_drag_rules() {
         let soil = Material { hydraulic_conductivity: 1e-9, ..Material::default() };
         let limit = combined_limit(&soil, 0.1, Drag::Explicit);
-        assert!((limit / drag_limit(&soil) - 1.0).abs() < 1e-6);
+        assert!((limit / drag::step_limit(&soil) - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 use crate::body::Problem;
 use crate::critical_step::formula;
 use crate::critical_step::predicted::{predict, whole_growth};
+use crate::drag;
 use crate::explicit::ExplicitSettings;
 use crate::run::integrator::{Formulation, IntegratorKind};
 use crate::run::results::outcome::{Failure, FailureKind, RunStatus};
@@ -157,7 +158,7 @@ pub fn critical_step<const D: usize>(
         unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
         wave_limit: cell_size / formula::fastest_wave_speed(soil, soil.porosity),
-        drag_limit: formula::drag_limit(soil),
+        drag_limit: drag::step_limit(soil),
         combined_limit: formula::combined_limit(soil, cell_size, settings.drag),
         probes,
     })

@@ -6,7 +6,7 @@
 //! that velocities live half a step off, and begins with half a kick (Verlet 1967; Hairer, Lubich &
 //! Wanner 2003): second order for the same work. The drag must then be centred too.
 
-use oedometer_soil::elementary;
+use crate::drag::Drag;
 use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 
@@ -26,36 +26,6 @@ impl Scheme {
     /// Whether this is the paper's; records of it say nothing of the scheme.
     pub fn is_paper(&self) -> bool {
         *self == Self::ForwardEuler
-    }
-}
-
-/// Time level at which the drag between skeleton and water is taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drag {
-    /// Old velocities: bounds the step by the drag.
-    Explicit,
-    /// New velocities, a 2 × 2 solve a node: no bound from the drag.
-    Implicit,
-    /// The mean over the step: of second order in it, and no bound either.
-    Centred,
-}
-
-words!(Drag: Explicit "explicit", Implicit "implicit", Centred "centred");
-
-impl Drag {
-    /// Weight of the new relative velocity in the drag of a kick, `z` its duration times the rate at
-    /// which the drag alone brings the phases together.
-    ///
-    /// Centred: the weight that makes the mean drag of `ṙ = −λ r + const` exact,
-    /// `1/(1 − e^{−z}) − 1/z` (exponential fitting; Liniger & Willoughby 1970). One half for a short
-    /// kick, and one where the drag is stiff: second order, and no limit on the step.
-    #[inline]
-    pub fn implicit_weight(self, z: impl FnOnce() -> f64) -> f64 {
-        match self {
-            Self::Explicit => 0.0,
-            Self::Implicit => 1.0,
-            Self::Centred => fitted_weight(z()),
-        }
     }
 }
 
@@ -95,7 +65,7 @@ impl Default for ExplicitSettings {
     }
 }
 
-/// The rhythm of a run: how long each kick lasts.
+/// How long each kick of a run lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rhythm {
     /// Last drift, s; 0 before the first.
@@ -114,11 +84,6 @@ impl Rhythm {
     }
 }
 
-#[inline]
-fn fitted_weight(z: f64) -> f64 {
-    if z < 1e-2 { 0.5 + z / 12.0 - z * z * z / 720.0 } else { -1.0 / elementary::exp_m1(-z) - 1.0 / z }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,16 +96,5 @@ mod tests {
         assert_eq!(kicks, [0.2, 0.4, 0.5 * (0.4 + 0.2)]);
         let mut rhythm = Rhythm::default();
         assert_eq!(rhythm.kick(0.4, &ExplicitSettings::default()), 0.4);
-    }
-
-    #[test]
-    fn a_centred_drag_decays_as_the_exponential() {
-        for z in [1e-6, 9e-3, 1.1e-2, 0.3, 4.0, 700.0, 1e9] {
-            let weight = Drag::Centred.implicit_weight(|| z);
-            // r⁺ = r − z ((1 − w) r + w r⁺)
-            let decay = (1.0 - z * (1.0 - weight)) / (1.0 + z * weight);
-            assert!((decay - (-z).exp()).abs() < 1e-13, "{z}: {decay}");
-            assert!((0.5..=1.0).contains(&weight));
-        }
     }
 }

@@ -1,256 +1,253 @@
-//! From nodal velocities to the stresses of the points: strains, volumes, domains, and what the law makes of them.
-//!
-//! Some neighbouring points are taken side by side: each line of the algorithm is a loop over them, without a branch,
-//! that the compiler turns into one over registers.
+//! Step 6: from nodal velocities to the deformation of the points, and to the stresses that the law makes of it.
+
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::body::Body;
-use crate::explicit::deformation::{Following, middle_gradient, relaxed, rotated, stretch_of, stretches_of};
 use crate::method::Configuration;
-use crate::operators::block_rows::{BlockRows, Blocks};
-use crate::operators::stencil::with_stencils;
+use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::StrainOperator;
-use crate::state::lanes::{FOUR, some_mut, some_of};
+use crate::run::profile::{Phase, enter};
+use crate::state::grid::SIXTH;
 use crate::state::points::Points;
 use crate::wide::wide;
-use oedometer_soil::elementary::ln_of_each;
-use oedometer_soil::law::{Law, Stiffness};
-use oedometer_soil::tensor::{Tensor, Vector, inverse, product};
+use oedometer_soil::elementary;
+use oedometer_soil::law::StrainIncrement;
+use oedometer_soil::tensor::{Tensor, identity, inverse, product};
+
+/// What follows the deformation of the points beside their volumes.
+#[derive(Clone, Copy)]
+struct Following {
+    /// Their domains.
+    domain: bool,
+    /// Their inverse deformation gradients.
+    inverse: bool,
+}
 
 impl<const D: usize> Body<D> {
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
     pub(crate) fn update_effective_stress(&mut self, dt: f64) {
+        enter(Phase::Stresses);
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
         let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
         match &strain {
-            StrainOperator::Basis => with_stencils!(&basis, stencils => {
-                wide!(self.strain_points(stencils.blocks(), dt));
-            }),
-            StrainOperator::Composite(stencils) => {
-                wide!(self.strain_points(stencils.blocks(), dt));
+            StrainOperator::Basis => {
+                with_stencils!(&basis, stencils => wide!(self.strain_points(stencils, dt)));
             }
-            StrainOperator::BetweenEnds(stencils) => {
-                wide!(self.strain_points(stencils.blocks(), dt));
-            }
+            StrainOperator::Composite(stencils) => wide!(self.strain_points(stencils, dt)),
+            StrainOperator::BetweenEnds(stencils) => wide!(self.strain_points(stencils, dt)),
         }
         (self.basis, self.strain) = (basis, strain);
         self.turn_domains();
     }
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn strain_points<const W: usize>(&mut self, stencils: Blocks<'_, D, W>, dt: f64) {
-        let stride = *self.grid.node_stride();
-        let field = &self.nodes.solid_velocity[..];
-        let is_total = self.configuration == Configuration::Total;
-        // A motion that is held against exact fields is followed at the middle of the step, to second order.
-        let is_at_middle = self.forcing.is_some();
-        let dilation_rates = self.method.strain.is_bbar().then_some(&self.dilation_rates[..]);
-        let update = StressUpdate {
-            deforms: self.configuration.deforms(),
-            following: self.following(),
-            law: self.material.law,
-            stiffness: self.stiffness,
-        };
-        let strained = Strained { stride, field, dt, is_total, is_at_middle, dilation_rates, update };
-        let count = self.points.len();
-        let whole = count / FOUR * FOUR;
-        for first in (0..whole).step_by(FOUR) {
-            strained.strain::<FOUR, W>(stencils.four(first), 0, first, &mut self.points);
-        }
-        for point in whole..count {
-            strained.strain::<1, W>(stencils.four(whole), point - whole, point, &mut self.points);
+    fn strain_points<const W: usize>(&mut self, stencils: &Stencils<D, W>, dt: f64) {
+        let (stride, law, following) = (*self.grid.node_stride(), self.stress_law, self.following());
+        let deforms = self.configuration.deforms();
+        let (field, points) = (&self.nodes.solid_velocity, &mut self.points);
+        let has_dilation = self.method.strain.is_bbar() && !law.law.is_hyperelastic();
+        for point in 0..points.len() {
+            let mut gradient = stencils.gradient(&stride, point, field);
+            if self.configuration == Configuration::Total {
+                gradient = product(&gradient, &points.inverse_deformation[point]);
+            }
+            // A motion that is held against exact fields is followed at the middle of the step, to second order.
+            if self.forcing.is_some() {
+                gradient = middle_gradient(&gradient, dt);
+            }
+            let mut increment = gradient;
+            for rate in increment.as_flattened_mut() {
+                *rate *= dt;
+            }
+            let before = points.volume_ratio[point];
+            if deforms {
+                deform(points, point, following, &increment);
+            }
+            let mut dilation = 0.0;
+            if has_dilation {
+                // Of the kinematics only the volume goes the way of the water's.
+                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+                dilation = dt * (self.dilation_rates[point] - trace);
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                if deforms {
+                    points.volume_ratio[point] *= stretch_of(dilation);
+                }
+            }
+            let volume_ratio = [before, points.volume_ratio[point]];
+            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio };
+            let stress = &mut points.effective_stress[point];
+            if deforms {
+                *stress = rotated(stress, &increment);
+            }
+            law.update(stress, &strain, || inverse(&points.inverse_deformation[point]).0);
         }
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let mut ratio = [self.points.volume_ratio[point]];
         let following = self.following();
-        deform(&mut self.points, point, following, &[*increment], &mut ratio);
-        [self.points.volume_ratio[point]] = ratio;
+        deform(&mut self.points, point, following, increment);
     }
 
-    #[inline]
     fn following(&self) -> Following {
+        let moves = self.configuration.moves_points();
         // A hyperelastic law asks for the whole deformation, and so do domains that turn.
         let is_whole = self.material.law.is_hyperelastic() || self.domains.is_some();
-        match self.configuration {
-            Configuration::Updated if self.method.domains_follow() && is_whole => Following::Both,
-            Configuration::Updated if self.method.domains_follow() => Following::Domain,
-            Configuration::Updated if is_whole => Following::InverseDeformation,
-            Configuration::Total => Following::InverseDeformation,
-            Configuration::Updated | Configuration::Frozen => Following::Nothing,
+        Following {
+            domain: moves && self.method.domains_follow(),
+            inverse: self.configuration == Configuration::Total || moves && is_whole,
         }
     }
 }
 
-/// What strains the points.
-struct Strained<'a, const D: usize> {
-    stride: [usize; D],
-    /// Nodal velocity of the skeleton, m/s.
-    field: &'a [Vector<D>],
-    dt: f64,
-    is_total: bool,
-    is_at_middle: bool,
-    dilation_rates: Option<&'a [f64]>,
-    update: StressUpdate,
-}
-
-impl<const D: usize> Strained<'_, D> {
-    /// Strains `N` points from a first one on, which is a lane of the rows.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn strain<const N: usize, const W: usize>(
-        &self,
-        rows: BlockRows<'_, D, W>,
-        lane: usize,
-        first: usize,
-        points: &mut Points<D>,
-    ) {
-        let dt = self.dt;
-        let mut gradients = rows.gradients::<N>(&self.stride, lane, self.field);
-        if self.is_total {
-            let inverse = some_of::<_, N>(&points.inverse_deformation, first);
-            for point in 0..N {
-                gradients[point] = product(&gradients[point], &inverse[point]);
-            }
-        }
-        if self.is_at_middle {
-            for gradient in &mut gradients {
-                *gradient = middle_gradient(gradient, dt);
-            }
-        }
-        let mut increments = gradients;
-        for increment in increments.as_flattened_mut().as_flattened_mut() {
-            *increment *= dt;
-        }
-        let mut dilations = None;
-        if let Some(rates) = self.dilation_rates {
-            let mut of_points = *some_of::<_, N>(rates, first);
-            for point in 0..N {
-                let trace: f64 = (0..D).map(|d| gradients[point][d][d]).sum();
-                of_points[point] = dt * (of_points[point] - trace);
-            }
-            dilations = Some(of_points);
-        }
-        self.update.apply(points, first, increments, dilations);
-    }
-}
-
-/// What a strain does to a point.
-#[derive(Clone, Copy)]
-struct StressUpdate {
-    /// Whether volumes follow.
-    deforms: bool,
-    following: Following,
-    law: Law,
-    stiffness: Stiffness,
-}
-
-impl StressUpdate {
-    /// Volumes, domains and stresses of some points, from a first one on, from their increments of the displacement gradient, and
-    /// from what B-bar adds to their volumes.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    fn apply<const D: usize, const N: usize>(
-        &self,
-        points: &mut Points<D>,
-        first: usize,
-        mut increments: [Tensor<D>; N],
-        dilations: Option<[f64; N]>,
-    ) {
-        let before = *some_of::<_, N>(&points.volume_ratio, first);
-        let mut ratios = before;
-        if self.deforms {
-            deform(points, first, self.following, &increments, &mut ratios);
-        }
-        if self.law.is_hyperelastic() {
-            *some_mut(&mut points.volume_ratio, first) = ratios;
-            let logarithms = ln_of_each(&ratios);
-            let inverses = some_of::<_, N>(&points.inverse_deformation, first);
-            let stresses = some_mut::<_, N>(&mut points.effective_stress, first);
-            for point in 0..N {
-                let deformation = inverse(&inverses[point]).0;
-                stresses[point] =
-                    self.stiffness.neo_hookean_stress(&deformation, ratios[point], logarithms[point]);
-            }
-            return;
-        }
-        if let Some(dilations) = dilations {
-            // Of the kinematics only the volume goes the way of the water's.
-            for (increment, dilation) in increments.iter_mut().zip(&dilations) {
-                for d in 0..D {
-                    increment[d][d] += dilation / D as f64;
-                }
-            }
-            if self.deforms {
-                for (ratio, dilation) in ratios.iter_mut().zip(&dilations) {
-                    *ratio *= stretch_of(*dilation);
-                }
-            }
-        }
-        *some_mut(&mut points.volume_ratio, first) = ratios;
-        let mut changes = increments;
-        for change in &mut changes {
-            *change = self.stiffness.stress(change);
-        }
-        if let Some(dilations) = dilations {
-            for (change, dilation) in changes.iter_mut().zip(&dilations) {
-                let shared = self.stiffness.shared_dilation_stress::<D>(*dilation);
-                for d in 0..D {
-                    change[d][d] += shared;
-                }
-            }
-        }
-        let stresses = some_mut::<_, N>(&mut points.effective_stress, first);
-        if self.deforms && D > 1 {
-            *stresses = rotated(stresses, &increments);
-        }
-        for point in 0..N {
-            let modulus = self.law.modulus_ratio(before[point], ratios[point]);
-            for d in 0..D {
-                for e in 0..D {
-                    stresses[point][d][e] += modulus * changes[point][d][e];
-                }
-            }
-        }
-    }
-}
-
-/// Volume ratios of some points, exact in the logarithmic strain, and what follows them.
+/// Deforms a point by a step's displacement gradient: its volume, exact in the logarithmic strain, and what follows it.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn deform<const D: usize, const N: usize>(
-    points: &mut Points<D>,
-    first: usize,
-    following: Following,
-    increments: &[Tensor<D>; N],
-    ratios: &mut [f64; N],
-) {
-    let mut strains = [[0.0; D]; N];
-    for (strain, increment) in strains.iter_mut().zip(increments) {
-        for d in 0..D {
-            strain[d] = increment[d][d];
+fn deform<const D: usize>(points: &mut Points<D>, point: usize, following: Following, increment: &Tensor<D>) {
+    for d in 0..D {
+        let stretch = stretch_of(increment[d][d]);
+        points.volume_ratio[point] *= stretch;
+        if following.domain {
+            points.half_length[point][d] *= stretch;
         }
     }
-    let stretches = stretches_of(&strains);
-    if following.takes_domain() {
-        let half_lengths = some_mut::<_, N>(&mut points.half_length, first);
-        for (half_length, stretch) in half_lengths.iter_mut().zip(&stretches) {
-            for d in 0..D {
-                half_length[d] *= stretch[d];
-            }
+    if following.inverse {
+        points.inverse_deformation[point] = relaxed(&points.inverse_deformation[point], increment);
+    }
+}
+
+/// Strains so small that four terms of their exponential are exact to round-off.
+const SMALL: f64 = 1e-4;
+const PER_24: f64 = 1.0 / 24.0;
+
+/// `exp(ε)`: a step's strain is small.
+#[inline(always)]
+fn stretch_of(strain: f64) -> f64 {
+    if strain.abs() < SMALL {
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+    } else {
+        elementary::exp(strain)
+    }
+}
+
+/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
+/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
+#[inline(always)]
+fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let mut turned = *stress;
+    if D != 2 {
+        return turned;
+    }
+    let half = 0.25 * (increment[1][0] - increment[0][1]);
+    let per = 1.0 / (1.0 + half * half);
+    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
+    // `Q σ`, and that by `Qᵀ`.
+    let mut rows = turned;
+    for j in 0..D {
+        let [above, below] = [stress[0][j], stress[1][j]];
+        (rows[0][j], rows[1][j]) = (cosine * above - sine * below, sine * above + cosine * below);
+    }
+    for i in 0..D {
+        let [left, right] = [rows[i][0], rows[i][1]];
+        (turned[i][0], turned[i][1]) = (left * cosine - right * sine, left * sine + right * cosine);
+    }
+    turned
+}
+
+/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
+#[inline]
+pub fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let once = product(inverse, increment);
+    let twice = product(&once, increment);
+    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
+}
+
+/// `(I + Δt L/2)⁻¹` of a velocity gradient `L` at the start of a step.
+#[inline]
+pub fn to_middle<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    let unit = identity::<D>();
+    let forth = std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] + 0.5 * dt * gradient[i][j]));
+    inverse(&forth).0
+}
+
+/// A velocity gradient `L` at the start of a step, on the configuration of its middle: `L (I + Δt L/2)⁻¹`. Its
+/// exponential is `I + Δt L` to second order, which is what points that are moved by `Δt v` undergo.
+#[inline]
+pub fn middle_gradient<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    product(gradient, &to_middle(gradient, dt))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_the_exponential() {
+        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
+            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
         }
     }
-    if following.takes_inverse() {
-        for (inverse, increment) in points.inverse_deformation[first..first + N].iter_mut().zip(increments) {
-            *inverse = relaxed(inverse, increment);
+
+    #[test]
+    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
+        // A quarter turn in a thousand steps takes the stress along x to one along y.
+        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
+        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
+        // Q with tan(θ/2) = w/2 turns by θ.
+        let spin = 2.0 * (0.5 * angle).tan();
+        for _ in 0..1000 {
+            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
         }
+        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        assert_eq!(stretched, stress, "a strain without spin turns nothing");
     }
-    for (ratio, stretch) in ratios.iter_mut().zip(&stretches) {
-        *ratio *= stretch.iter().product::<f64>();
+
+    #[test]
+    fn a_stress_turns_by_the_rotation_of_hughes_and_winget() {
+        let (stress, increment) = ([[1.1, -0.4], [0.3, 0.9]], [[0.7, -0.6], [0.8, 0.2]]);
+        // Q σ Qᵀ with Q = (I − W/2)⁻¹ (I + W/2).
+        let half = 0.25 * (increment[1][0] - increment[0][1]);
+        let turn = product(&inverse(&[[1.0, half], [-half, 1.0]]).0, &[[1.0, -half], [half, 1.0]]);
+        let back = [[turn[0][0], turn[1][0]], [turn[0][1], turn[1][1]]];
+        let exact = product(&product(&turn, &stress), &back);
+        for (got, exact) in rotated(&stress, &increment).as_flattened().iter().zip(exact.as_flattened()) {
+            assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+        assert_eq!(rotated(&[[3.0]], &[[0.5]]), [[3.0]], "a line does not turn");
+    }
+
+    #[test]
+    fn a_step_at_its_middle_is_that_of_points_moved_along_straight_lines() {
+        // exp of the middle gradient is I + Δt L but for third order.
+        let gradient = [[0.3, -0.8], [0.5, -0.4]];
+        let off = |dt: f64| {
+            let increment = middle_gradient(&gradient, dt).map(|row| row.map(|rate| dt * rate));
+            let back = relaxed(&identity::<2>(), &increment);
+            let moved: Tensor<2> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| f64::from(u8::from(i == j)) + dt * gradient[i][j])
+            });
+            let whole = product(&back, &moved);
+            (whole[0][0] - 1.0).abs() + whole[0][1].abs() + whole[1][0].abs() + (whole[1][1] - 1.0).abs()
+        };
+        assert!(off(1e-2) < 1e-6 && (7.5..8.5).contains(&(off(2e-2) / off(1e-2))), "{}", off(1e-2));
+    }
+
+    #[test]
+    fn the_inverse_deformation_keeps_to_the_volume() {
+        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
+        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
+        for _ in 0..50_000 {
+            inverse = relaxed(&inverse, &increment);
+        }
+        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
+        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
     }
 }

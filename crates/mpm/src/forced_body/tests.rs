@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::forcing::{BodyForces, Forcing};
-use crate::formulation::Formulation;
 use crate::method::Method;
+use crate::run::integrator::Formulation;
 use crate::scene::SceneKind;
 use crate::scene::problem::column_problem;
 use std::sync::Arc;
@@ -182,14 +182,14 @@ fn points_that_bring_slopes_give_the_nodes_a_linear_field_wherever_they_are() {
             let velocity = linear(body.grid.node_position(node));
             (body.nodes.solid_velocity[node], body.nodes.water_velocity[node]) = (velocity, velocity);
         }
-        body.bring_slopes();
+        body.use_apic();
         for point in 0..body.points.len() {
             let velocity = linear(body.points.position[point]);
             (body.points.solid_velocity[point], body.points.water_velocity[point]) = (velocity, velocity);
         }
         body.map_velocities();
         let mut plain = body.clone();
-        plain.slopes = None;
+        plain.velocity_gradients.clear();
         plain.map_velocities();
         let mut least: f64 = 1.0;
         for node in (0..body.nodes.len()).filter(|node| body.nodes.is_active(*node)) {

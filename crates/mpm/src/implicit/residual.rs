@@ -1,8 +1,9 @@
 //! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
 //! implicit step, made of the operators of the explicit one.
 
+use crate::drag::NodalDrag;
 use crate::implicit::trial::{Skeleton, Trial};
-use crate::momentum::{NodalBalance, per_water_inertia};
+use crate::momentum::NodalBalance;
 use crate::run::integrator::Formulation;
 use crate::run::stepper::StepFailure;
 use crate::run::watch::pores_closed;
@@ -39,7 +40,7 @@ impl<const D: usize> Trial<D> {
         }
         self.body.map_forces();
         self.momentum(increments, start, residual);
-        self.body.nodal_flux();
+        self.body.nodes.take_flux();
         self.storage(increments, start, residual);
         let (grains, ratios) = (1.0 - self.body.material.porosity, &self.body.points.volume_ratio);
         match ratios.iter().position(|ratio| *ratio <= grains || ratio.is_nan()) {
@@ -59,14 +60,14 @@ impl<const D: usize> Trial<D> {
             nodes.solid_velocity[node] = [0.0; D];
             nodes.water_velocity[node] = [0.0; D];
             let drag = nodes.drag[node];
-            let (water_inertia, implicit_drag) = (water_density * nodes.volume[node], start.duration * drag);
+            let water_inertia = water_density * nodes.volume[node];
+            let nodal_drag = NodalDrag { coefficient: drag, implicit: start.duration * drag };
             // A skeleton whose motion is given does not give way to the water.
             let balance = NodalBalance {
                 per_solid_mass: 0.0,
                 water_share: 0.0,
-                per_water_inertia: per_water_inertia(water_inertia, implicit_drag, 0.0, 1.0),
-                drag,
-                implicit_drag,
+                per_water_inertia: 1.0 / nodal_drag.inertia(water_inertia, 0.0),
+                drag: nodal_drag,
             };
             for d in 0..D {
                 // Where the skeleton is held, the water may still slide.

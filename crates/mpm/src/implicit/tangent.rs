@@ -9,7 +9,7 @@ use crate::body::Body;
 use crate::direct_solver::bordered::Bordered;
 use crate::implicit::unknown_groups::{Lists, groups_of};
 use crate::implicit::unknowns::Unknowns;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 
 /// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
 /// digits of a tangent whose unknowns are strains.

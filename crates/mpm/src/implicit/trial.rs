@@ -6,7 +6,7 @@
 use crate::body::Body;
 use crate::implicit::unknowns::Unknowns;
 use crate::method::Memory;
-use crate::operators::recovery::points_in_cells::points_in_cells;
+use crate::operators::recovery::points_in_cells;
 use crate::run::integrator::Formulation;
 use crate::state::points::Points;
 use oedometer_soil::tensor::{Tensor, Vector, dot, identity, inverse, product};
@@ -195,7 +195,7 @@ impl<const D: usize> Trial<D> {
         if moves_points {
             if self.body.method.memory == Memory::Cells {
                 let body = &mut self.body;
-                body.cell_memory.spread_over_points(&body.grid, &body.cells, &mut body.points);
+                body.cell_averages.spread_over_points(&body.grid, &body.cells, &mut body.points);
             }
             self.body.build_operators();
             self.body.map_masses();

@@ -1,47 +1,103 @@
-//! The bases: weights between points and nodes, as rows of one direction in units of the cell.
+//! The bases: shape functions between points and nodes, as rows of one direction in units of the cell.
 //!
 //! A basis has its place here and in [`Basis`]: every stencil, load and displacement asks for its rows here.
 
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
 use crate::method::Basis;
-use crate::operators::block_rows::LaneRows;
-use crate::operators::row::Row;
-use crate::operators::stencil::{PointStencils, Stencils, visit_block};
-use crate::state::grid::{GHOST_LAYERS, Grid, Line, index_of, whole, whole_part};
-use crate::state::lanes::{LANES, Lanes, lanes_of};
+use crate::operators::stencil::{PointStencils, Stencils};
+use crate::state::grid::{GHOST_LAYERS, Grid, power, whole};
 use crate::state::nodes::Support;
 use crate::wide::wide;
 use oedometer_soil::tensor::Vector;
 
-/// A basis as the compiler sees it: rows of `W` nodes per direction, which sum to one by construction.
+/// Values and gradients of a point's shape functions in one direction, over neighbouring nodes, in units of the cell.
+///
+/// Every row sums to one and its gradients to zero, by construction and not up to the round-off of a normalisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<const W: usize> {
+    /// Lowest node of the row.
+    pub first: usize,
+    /// Shape function of each node.
+    pub values: [f64; W],
+    /// Gradient of each, 1/cell.
+    pub gradients: [f64; W],
+}
+
+impl<const W: usize> Row<W> {
+    /// Takes the nodes beyond a wall out of the row: a field goes on there as a line through its value
+    /// at the wall and that at the mirrored node, which for a velocity that the wall holds is its odd
+    /// image. Linear fields are still met exactly, and the row still sums to one; a field that bends
+    /// at the wall, as above a rough base, is met to first order there.
+    fn fold_at(&mut self, wall: usize, is_beyond: impl Fn(usize) -> bool) {
+        for k in 0..W {
+            let node = self.first + k;
+            if is_beyond(node) {
+                // A row that lies behind the wall altogether is of a run that is lost, and stays as it is.
+                let at_wall = wall.wrapping_sub(self.first);
+                let mirrored = (2 * wall).wrapping_sub(node + self.first);
+                if at_wall >= W || mirrored >= W {
+                    continue;
+                }
+                for side in [&mut self.values, &mut self.gradients] {
+                    let beyond = std::mem::replace(&mut side[k], 0.0);
+                    side[at_wall] += 2.0 * beyond;
+                    side[mirrored] -= beyond;
+                }
+            }
+        }
+    }
+
+    /// Takes the nodes above a last one out of the row: their values go on along the line through the last
+    /// two. Linear fields are still met exactly, and the row still sums to one. A row that would be
+    /// left with one node keeps two.
+    fn straighten_beyond(&mut self, last: usize) {
+        let last = last.saturating_sub(self.first).max(1);
+        for k in last + 1..W {
+            let beyond = (k - last) as f64;
+            for side in [&mut self.values, &mut self.gradients] {
+                let share = std::mem::replace(&mut side[k], 0.0);
+                side[last] += (1.0 + beyond) * share;
+                side[last - 1] -= beyond * share;
+            }
+        }
+    }
+
+    /// Mean of two rows, and the slope between them `length` apart, as a row of up to `V` nodes.
+    pub fn between<const V: usize>(low: &Self, high: &Self, length: f64) -> Row<V> {
+        let first = low.first.min(high.first);
+        let mut row = Row { first, values: [0.0; V], gradients: [0.0; V] };
+        for (end, sign) in [(low, -1.0), (high, 1.0)] {
+            for k in 0..W {
+                // Ends more than a cell apart are no domain: what has no place is left out.
+                if let Some(value) = row.values.get_mut(end.first - first + k) {
+                    *value += 0.5 * end.values[k];
+                    row.gradients[end.first - first + k] += sign * end.values[k] / length;
+                }
+            }
+        }
+        row
+    }
+}
+
+/// The shape functions of a basis: rows of `W` nodes per direction.
 pub trait ShapeFunction<const W: usize> {
     /// Whether nodes beyond a wall would have a share in what is inside it.
     const PASSES_WALLS: bool = false;
 
-    /// Lowest node, as a whole number, of the row of a place in a cell, of a point with a domain of half-length
-    /// `half_length`, all in cells.
-    fn lowest_node(place: f64, cell: f64, half_length: f64) -> f64;
-
-    /// Weights and gradients at such a place from such a node, without a branch: loops over lanes ask for them.
-    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; W]; 2];
-
-    /// Both as one row.
-    #[inline]
-    fn row(place: f64, cell: usize, half_length: f64) -> Row<W> {
-        let lowest = Self::lowest_node(place, cell as f64, half_length);
-        let [weights, gradients] = Self::values(place, lowest, half_length);
-        Row { first: index_of(lowest), weights, gradients }
-    }
+    /// Row at a place in a cell, for a point with a domain of a half-length, both in cells.
+    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
 }
 
 impl Basis {
-    /// Room for the stencils of so many points.
+    /// Room for the stencils of `points` points.
     pub fn stencils<const D: usize>(self, points: usize) -> PointStencils<D> {
         match self {
-            Self::Hat => PointStencils::Two(Stencils::with_points(points)),
+            Self::Hat => PointStencils::Two(Stencils::new(points, 1)),
             Self::Ugimp | Self::Cpgimp | Self::Cpdi | Self::Bspline2 => {
-                PointStencils::Three(Stencils::with_points(points))
+                PointStencils::Three(Stencils::new(points, 1))
             }
-            Self::Bspline3 => PointStencils::Four(Stencils::with_points(points)),
+            Self::Bspline3 => PointStencils::Four(Stencils::new(points, 1)),
         }
     }
 
@@ -76,34 +132,31 @@ impl Basis {
         matches!(self, Self::Bspline2 | Self::Bspline3)
     }
 
-    /// Visits the nodes that carry a place of the surface (in cells), with their weights: those of the basis,
-    /// and hats where domains smear them.
-    #[inline]
+    /// Visits the nodes that carry a place of the surface (in cells), with the values of their shape functions: those
+    /// of the basis, and hats where domains smear them.
     pub fn visit_surface<const D: usize>(
         self,
         grid: &Grid<D>,
         support: &Support<D>,
         place: &Vector<D>,
-        node_visitor: impl FnMut(usize, f64),
+        visitor: impl FnMut(usize, f64),
     ) {
         let no_domain = [0.0; D];
         match self {
             Self::Hat | Self::Ugimp | Self::Cpgimp | Self::Cpdi => {
-                visit_block(grid, &rows_at::<D, 2, Hat>(grid, support, place, &no_domain), node_visitor);
+                visit_product(grid, &rows_at::<D, 2, Hat>(grid, support, place, &no_domain), visitor);
             }
             Self::Bspline2 => {
                 let rows = rows_at::<D, 3, QuadraticSpline>(grid, support, place, &no_domain);
-                visit_block(grid, &rows, node_visitor);
+                visit_product(grid, &rows, visitor);
             }
             Self::Bspline3 => {
-                let rows = rows_at::<D, 4, CubicSpline>(grid, support, place, &no_domain);
-                visit_block(grid, &rows, node_visitor);
+                visit_product(grid, &rows_at::<D, 4, CubicSpline>(grid, support, place, &no_domain), visitor);
             }
         }
     }
 
     /// Last node that a surface at a height (in cells) leaves a spline to stand alone on; none without splines.
-    #[inline]
     pub fn outermost_node(self, height: f64) -> Option<usize> {
         match self {
             Self::Bspline2 => Some(whole(height + 0.5)),
@@ -123,50 +176,15 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
     support: &Support<D>,
     [places, half_lengths]: [&[Vector<D>]; 2],
 ) {
-    if S::PASSES_WALLS {
-        for (point, (place, half_length)) in places.iter().zip(half_lengths).enumerate() {
-            stencils.set(grid, point, &rows_at::<D, W, S>(grid, support, place, half_length));
-        }
-        return;
-    }
-    wide!(stencils.set_lanes(
-        grid,
-        places,
-        #[inline(always)]
-        |first, direction, place, rows| {
-            let half_length = lanes_of(&half_lengths[first..], direction, 0.5 * grid.cell_size);
-            fill_rows::<W, S>(grid.line(direction), place, &half_length, rows)
-        },
-    ));
-}
-
-/// Fills the rows of some points along a direction, at places in cells, of domains of half-lengths in m; returns the
-/// lowest node of each.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-fn fill_rows<const W: usize, S: ShapeFunction<W>>(
-    line: Line,
-    place: &Lanes,
-    half_length: &Lanes,
-    rows: &mut LaneRows<W>,
-) -> Lanes {
-    let mut lowest = [0.0; LANES];
-    for lane in 0..LANES {
-        let (place, half_length) = (place[lane], half_length[lane] * line.per_cell);
-        let first = S::lowest_node(place, line.cell_at(place), half_length);
-        let [weights, gradients] = S::values(place, first, half_length);
-        lowest[lane] = first;
-        for k in 0..W {
-            rows.weights[k][lane] = weights[k];
-            rows.gradients[k][lane] = gradients[k] * line.per_cell;
-        }
-    }
-    lowest
+    stencils.truncate(places.len());
+    wide!(for (point, (place, half_length)) in places.iter().zip(half_lengths).enumerate() {
+        stencils.set(grid, point, &rows_at::<D, W, S>(grid, support, place, half_length));
+    });
 }
 
 /// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held faces:
 /// `[direction]`.
-#[inline]
+#[inline(always)]
 fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
@@ -174,15 +192,16 @@ fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     half_length: &Vector<D>,
 ) -> [Row<W>; D] {
     let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
-    std::array::from_fn(|d| {
+    let mut rows = [Row { first: 0, values: [0.0; W], gradients: [0.0; W] }; D];
+    for d in 0..D {
         let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-        if S::PASSES_WALLS { folded(support, grid, d, row) } else { row }
-    })
+        rows[d] = if S::PASSES_WALLS { folded(support, grid, d, row) } else { row };
+    }
+    rows
 }
 
 /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
 /// have no freedom of their own.
-#[inline]
 fn folded<const D: usize, const W: usize>(
     support: &Support<D>,
     grid: &Grid<D>,
@@ -202,16 +221,38 @@ fn folded<const D: usize, const W: usize>(
     row
 }
 
+/// Visits the nodes of a tensor product of rows with the values of their shape functions.
+fn visit_product<const D: usize, const W: usize>(
+    grid: &Grid<D>,
+    rows: &[Row<W>; D],
+    mut visitor: impl FnMut(usize, f64),
+) {
+    for corner in 0..power(W, D) {
+        let (mut node, mut value, mut rest) = (0, 1.0, corner);
+        for direction in 0..D {
+            let k = rest % W;
+            rest /= W;
+            node += (rows[direction].first + k) * grid.node_stride()[direction];
+            value *= rows[direction].values[k];
+        }
+        visitor(node, value);
+    }
+}
+
 /// `max(x, 0)` in one instruction; `f64::max` takes three to mind a NaN.
-#[inline]
+#[inline(always)]
 fn positive_part(x: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// The weights and gradients of three nodes from those of the outer two: the middle one has what is left.
-#[inline]
-fn about_middle([left, right]: [f64; 2], [left_gradient, right_gradient]: [f64; 2]) -> [[f64; 3]; 2] {
-    [[left, 1.0 - left - right, right], [left_gradient, -left_gradient - right_gradient, right_gradient]]
+/// The row of three nodes from the values and gradients of the outer two: the middle one has what is left.
+#[inline(always)]
+fn about_middle(first: usize, [left, right]: [f64; 2], [left_slope, right_slope]: [f64; 2]) -> Row<3> {
+    Row {
+        first,
+        values: [left, 1.0 - left - right, right],
+        gradients: [left_slope, -left_slope - right_slope, right_slope],
+    }
 }
 
 /// Piecewise linear hat functions (Sulsky, Chen & Schreyer 1994).
@@ -219,45 +260,35 @@ fn about_middle([left, right]: [f64; 2], [left_gradient, right_gradient]: [f64; 
 pub struct Hat;
 
 impl ShapeFunction<2> for Hat {
-    #[inline]
-    fn lowest_node(_place: f64, cell: f64, _half_length: f64) -> f64 {
-        cell
-    }
-
-    #[inline]
-    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 2]; 2] {
-        let upper = place - lowest;
-        [[1.0 - upper, upper], [-1.0, 1.0]]
+    #[inline(always)]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
+        let upper = place - cell as f64;
+        Row { first: cell, values: [1.0 - upper, upper], gradients: [-1.0, 1.0] }
     }
 }
 
 /// The hat function convolved with the top-hat domain of a point (Bardenhagen & Kober 2004,
 /// Eq. 24); a domain wider than a cell would need a fourth node and is cut there.
 ///
-/// The outer weights come from squared overlaps with the nearest node's sides, the middle one is
+/// The outer values come from squared overlaps with the nearest node's sides, the middle one is
 /// what is left: no branch, and the partition of unity is exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Gimp;
 
 impl ShapeFunction<3> for Gimp {
-    #[inline]
-    fn lowest_node(place: f64, _cell: f64, _half_length: f64) -> f64 {
-        whole_part(place + 0.5) - 1.0
-    }
-
-    #[inline]
-    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; 3]; 2] {
+    #[inline(always)]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+        let nearest = whole(place + 0.5);
         let half_length = half_length.min(0.5);
-        let offset = place - (lowest + 1.0);
+        let offset = place - nearest as f64;
         let (low, high) = (offset - half_length, offset + half_length);
         let per_length = 0.5 / half_length;
         let (left_near, left_far) = (positive_part(-high), positive_part(-low));
         let (right_near, right_far) = (positive_part(low), positive_part(high));
         let left = 0.5 * per_length * (left_far * left_far - left_near * left_near);
         let right = 0.5 * per_length * (right_far * right_far - right_near * right_near);
-        let left_gradient = -per_length * (left_far - left_near);
-        let right_gradient = per_length * (right_far - right_near);
-        about_middle([left, right], [left_gradient, right_gradient])
+        let slopes = [-per_length * (left_far - left_near), per_length * (right_far - right_near)];
+        about_middle(nearest - 1, [left, right], slopes)
     }
 }
 
@@ -265,29 +296,26 @@ impl ShapeFunction<3> for Gimp {
 /// Burghardt 2011, in one direction); domains wider than a cell are cut there.
 ///
 /// The gradient is the difference between the ends over the length, which is that of GIMP; the
-/// weights move the middle of the domain as its ends move, so that neighbours stay neighbours.
+/// values move the middle of the domain as its ends move, so that neighbours stay neighbours.
 #[derive(Clone, Copy, Debug)]
 pub struct DomainEnds;
 
 impl ShapeFunction<3> for DomainEnds {
-    #[inline]
-    fn lowest_node(place: f64, _cell: f64, half_length: f64) -> f64 {
-        whole_part(place - half_length.min(0.5))
-    }
-
-    #[inline]
-    fn values(place: f64, lowest: f64, half_length: f64) -> [[f64; 3]; 2] {
+    #[inline(always)]
+    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
         let half_length = half_length.min(0.5);
         let (low, high) = (place - half_length, place + half_length);
-        let middle = lowest + 1.0;
+        let first = whole(low);
+        let middle = (first + 1) as f64;
         // The end below the middle node weighs in on its left, the one above on its right.
         let at = |end: f64| [positive_part(middle - end), positive_part(end - middle)];
         let ([low_left, low_right], [high_left, high_right]) = (at(low), at(high));
         let per_length = 0.5 / half_length;
-        let (left, right) = (0.5 * (low_left + high_left), 0.5 * (low_right + high_right));
-        let (left_gradient, right_gradient) =
-            (per_length * (high_left - low_left), per_length * (high_right - low_right));
-        about_middle([left, right], [left_gradient, right_gradient])
+        about_middle(
+            first,
+            [0.5 * (low_left + high_left), 0.5 * (low_right + high_right)],
+            [per_length * (high_left - low_left), per_length * (high_right - low_right)],
+        )
     }
 }
 
@@ -298,16 +326,12 @@ pub struct QuadraticSpline;
 impl ShapeFunction<3> for QuadraticSpline {
     const PASSES_WALLS: bool = true;
 
-    #[inline]
-    fn lowest_node(place: f64, _cell: f64, _half_length: f64) -> f64 {
-        whole_part(place + 0.5) - 1.0
-    }
-
-    #[inline]
-    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 3]; 2] {
-        let x = place - (lowest + 1.0);
+    #[inline(always)]
+    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
+        let nearest = whole(place + 0.5);
+        let x = place - nearest as f64;
         let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
-        about_middle([left, right], [x - 0.5, x + 0.5])
+        about_middle(nearest - 1, [left, right], [x - 0.5, x + 0.5])
     }
 }
 
@@ -318,29 +342,33 @@ pub struct CubicSpline;
 impl ShapeFunction<4> for CubicSpline {
     const PASSES_WALLS: bool = true;
 
-    #[inline]
-    fn lowest_node(_place: f64, cell: f64, _half_length: f64) -> f64 {
-        cell - 1.0
-    }
-
-    #[inline]
-    fn values(place: f64, lowest: f64, _half_length: f64) -> [[f64; 4]; 2] {
-        let x = place - (lowest + 1.0);
+    #[inline(always)]
+    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
+        let x = place - cell as f64;
         let y = 1.0 - x;
         let (outer_left, outer_right) = (y * y * y / 6.0, x * x * x / 6.0);
         let left = 2.0 / 3.0 - x * x * (1.0 - 0.5 * x);
-        let (left_gradient, right_gradient) = (-2.0 * x + 1.5 * x * x, 2.0 * y - 1.5 * y * y);
-        [
-            [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
-            [-0.5 * y * y, left_gradient, right_gradient, 0.5 * x * x],
-        ]
+        let (left_slope, right_slope) = (-2.0 * x + 1.5 * x * x, 2.0 * y - 1.5 * y * y);
+        Row {
+            first: cell - 1,
+            values: [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
+            gradients: [-0.5 * y * y, left_slope, right_slope, 0.5 * x * x],
+        }
     }
+}
+
+/// Moments of a row: sums of `f(node)` with the values, and with the gradients.
+#[cfg(test)]
+pub(crate) fn moments<const W: usize>(row: &Row<W>, f: impl Fn(f64) -> f64) -> (f64, f64) {
+    (0..W).fold((0.0, 0.0), |(value, gradient), k| {
+        let node = f((row.first + k) as f64);
+        (value + row.values[k] * node, gradient + row.gradients[k] * node)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operators::row::moments;
     use proptest::prelude::*;
 
     proptest! {
@@ -361,7 +389,7 @@ mod tests {
         }
 
         #[test]
-        fn gradients_are_those_of_the_weights(place in 3.01..8.99f64) {
+        fn gradients_are_those_of_the_values(place in 3.01..8.99f64) {
             // Hat functions have kinks; splines have none that a small step sees.
             let step = 1e-5;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
@@ -377,10 +405,10 @@ mod tests {
         }
 
         #[test]
-        fn gimp_weights_are_never_negative(place in 3.0..9.0f64, half_length in 0.01..0.5f64) {
+        fn gimp_values_are_never_negative(place in 3.0..9.0f64, half_length in 0.01..0.5f64) {
             let row = Gimp::row(place, 0, half_length);
-            prop_assert!(row.weights.iter().all(|w| *w >= -1e-16));
-            prop_assert!((row.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            prop_assert!(row.values.iter().all(|w| *w >= -1e-16));
+            prop_assert!((row.values.iter().sum::<f64>() - 1.0).abs() < 1e-15);
         }
 
         #[test]
@@ -394,7 +422,7 @@ mod tests {
                     .map(|i| place - half_length + (f64::from(i) + 0.5) * 2.0 * half_length / f64::from(slices))
                     .map(|x| (1.0 - (x - node).abs()).max(0.0))
                     .sum::<f64>() / f64::from(slices);
-                prop_assert!((mean - row.weights[k]).abs() < 1e-6);
+                prop_assert!((mean - row.values[k]).abs() < 1e-6);
             }
         }
     }
@@ -407,9 +435,58 @@ mod tests {
             let hat = Hat::row(place, 5, 0.0);
             for k in 0..2 {
                 let slot = hat.first + k - row.first;
-                assert!((row.weights[slot] - hat.weights[k]).abs() < 1e-15);
+                assert!((row.values[slot] - hat.values[k]).abs() < 1e-15);
                 assert!((row.gradients[slot] - hat.gradients[k]).abs() < 1e-15);
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rows_between_walls_meet_linear_fields(place in 5.0..6.5f64, width in 1..3_usize) {
+            // Walls at node 5 and `width` cells above it.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
+            let (place, cell) = (place.min(5.0 + width as f64 - 1e-9), (place as usize).min(4 + width));
+            let held = |node: usize| node < 5 || node > 5 + width;
+            let linear = |x: f64| 2.0 + 3.0 * (x - 5.0);
+            let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, cell, 0.0));
+            for (wall, above) in [(5, false), (5 + width, true)] {
+                let is_beyond = |node: usize| if above { node > wall } else { node < wall };
+                quadratic.fold_at(wall, is_beyond);
+                cubic.fold_at(wall, is_beyond);
+            }
+            for (value, gradient) in [moments(&quadratic, linear), moments(&cubic, linear)] {
+                prop_assert!((value - linear(place)).abs() < 1e-12);
+                prop_assert!((gradient - 3.0).abs() < 1e-12);
+            }
+            prop_assert!((quadratic.values.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((cubic.values.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((0..3).all(|k| !held(quadratic.first + k) || quadratic.values[k] == 0.0));
+            prop_assert!((0..4).all(|k| !held(cubic.first + k) || cubic.values[k] == 0.0));
+        }
+
+        #[test]
+        fn a_row_behind_a_wall_stays_as_it_is(place in 2.5..4.4f64) {
+            let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, whole(place), 0.0));
+            let before = quadratic;
+            quadratic.fold_at(7, |node| node < 7);
+            cubic.fold_at(7, |node| node < 7);
+            prop_assert_eq!(before, quadratic);
+            prop_assert!((cubic.values.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn rows_that_end_at_a_surface_meet_linear_fields(place in 5.0..6.0f64, above in 0.0..0.5f64) {
+            let linear = |x: f64| 2.0 + 3.0 * x;
+            let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, 5, 0.0));
+            // The surface lies a little above the place, and the last node beside it.
+            let last = whole(place + above + 0.5);
+            quadratic.straighten_beyond(last.max(quadratic.first + 1));
+            cubic.straighten_beyond(5);
+            for (row, end) in [(moments(&quadratic, linear), last), (moments(&cubic, linear), 5)] {
+                prop_assert!((row.0 - linear(place)).abs() < 1e-12 && (row.1 - 3.0).abs() < 1e-12, "{end}");
+            }
+            prop_assert_eq!(&cubic.values[2..], &[0.0, 0.0]);
         }
     }
 }

@@ -1,135 +1,302 @@
-//! Sparse operators between points and nodes: one small tensor-product block of nodes a point.
+//! Sparse operators between points and nodes: the shape functions of each point over a small block of nodes.
+//!
+//! Loops over points read and write nodal fields run by run: a run is `W` neighbouring nodes along the first direction,
+//! one slice of a field, whose bounds are checked once.
 
-use crate::operators::block_rows::{Blocks, LaneRows, RowBlock};
-use crate::operators::row::Row;
-use crate::state::grid::{GHOST_LAYERS, Grid, index_of, power};
-use crate::state::lanes::{LANES, Lanes, lanes_of};
+// A function that is not inlined into a loop for wide registers is compiled for narrow ones (`crate::wide`).
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
+use crate::operators::basis::Row;
+use crate::state::grid::{Grid, power};
+use crate::wide::wide;
 use oedometer_soil::tensor::{Tensor, Vector};
 
-/// Weights and gradients of every point over a block of `W` nodes in each direction.
+/// Values of a point's shape functions along one direction and their gradients, 1/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line<const W: usize> {
+    values: [f64; W],
+    gradients: [f64; W],
+}
+
+/// Shape functions of every point over a block of `W` nodes in each direction.
 ///
-/// The block of a point is the tensor product of one row a direction, which is what is stored:
-/// `2 D W` numbers a point whatever the dimension, those of neighbouring points side by side. A point whose weights
-/// are no product has several blocks, of which they are the sum.
+/// A block is the tensor product of one line a direction. A point whose shape functions are no such product has several
+/// blocks, of which they are the sum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stencils<const D: usize, const W: usize> {
-    /// Flat index of the lowest node of each point's block, or of each of its blocks; as many as there are rows.
+    /// Flat index of the lowest node of each block.
     pub first: Vec<usize>,
-    rows: Vec<RowBlock<D, W>>,
-    /// Blocks per point.
+    lines: Vec<[Line<W>; D]>,
+    /// Blocks per point; one on a line.
     parts: usize,
 }
 
-impl<const D: usize, const W: usize> Stencils<D, W> {
-    /// Room for `points` points, all rows zero.
-    pub fn with_points(points: usize) -> Self {
-        Self::with_parts(points, 1)
-    }
+/// `W` neighbouring nodes along the first direction in a block, where shape functions are products of what is along the
+/// run and what is across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<const D: usize, const W: usize> {
+    /// The first of the nodes.
+    pub first: usize,
+    /// Values along the run.
+    pub values: [f64; W],
+    /// Gradients along the run, 1/m.
+    pub gradients: [f64; W],
+    /// Factors from the other directions: of the values and of the gradient's first component, and of each other
+    /// component, 1/m.
+    pub across: Vector<D>,
+}
 
-    /// Room for `points` points of so many blocks each, all rows zero; of one on a line.
-    pub fn with_parts(points: usize, parts: usize) -> Self {
-        let empty = LaneRows { weights: [[0.0; LANES]; W], gradients: [[0.0; LANES]; W] };
-        let rows = vec![[empty; D]; (points * parts).div_ceil(LANES)];
-        Self { first: vec![0; LANES * rows.len()], rows, parts }
-    }
-
-    /// Sets the block of a point from one row a direction.
-    #[inline]
-    pub fn set(&mut self, grid: &Grid<D>, point: usize, rows: &[Row<W>; D]) {
-        let mut first = 0;
-        for direction in 0..D {
-            first += rows[direction].first * grid.node_stride()[direction];
-            self.set_row(grid, point, direction, &rows[direction]);
-        }
-        self.first[point] = first;
-    }
-
-    /// Sets one of the blocks of a point.
-    #[inline]
-    pub fn set_part(&mut self, grid: &Grid<D>, point: usize, part: usize, rows: &[Row<W>; D]) {
-        self.set(grid, point * self.parts + part, rows);
-    }
-
-    /// Sets the row of a point along a direction where the lowest node is known already.
-    #[inline]
-    pub fn set_row(&mut self, grid: &Grid<D>, point: usize, direction: usize, row: &Row<W>) {
-        let (rows, lane) = (&mut self.rows[point / LANES][direction], point % LANES);
-        for k in 0..W {
-            rows.weights[k][lane] = row.weights[k];
-            rows.gradients[k][lane] = row.gradients[k] * grid.inverse_cell_size();
-        }
-    }
-
-    /// Sets the rows of all points block by block: `fill` is given some neighbouring points' places (in cells) along
-    /// a direction, and the number of the first of them, and says which node each row begins with.
+impl<const D: usize, const W: usize> Run<D, W> {
+    /// Value of the shape function of a node of the run.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn set_lanes(
-        &mut self,
-        grid: &Grid<D>,
-        places: &[Vector<D>],
-        mut fill: impl FnMut(usize, usize, &Lanes, &mut LaneRows<W>) -> Lanes,
-    ) {
-        let firsts = self.first.as_chunks_mut::<LANES>().0;
-        for (block, (rows, (firsts, places))) in
-            self.rows.iter_mut().zip(firsts.iter_mut().zip(places.chunks(LANES))).enumerate()
-        {
-            // Whole numbers, which loops over lanes multiply and add as they do others.
-            let mut nodes = [0.0; LANES];
-            for direction in 0..D {
-                let place = lanes_of(places, direction, GHOST_LAYERS as f64);
-                let lowest = fill(block * LANES, direction, &place, &mut rows[direction]);
-                let stride = grid.node_stride()[direction] as f64;
-                for (node, lowest) in nodes.iter_mut().zip(&lowest) {
-                    *node += stride * lowest;
+    pub fn value(&self, k: usize) -> f64 {
+        self.across[0] * self.values[k]
+    }
+
+    /// Its gradient, 1/m.
+    #[inline(always)]
+    pub fn gradient(&self, k: usize) -> Vector<D> {
+        let mut gradient = self.across;
+        for (d, component) in gradient.iter_mut().enumerate() {
+            *component *= if d == 0 { self.gradients[k] } else { self.values[k] };
+        }
+        gradient
+    }
+}
+
+impl<const D: usize, const W: usize> Run<D, W> {
+    /// Adds what a point gives to the nodes of the run, times its shape functions.
+    #[inline(always)]
+    fn add_values<const N: usize, const M: usize>(&self, given: &[[f64; M]; N], sums: &mut [[[f64; M]; N]]) {
+        let mut scaled = *given;
+        for number in scaled.as_flattened_mut() {
+            *number *= self.across[0];
+        }
+        for (node, value) in sums[self.first..self.first + W].iter_mut().zip(&self.values) {
+            for i in 0..N {
+                for j in 0..M {
+                    node[i][j] += value * scaled[i][j];
                 }
             }
-            for (first, node) in firsts.iter_mut().zip(&nodes) {
-                *first = index_of(*node);
+        }
+    }
+}
+
+impl<const D: usize, const W: usize> Stencils<D, W> {
+    /// Room for `points` points of `parts` blocks each, all zero.
+    pub fn new(points: usize, parts: usize) -> Self {
+        let line = Line { values: [0.0; W], gradients: [0.0; W] };
+        Self { first: vec![0; points * parts], lines: vec![[line; D]; points * parts], parts }
+    }
+
+    /// Forgets all points from a number on.
+    pub fn truncate(&mut self, points: usize) {
+        self.first.truncate(points * self.parts);
+        self.lines.truncate(points * self.parts);
+    }
+
+    /// Sets a block from one row a direction.
+    #[inline(always)]
+    pub fn set(&mut self, grid: &Grid<D>, block: usize, rows: &[Row<W>; D]) {
+        let mut first = 0;
+        for (d, row) in rows.iter().enumerate() {
+            first += row.first * grid.node_stride()[d];
+            let line = &mut self.lines[block][d];
+            line.values = row.values;
+            for k in 0..W {
+                line.gradients[k] = row.gradients[k] * grid.inverse_cell_size();
+            }
+        }
+        self.first[block] = first;
+    }
+
+    /// Visits the nodes of a point run by run, except runs on which all is zero.
+    #[inline(always)]
+    pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut visitor: impl FnMut(&Run<D, W>)) {
+        // On a line a point has one block, and the compiler knows.
+        let parts = if D == 1 { 1 } else { self.parts };
+        for block in point * parts..(point + 1) * parts {
+            let lines = &self.lines[block];
+            let Line { values, gradients } = lines[0];
+            for number in 0..power(W, D - 1) {
+                let (mut first, mut across, mut rest) = (self.first[block], [1.0; D], number);
+                for direction in 1..D {
+                    let k = rest % W;
+                    rest /= W;
+                    first += k * stride[direction];
+                    for (component, factor) in across.iter_mut().enumerate() {
+                        let line = &lines[direction];
+                        *factor *= if component == direction { line.gradients[k] } else { line.values[k] };
+                    }
+                }
+                if D == 1 || across != [0.0; D] {
+                    visitor(&Run { first, values, gradients, across });
+                }
             }
         }
     }
 
-    /// The blocks of all points, borrowed once for a loop over them.
-    #[inline]
-    pub fn blocks(&self) -> Blocks<'_, D, W> {
-        Blocks::of(self.first.as_chunks().0, &self.rows, self.parts)
-    }
-
-    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    /// Visits the nodes of a point with value and gradient (1/m).
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub fn visit(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        mut node_visitor: impl FnMut(usize, f64, &Vector<D>),
-    ) {
-        self.blocks().visit_runs(
+    pub fn visit(&self, stride: &[usize; D], point: usize, mut visitor: impl FnMut(usize, f64, &Vector<D>)) {
+        self.visit_runs(
             stride,
             point,
             #[inline(always)]
             |run| {
                 for k in 0..W {
-                    let mut gradient = [0.0; D];
-                    for d in 0..D {
-                        gradient[d] = run.across[d] * if d == 0 { run.gradients[k] } else { run.weights[k] };
-                    }
-                    node_visitor(run.first + k, run.across[0] * run.weights[k], &gradient);
+                    visitor(run.first + k, run.value(k), &run.gradient(k));
                 }
             },
         );
     }
 
-    /// Divergence of a nodal vector field at the point.
-    #[inline]
-    pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
-        let gradient = self.blocks().gradient(stride, point, field);
-        (0..D).map(|d| gradient[d][d]).sum()
+    /// Values of nodal vector fields at a point: `Σ N f`.
+    #[inline(always)]
+    pub fn values<const N: usize>(
+        &self,
+        stride: &[usize; D],
+        point: usize,
+        fields: [&[Vector<D>]; N],
+    ) -> [Vector<D>; N] {
+        let mut values = [[0.0; D]; N];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                for (value, field) in values.iter_mut().zip(fields) {
+                    let nodes = &field[run.first..run.first + W];
+                    let mut sum = [0.0; D];
+                    for k in 0..W {
+                        for d in 0..D {
+                            sum[d] += run.values[k] * nodes[k][d];
+                        }
+                    }
+                    for d in 0..D {
+                        value[d] += run.across[0] * sum[d];
+                    }
+                }
+            },
+        );
+        values
+    }
+
+    /// Gradient of a nodal vector field at a point, `[component][direction]`: `Σ f ⊗ ∇N`.
+    #[inline(always)]
+    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
+        // `[direction][component]`: components lie side by side at the nodes.
+        let mut slopes = [[0.0; D]; D];
+        self.visit_runs(
+            stride,
+            point,
+            #[inline(always)]
+            |run| {
+                let nodes = &field[run.first..run.first + W];
+                let [mut slope, mut value] = [[0.0; D]; 2];
+                for k in 0..W {
+                    for d in 0..D {
+                        slope[d] += run.gradients[k] * nodes[k][d];
+                        value[d] += run.values[k] * nodes[k][d];
+                    }
+                }
+                for direction in 0..D {
+                    let sum = if direction == 0 { &slope } else { &value };
+                    for d in 0..D {
+                        slopes[direction][d] += run.across[direction] * sum[d];
+                    }
+                }
+            },
+        );
+        let mut gradient = slopes;
+        for component in 0..D {
+            for direction in 0..D {
+                gradient[component][direction] = slopes[direction][component];
+            }
+        }
+        gradient
+    }
+
+    /// Adds what each point gives to its nodes, times its shape functions: `Σ_p N_ip g_p`.
+    #[inline(always)]
+    fn add_values<const N: usize, const M: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> [[f64; M]; N],
+        sums: &mut [[[f64; M]; N]],
+    ) {
+        for point in 0..self.first.len() / self.parts {
+            let given = given(point);
+            self.visit_runs(
+                stride,
+                point,
+                #[inline(always)]
+                |run| run.add_values(&given, sums),
+            );
+        }
+    }
+
+    /// Adds two kinds of what each point gives, in one pass.
+    #[inline(always)]
+    fn add_both<const N: usize, const M: usize, const O: usize, const P: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> ([[f64; M]; N], [[f64; P]; O]),
+        sums: &mut [[[f64; M]; N]],
+        other_sums: &mut [[[f64; P]; O]],
+    ) {
+        for point in 0..self.first.len() / self.parts {
+            let (given, other) = given(point);
+            self.visit_runs(
+                stride,
+                point,
+                #[inline(always)]
+                |run| {
+                    run.add_values(&given, sums);
+                    run.add_values(&other, other_sums);
+                },
+            );
+        }
+    }
+
+    /// Adds what each point gives to its nodes, times the gradients of its shape functions: `Σ_p Σ_d ∂_d N_ip g_pd`.
+    #[inline(always)]
+    fn add_gradients<const N: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> [[Vector<D>; N]; D],
+        sums: &mut [[Vector<D>; N]],
+    ) {
+        for point in 0..self.first.len() / self.parts {
+            let given = given(point);
+            self.visit_runs(
+                stride,
+                point,
+                #[inline(always)]
+                |run| {
+                    let mut scaled = given;
+                    for d in 0..D {
+                        for number in scaled[d].as_flattened_mut() {
+                            *number *= run.across[d];
+                        }
+                    }
+                    for (k, node) in sums[run.first..run.first + W].iter_mut().enumerate() {
+                        for d in 0..D {
+                            let along = if d == 0 { run.gradients[k] } else { run.values[k] };
+                            for i in 0..N {
+                                for j in 0..D {
+                                    node[i][j] += along * scaled[d][i][j];
+                                }
+                            }
+                        }
+                    }
+                },
+            );
+        }
     }
 }
 
-/// [`Stencils`] of the width of a basis, known once a loop: what walks them is compiled by width, and nothing else.
+/// [`Stencils`] as wide as those of a basis: the width is looked at once for a loop over all points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointStencils<const D: usize> {
     /// Two nodes per direction.
@@ -159,37 +326,74 @@ impl<const D: usize> Default for PointStencils<D> {
 }
 
 impl<const D: usize> PointStencils<D> {
-    /// Lowest node of each point's block.
+    /// Lowest node of each block.
     pub fn first(&self) -> &[usize] {
         with_stencils!(self, stencils => &stencils.first)
     }
 
-    /// Visits the nodes of a point's block with weight and gradient (1/m).
+    /// Visits the nodes of a point with value and gradient (1/m).
     #[inline]
     pub fn visit(&self, stride: &[usize; D], point: usize, visitor: impl FnMut(usize, f64, &Vector<D>)) {
         with_stencils!(self, stencils => stencils.visit(stride, point, visitor));
     }
 
-    /// Value of a nodal vector field at the point.
+    /// Value of a nodal vector field at a point.
     #[inline]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        with_stencils!(self, stencils => stencils.blocks().value(stride, point, field))
+        let [value] = with_stencils!(self, stencils => stencils.values(stride, point, [field]));
+        value
     }
 
-    /// Gradient of a nodal vector field at the point, `[component][direction]`.
+    /// Gradient of a nodal vector field at a point, `[component][direction]`.
     #[inline]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        with_stencils!(self, stencils => stencils.blocks().gradient(stride, point, field))
+        with_stencils!(self, stencils => stencils.gradient(stride, point, field))
     }
 
-    /// Divergence of a nodal vector field at the point.
+    /// Divergence of a nodal vector field at a point.
     #[inline]
     pub fn divergence(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> f64 {
-        with_stencils!(self, stencils => stencils.divergence(stride, point, field))
+        let gradient = self.gradient(stride, point, field);
+        (0..D).map(|d| gradient[d][d]).sum()
     }
 
-    /// The nodes of a point's blocks with their gradients (1/m), where they are not zero: the
-    /// divergence at the point as a functional of a nodal field.
+    /// Sums what each point gives to its nodes, times its shape functions: `Σ_p N_ip g_p`.
+    pub fn sum_values<const N: usize, const M: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> [[f64; M]; N],
+        sums: &mut [[[f64; M]; N]],
+    ) {
+        sums.fill([[0.0; M]; N]);
+        with_stencils!(self, stencils => wide!(stencils.add_values(stride, given, sums)));
+    }
+
+    /// Sums two kinds of what each point gives, in one pass.
+    pub fn sum_both<const N: usize, const M: usize, const O: usize, const P: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> ([[f64; M]; N], [[f64; P]; O]),
+        sums: &mut [[[f64; M]; N]],
+        other_sums: &mut [[[f64; P]; O]],
+    ) {
+        sums.fill([[0.0; M]; N]);
+        other_sums.fill([[0.0; P]; O]);
+        with_stencils!(self, stencils => wide!(stencils.add_both(stride, given, sums, other_sums)));
+    }
+
+    /// Sums what each point gives to its nodes, times the gradients of its shape functions: `Σ_p Σ_d ∂_d N_ip g_pd`.
+    pub fn sum_gradients<const N: usize>(
+        &self,
+        stride: &[usize; D],
+        given: impl Fn(usize) -> [[Vector<D>; N]; D],
+        sums: &mut [[Vector<D>; N]],
+    ) {
+        sums.fill([[0.0; D]; N]);
+        with_stencils!(self, stencils => wide!(stencils.add_gradients(stride, given, sums)));
+    }
+
+    /// The nodes of a point with their gradients (1/m), where they are not zero: the divergence at the point as a
+    /// functional of a nodal field.
     pub fn gradient_row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, Vector<D>)> {
         let mut row: Vec<(usize, Vector<D>)> = Vec::new();
         self.visit(grid.node_stride(), point, |node, _, gradient| {
@@ -205,49 +409,53 @@ impl<const D: usize> PointStencils<D> {
     }
 }
 
-/// Visits the nodes of a tensor product of rows with their weights.
-#[inline]
-pub(crate) fn visit_block<const D: usize, const W: usize>(
-    grid: &Grid<D>,
-    rows: &[Row<W>; D],
-    mut node_visitor: impl FnMut(usize, f64),
-) {
-    for corner in 0..power(W, D) {
-        let (mut node, mut weight, mut rest) = (0, 1.0, corner);
-        for direction in 0..D {
-            let k = rest % W;
-            rest /= W;
-            node += (rows[direction].first + k) * grid.node_stride()[direction];
-            weight *= rows[direction].weights[k];
-        }
-        node_visitor(node, weight);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operators::basis::{Gimp, ShapeFunction};
 
     #[test]
-    fn a_block_in_two_dimensions_reproduces_a_linear_field_and_its_gradient() {
-        let grid = Grid::new(0.5, [6, 5]);
-        let position = [1.37, 0.81];
-        let mut stencils = Stencils::<2, 3>::with_points(1);
-        let rows = position.map(|x| Gimp::row(grid.in_cells(x), 0, 0.2));
-        stencils.set(&grid, 0, &rows);
-        let field: Vec<Vector<2>> = (0..grid.node_count())
-            .map(|node| {
-                let [x, y] = grid.node_position(node);
-                [1.0 + 2.0 * x - y, 3.0 - x + 4.0 * y]
-            })
-            .collect();
-        let value = stencils.blocks().value(grid.node_stride(), 0, &field);
-        assert!((value[0] - (1.0 + 2.0 * 1.37 - 0.81)).abs() < 1e-13);
-        let gradient = stencils.blocks().gradient(grid.node_stride(), 0, &field);
-        for (got, exact) in gradient.iter().flatten().zip([2.0, -1.0, -1.0, 4.0]) {
-            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+    fn sums_to_the_nodes_are_adjoint_to_values_and_gradients_at_the_points() {
+        let grid = Grid::new(0.5, [4, 3]);
+        let mut stencils = Stencils::<2, 3>::new(5, 1);
+        for point in 0..5 {
+            let row = |d: usize| Row {
+                first: 2 + (point + d) % 3,
+                values: [0.25, 0.5, 0.25 + 0.1 * point as f64],
+                gradients: [-1.0, 0.25, 0.75 + d as f64],
+            };
+            stencils.set(&grid, point, &[row(0), row(1)]);
         }
-        assert!((stencils.divergence(grid.node_stride(), 0, &field) - 6.0).abs() < 1e-12);
+        let (basis, stride) = (PointStencils::Three(stencils), grid.node_stride());
+        let nodes = grid.node_count();
+        let field: Vec<Vector<2>> =
+            (0..nodes).map(|node| [(node as f64).sin(), (1.3 * node as f64).cos()]).collect();
+        let given = |point: usize| [1.0 + point as f64, -0.5];
+        let mut sums = vec![[[0.0; 2]; 1]; nodes];
+        basis.sum_values(stride, |point| [given(point)], &mut sums);
+        let product = |sums: &[[Vector<2>; 1]]| -> f64 {
+            sums.iter().zip(&field).map(|([sum], at)| sum[0] * at[0] + sum[1] * at[1]).sum()
+        };
+        let of_points = |of: &dyn Fn(usize) -> f64| (0..5).map(of).sum::<f64>();
+        let values = of_points(&|point| {
+            let (value, given) = (basis.value(stride, point, &field), given(point));
+            value[0] * given[0] + value[1] * given[1]
+        });
+        assert!((product(&sums) - values).abs() < 1e-13);
+        // `σ ∇N` with σ = [[a, b], [0, a]] against σ : ∇v.
+        let tensor = |point: usize| [[given(point)[0], given(point)[1]], [0.0, given(point)[0]]];
+        let columns = |point: usize| {
+            let sigma = tensor(point);
+            [[[sigma[0][0], sigma[1][0]]], [[sigma[0][1], sigma[1][1]]]]
+        };
+        basis.sum_gradients(stride, columns, &mut sums);
+        let work = of_points(&|point| {
+            let (gradient, sigma) = (basis.gradient(stride, point, &field), tensor(point));
+            (0..2).flat_map(|i| (0..2).map(move |j| (i, j))).map(|(i, j)| sigma[i][j] * gradient[i][j]).sum()
+        });
+        assert!((product(&sums) - work).abs() < 1e-12 && work.abs() > 1.0);
+        let mut visited = [0.0; 2];
+        basis.visit(stride, 3, |node, value, _| (0..2).for_each(|d| visited[d] += value * field[node][d]));
+        let direct = basis.value(stride, 3, &field);
+        assert!((0..2).all(|d| (visited[d] - direct[d]).abs() < 1e-14));
     }
 }

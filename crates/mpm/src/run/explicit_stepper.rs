@@ -9,9 +9,8 @@ use crate::method::Configuration;
 use crate::run::energy::Energy;
 use crate::run::results::snapshot::Snapshot;
 use crate::run::run_plan::Plan;
-use crate::run::schedule::Kernel;
+use crate::run::schedule::{Kernel, TimeStepRule};
 use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
-use crate::run::time_step_rule::TimeStepRule;
 use crate::run::watch::lost_point;
 use crate::state::points::Points;
 
@@ -103,7 +102,7 @@ impl<const D: usize> ExplicitStepper<D> {
             body,
         };
         if stepper.settings.affine {
-            stepper.body.bring_slopes();
+            stepper.body.use_apic();
         }
         if stepper.settings.stress_slopes {
             stepper.body.slope_stresses();

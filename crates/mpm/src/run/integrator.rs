@@ -1,10 +1,9 @@
 //! Time integrators by name.
 
-use crate::explicit::scheme::{Drag, ExplicitSettings, Scheme};
-use crate::run::time_step_rule::TimeStepRule;
+use crate::drag::Drag;
+use crate::explicit::scheme::{ExplicitSettings, Scheme};
+use crate::run::schedule::TimeStepRule;
 use oedometer_soil::wording::words;
-
-pub use crate::formulation::Formulation;
 
 /// Share of the critical step where an explicit run names no rule.
 const DEFAULT_SHARE: f64 = 0.8;
@@ -28,6 +27,20 @@ pub enum IntegratorKind {
 }
 
 words!(IntegratorKind: Explicit "explicit", SemiImplicit "semi-implicit", Implicit "implicit");
+
+/// Which accelerations the balances keep (docs/theory.md, section 1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Formulation {
+    /// None: Biot's consolidation.
+    QuasiStatic,
+    /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
+    /// (Zienkiewicz 1980).
+    UP,
+    /// Both phases' own.
+    VW,
+}
+
+words!(Formulation: QuasiStatic "quasi-static", UP "u-p", VW "v-w");
 
 /// What bounds the steps of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

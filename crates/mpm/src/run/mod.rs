@@ -1,26 +1,102 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 //!
-//! - `door`: the problem's basis and integrator become a [`stepper::Stepper`],
-//! - `driver`: takes it from output to output; `watch`, `history`: what it looks at and notes,
-//! - `schedule`, `time_step_rule`, `step_limit`, `plan`: when to step and how far,
-//! - `explicit_stepper`: the explicit integrator as a stepper; the others are in `implicit`,
-//! - `snapshot`, `outcome`: what is left of it.
+//! [`run`] makes a [`stepper::Stepper`] of the problem and its integrator, and `driver` takes it from output to output;
+//! `watch` looks at it on the way. `schedule` and `run_plan` say when to step and how far; `explicit_stepper` is the
+//! explicit integrator, the others are in `implicit`; `results` are what is left of it.
 
-pub mod door;
-pub mod driver;
-pub mod energy;
-pub mod explicit_stepper;
+pub(crate) mod driver;
+pub(crate) mod energy;
+pub(crate) mod explicit_stepper;
 pub mod integrator;
-pub mod physical_bounds;
+pub(crate) mod physical_bounds;
 pub mod profile;
 pub mod results;
 pub mod run_plan;
 pub mod schedule;
-pub mod step_limit;
 pub mod stepper;
-pub mod time_step_rule;
-pub mod watch;
+pub(crate) mod watch;
 
-pub use door::run;
-pub use schedule::{Kernel, Observer, Schedule};
-pub use time_step_rule::TimeStepRule;
+pub use schedule::{Kernel, Observer, Schedule, TimeStepRule};
+
+use crate::body::{Body, Problem};
+use crate::direct_solver::singular::Singular;
+use crate::double_point::stepper::DoublePointStepper;
+use crate::implicit::linear::LinearStepper;
+use crate::implicit::newton::NewtonStepper;
+use crate::method::Configuration;
+use crate::run::driver::Driver;
+use crate::run::explicit_stepper::ExplicitStepper;
+use crate::run::integrator::{Formulation, IntegratorKind};
+use crate::run::results::outcome::{Failure, FailureKind, Outcome};
+use crate::run::run_plan::{Plan, UnknownLimit};
+use crate::run::stepper::{StepFailure, Stepper};
+
+/// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
+/// named status, and what was finished before stays.
+pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+    let plan = Plan::of(&problem, schedule);
+    if let Some(unknown) = plan.unknown_limit {
+        return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)
+            .solve(Some(no_limit(unknown)));
+    }
+    let (undrained_start, gradient) = (problem.undrained_start, problem.initial_gradient);
+    let mut problem = problem;
+    let water = problem.water.take();
+    let mut body = Body::new(problem);
+    let time_limit = schedule.time_limit;
+    let no_start = |singular| if time_limit.is_over() { out_of_time() } else { no_start(singular) };
+    let start_failure = if undrained_start {
+        body.settle_undrained(schedule.threads, time_limit).err().map(no_start)
+    } else {
+        None
+    };
+    match water {
+        Some(lattice) => {
+            let start_failure = start_failure.or_else(|| no_water_points(schedule.integrator));
+            let mut stepper = DoublePointStepper::new(body, &lattice, &gradient, undrained_start, &plan);
+            Driver::new(&mut stepper, &plan, observer).solve(start_failure)
+        }
+        None => Driver::new(stepper_of(body, &plan).as_mut(), &plan, observer).solve(start_failure),
+    }
+}
+
+/// The integrator of a body: explicit; one linear system where the body is frozen and at rest;
+/// Newton's iteration elsewhere.
+fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper> {
+    let Schedule { integrator, formulation, .. } = *plan.schedule;
+    let is_linear = body.configuration == Configuration::Frozen && formulation == Formulation::QuasiStatic;
+    match integrator {
+        IntegratorKind::Explicit => Box::new(ExplicitStepper::new(body, plan)),
+        _ if is_linear => Box::new(LinearStepper::new(body, plan)),
+        IntegratorKind::SemiImplicit | IntegratorKind::Implicit => Box::new(NewtonStepper::new(body, plan)),
+    }
+}
+
+/// The end of a run that has no undrained start.
+fn no_start(singular: Singular) -> Failure {
+    let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
+    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
+}
+
+/// The end of a run whose steps are shares of a limit that nobody knows.
+fn no_limit(unknown: UnknownLimit) -> Failure {
+    let growth = match unknown {
+        UnknownLimit::Growing(growing) => Some(growing.growth),
+        UnknownLimit::OffLattice => None,
+    };
+    let reason = format!("{unknown}; a step in `seconds` is taken as it is");
+    Failure { kind: FailureKind::Unstable, step: 0, time: 0.0, growth, reason }
+}
+
+/// The end of a run whose time was over before it had a start.
+fn out_of_time() -> Failure {
+    let StepFailure { kind, reason } = StepFailure::out_of_time();
+    Failure { kind, step: 0, time: 0.0, growth: None, reason }
+}
+
+/// The end of a run of double-point MPM by an integrator that has none.
+fn no_water_points(integrator: IntegratorKind) -> Option<Failure> {
+    let reason = format!("two sets of points are integrated explicitly, not by `{}`", integrator.name());
+    let failure = Failure { kind: FailureKind::NotConverged, step: 0, time: 0.0, growth: None, reason };
+    (integrator != IntegratorKind::Explicit).then_some(failure)
+}

@@ -2,6 +2,7 @@
 
 use crate::body::Problem;
 use crate::critical_step::formula;
+use crate::drag;
 use crate::operators::rigid_plate::NORMAL;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
 
@@ -67,7 +68,7 @@ impl PhysicalBounds {
         } else {
             MOST_FORCE * of_load / cells
         };
-        let joining = 0.5 * formula::drag_limit(soil);
+        let joining = 0.5 * drag::step_limit(soil);
         let passing = cells * cell_size / formula::undrained_wave_speed(soil);
         Self {
             settlement_scale: scale,

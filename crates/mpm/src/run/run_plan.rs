@@ -8,9 +8,7 @@ use crate::run::integrator::StepBound;
 use crate::run::physical_bounds::PhysicalBounds;
 use crate::run::profile::{self, Phase, enter};
 use crate::run::results::outcome::StepSizes;
-use crate::run::schedule::Schedule;
-use crate::run::step_limit::StepLimit;
-use crate::run::time_step_rule::TimeStepRule;
+use crate::run::schedule::{Schedule, StepLimit, TimeStepRule};
 use crate::state::points::Points;
 use std::fmt;
 

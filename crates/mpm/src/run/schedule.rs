@@ -1,9 +1,13 @@
-//! When to step and what to keep.
+//! When to step, how far, and what to keep.
 
+use crate::body::Problem;
+use crate::critical_step::formula;
 use crate::explicit::ExplicitSettings;
 use crate::run::integrator::{Formulation, IntegratorKind};
-use crate::run::time_step_rule::TimeStepRule;
+use crate::run::stepper::EqualSteps;
 use crate::time_limit::TimeLimit;
+use oedometer_soil::elementary;
+use serde::{Deserialize, Serialize};
 
 /// Kernel of the explicit step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,3 +46,194 @@ pub struct Schedule {
 
 /// Called every few steps with the steps done and those expected; returns `false` to stop the run.
 pub type Observer<'a> = &'a dyn Fn(u64, u64) -> bool;
+
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TimeStepRule {
+    /// Share of the predicted critical step.
+    Stable(f64),
+    /// Share of `h/c`, the fastest wave's way through a cell.
+    Courant(f64),
+    /// Seconds.
+    Seconds(f64),
+    /// Grows with time, `max(Δt₀, α t)`; the number is `α`.
+    Growth(f64),
+    /// As large as an estimate of the error in time allows: the number bounds it, relative to the
+    /// load and to the settlement it makes.
+    Tolerance(f64),
+}
+
+impl TimeStepRule {
+    /// The rule of the same kind with another number.
+    #[must_use]
+    pub fn with_number(self, number: f64) -> Self {
+        match self {
+            Self::Stable(_) => Self::Stable(number),
+            Self::Courant(_) => Self::Courant(number),
+            Self::Seconds(_) => Self::Seconds(number),
+            Self::Growth(_) => Self::Growth(number),
+            Self::Tolerance(_) => Self::Tolerance(number),
+        }
+    }
+
+    /// Step, s, on a problem with a predicted critical step.
+    pub fn step<const D: usize>(&self, problem: &Problem<D>, critical: f64) -> f64 {
+        match self {
+            Self::Stable(share) => share * critical,
+            Self::Courant(share) => {
+                let soil = &problem.material;
+                share * problem.grid.cell_size / formula::fastest_wave_speed(soil, soil.porosity)
+            }
+            Self::Seconds(seconds) => *seconds,
+            Self::Growth(growth) => growth * diffusion_time(problem),
+            Self::Tolerance(tolerance) => tolerance.sqrt().min(0.1) * diffusion_time(problem),
+        }
+    }
+
+    /// Limit of a run's steps whose rule asks for steps of `target` seconds at first:
+    /// where they grow, the first ones resolve the first output as the later ones theirs.
+    pub fn limit<const D: usize>(
+        &self,
+        problem: &Problem<D>,
+        target: f64,
+        most: f64,
+        outputs: &[f64],
+    ) -> StepLimit {
+        match self {
+            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
+            Self::Growth(growth) => {
+                let first = outputs.iter().copied().find(|output| *output > 0.0);
+                let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
+                StepLimit::Growing { first: growth * start, growth: *growth, most }
+            }
+            Self::Tolerance(tolerance) => StepLimit::Tolerance { first: target, tolerance: *tolerance },
+        }
+    }
+}
+
+/// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
+fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
+    problem.grid.cell_size * problem.grid.cell_size / problem.material.coefficient_of_consolidation()
+}
+
+/// Step sizes grow by this factor from one level to the next.
+const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
+
+/// How large a step may be at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepLimit {
+    /// The same at all times, s.
+    Constant(f64),
+    /// `max(Δt₀, α t)`: consolidation slows down as the square root of time, and so may the steps.
+    Growing {
+        /// `Δt₀`, s.
+        first: f64,
+        /// `α`.
+        growth: f64,
+        /// What they may grow to, s.
+        most: f64,
+    },
+    /// What the estimate of the error allows.
+    Tolerance {
+        /// The first step, s.
+        first: f64,
+        /// Error that a step may have.
+        tolerance: f64,
+    },
+}
+
+impl StepLimit {
+    /// The steps to take next from `time` towards `output`: of one size, which is at most the
+    /// limit wherever it is taken, and that end at `output` or where larger ones may begin.
+    pub fn row(&self, time: f64, output: f64) -> EqualSteps {
+        let (size, end) = match *self {
+            Self::Constant(size) => (size, output),
+            // Of a size that the driver goes on from by itself.
+            Self::Tolerance { first, .. } => (first, output),
+            Self::Growing { first, growth, most } => {
+                let allowed = (growth * time).max(first).min(most);
+                // A time that is a level's beginning up to round-off is in that level.
+                let level = (elementary::ln(allowed / first) / elementary::ln(LEVEL_RATIO) + 1e-9).floor();
+                let size = first * elementary::powf(LEVEL_RATIO, level);
+                let grown =
+                    if size * LEVEL_RATIO > most { f64::INFINITY } else { size * LEVEL_RATIO / growth };
+                // Not worth an end of its own where the output is a step away.
+                (size, if output < grown + size { output } else { grown })
+            }
+        };
+        let count = steps_for(end - time, size);
+        EqualSteps::first(time, (end - time) / count as f64, count)
+    }
+
+    /// Steps from the start to `end`, without the outputs in between.
+    pub fn expected_steps(&self, end: f64) -> u64 {
+        if let Self::Tolerance { tolerance, .. } = self {
+            return steps_for(10.0, tolerance.sqrt());
+        }
+        let (mut time, mut steps) = (0.0, 0_u64);
+        while end - time > 1e-9 * end {
+            let row = self.row(time, end);
+            let next = row.end();
+            steps = steps.saturating_add(row.count);
+            // Times at the edge of the numbers: what no longer advances is endless.
+            let advances = next > time;
+            if !advances {
+                return u64::MAX;
+            }
+            time = next;
+        }
+        steps
+    }
+}
+
+/// Equal steps of at most `step` that fill a duration; at least one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates, and that is the right end"
+)]
+pub fn steps_for(duration: f64, step: f64) -> u64 {
+    // A duration that is a whole number of steps up to round-off is that number.
+    ((duration / step) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn growing_steps_keep_to_their_limit_and_come_in_few_sizes(
+            growth in 0.005..0.5_f64, first in 1e-6..1e-2_f64,
+        ) {
+            let limit = StepLimit::Growing { first, growth, most: f64::INFINITY };
+            let outputs = [0.05, 0.1, 1.0];
+            let (mut time, mut sizes, mut steps) = (0.0, 0, 0);
+            for output in outputs {
+                while output - time > 1e-9 * output {
+                    let row = limit.row(time, output);
+                    // Levels are powers, so a last step may exceed the limit by less than one.
+                    prop_assert!(row.dt <= (growth * time).max(first) * (1.0 + 1e-9));
+                    time += row.count as f64 * row.dt;
+                    sizes += 1;
+                    steps += row.count;
+                }
+                prop_assert!((time / output - 1.0).abs() < 1e-9);
+            }
+            let levels = ((growth / first).max(1.0).ln() / LEVEL_RATIO.ln()).ceil() + 6.0;
+            prop_assert!(f64::from(sizes) <= levels, "{sizes} sizes for {levels} levels");
+            // Not many more than the limit itself would take.
+            let least = 1.0 / growth + (growth / first).max(1.0).ln() / growth.ln_1p();
+            prop_assert!(steps as f64 <= 1.35 * least + 2.0 * f64::from(sizes) + 1.0 / first.max(0.5));
+        }
+    }
+
+    #[test]
+    fn constant_steps_fill_the_way() {
+        assert_eq!(StepLimit::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
+        assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
+        assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
+    }
+}

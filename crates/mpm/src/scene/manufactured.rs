@@ -4,7 +4,7 @@
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
 use crate::forcing::{BodyForces, Forcing};
-use crate::formulation::Formulation;
+use crate::run::integrator::Formulation;
 use crate::scene::column::{Column, Shape, column_parameters};
 use crate::scene::definition::{
     ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,

@@ -25,25 +25,6 @@ pub(crate) fn whole(in_cells: f64) -> usize {
     in_cells as u32 as usize
 }
 
-/// 2⁵²: a smaller number that is added to it is rounded to a whole one, which the last bits of the sum spell.
-const LEAST_WHOLE: f64 = 4_503_599_627_370_496.0;
-
-/// Whole part of a coordinate in cells as a number: what [`whole`] gives, in operations that loops over lanes have.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn whole_part(in_cells: f64) -> f64 {
-    let nearest = (in_cells + LEAST_WHOLE) - LEAST_WHOLE;
-    if nearest > in_cells { nearest - 1.0 } else { nearest }
-}
-
-/// Index that a whole number spells.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-#[expect(clippy::cast_possible_truncation, reason = "the last 32 bits are the number")]
-pub(crate) fn index_of(whole: f64) -> usize {
-    (whole + LEAST_WHOLE).to_bits() as u32 as usize
-}
-
 /// `base^exponent`, for the nodes or cells of a block.
 #[inline]
 pub const fn power(base: usize, exponent: usize) -> usize {
@@ -133,22 +114,24 @@ impl<const D: usize> Grid<D> {
     /// next check, and until then no index may leave the arrays.
     #[inline]
     pub fn held_in_cells(&self, position: &Vector<D>) -> Vector<D> {
-        std::array::from_fn(|direction| self.line(direction).held_in_cells(position[direction]))
+        let lowest = GHOST_LAYERS as f64;
+        // `max` and `min`, not `clamp`: they turn a NaN into a place.
+        let mut place = *position;
+        for d in 0..D {
+            place[d] = self.in_cells(place[d]).max(lowest).min(lowest + self.cells[d] as f64);
+        }
+        place
     }
 
     /// Index, a direction, of the cell that holds a place in cells inside the grid; the upper rim
     /// belongs to the last cell.
     #[inline]
     pub fn cell_at(&self, held_in_cells: &Vector<D>) -> [usize; D] {
-        std::array::from_fn(|direction| {
-            cell_below(held_in_cells[direction]).min(self.cells[direction] + GHOST_LAYERS - 1)
-        })
-    }
-
-    /// Its lines of cells along a direction, for loops over lanes.
-    #[inline]
-    pub(crate) fn line(&self, direction: usize) -> Line {
-        Line { per_cell: self.inverse_cell_size, cells: self.cells[direction] as f64 }
+        let mut cell = [0; D];
+        for d in 0..D {
+            cell[d] = cell_below(held_in_cells[d]).min(self.cells[d] + GHOST_LAYERS - 1);
+        }
+        cell
     }
 
     /// Index, a direction, of the cell that holds a point.
@@ -215,36 +198,6 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// A line of cells along one direction of a grid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Line {
-    /// `1 / cell_size`, 1/m.
-    pub(crate) per_cell: f64,
-    /// Its cells, ghosts not counted.
-    cells: f64,
-}
-
-impl Line {
-    /// Coordinate in cells, held inside the grid: what [`held_in_cells`](Grid::held_in_cells) gives.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub(crate) fn held_in_cells(&self, coordinate: f64) -> f64 {
-        let lowest = GHOST_LAYERS as f64;
-        // `max` and `min`, not `clamp`: they turn a NaN into a place.
-        (coordinate * self.per_cell + lowest).max(lowest).min(lowest + self.cells)
-    }
-
-    /// Index, as a whole number, of the cell that holds a place in cells inside the grid: that of
-    /// [`cell_at`](Grid::cell_at).
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-    pub(crate) fn cell_at(&self, held_in_cells: f64) -> f64 {
-        let last = self.cells + (GHOST_LAYERS - 1) as f64;
-        let cell = whole_part(held_in_cells + FACE_TOLERANCE);
-        if cell > last { last } else { cell }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,14 +210,6 @@ mod tests {
         let cell = grid.flat_cell(&grid.cell_of(&[0.3, 0.9]));
         assert_eq!(grid.cell_centre(cell), [0.375, 0.875]);
         assert!(cell < grid.cell_count() && node < grid.node_count());
-    }
-
-    #[test]
-    fn whole_parts_and_their_indices_are_those_of_a_conversion() {
-        for place in [0.0, 0.3, 0.5, 1.0 - 1e-16, 1.0, 1.5, 2.5, 3.499, 77.999_999_999, 4e6 + 0.5, 4.2e9] {
-            assert_eq!(whole_part(place), place.floor(), "{place}");
-            assert_eq!(index_of(whole_part(place)), whole(place), "{place}");
-        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use oedometer_mpm::state::grid::Grid;
 use oedometer_mpm::state::nodes::Support;
 use oedometer_mpm::state::points::Points;
 use oedometer_mpm::time_limit::TimeLimit;
-use oedometer_soil::conductivity_mean::ConductivityMean;
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;

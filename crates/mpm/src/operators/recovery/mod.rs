@@ -1,65 +1,99 @@
 //! `R`: from the sites of the divergence, cells or points, to the points (docs/theory.md, section 3).
 //!
-//! Every way has its file with the same verbs: `fit` where it has to look at all sites first, `value` at a point
-//! in place, and `row` or `rows`: the sites that a point recovers its value from, with their weights. Which way
-//! a method takes is chosen here and nowhere else.
+//! Every recovery that has to look at all sites first has a `fit`; `value` is what a point recovers, and `row` or
+//! `rows` are the sites that it recovers its value from, with their shares. Which one a method takes is chosen here and
+//! nowhere else.
 
-pub mod constant;
-pub mod nodal;
-pub mod nodal_field;
-pub mod null_space;
-pub mod patch;
-pub mod points_in_cells;
+mod nodal;
+mod null_space;
+mod patch;
 
 use crate::method::{Method, Recovery};
-use crate::operators::recovery::nodal::NodalMeans;
-use crate::operators::recovery::nodal_field::NodalField;
+use crate::operators::recovery::nodal::{NodalMeans, Sites};
 use crate::operators::recovery::null_space::CellPlanes;
 use crate::operators::recovery::patch::PatchRows;
-use crate::operators::recovery::points_in_cells::PointsInCells;
+use crate::operators::stencil::PointStencils;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;
+use crate::state::nodes::Nodes;
 use crate::wide::wide;
+use oedometer_soil::tensor::Vector;
+
+/// Where the points are among cells and nodes: what every recovery looks at.
+#[derive(Clone, Copy, Debug)]
+pub struct PointsInCells<'a, const D: usize> {
+    /// Background grid.
+    pub grid: &'a Grid<D>,
+    /// Cells with their volumes, and the cell of each point.
+    pub cells: &'a Cells<D>,
+    /// Nodes with their supports.
+    pub nodes: &'a Nodes<D>,
+    /// Shape functions between points and nodes.
+    pub basis: &'a PointStencils<D>,
+    /// Places of the points, m, `[point][component]`.
+    pub positions: &'a [Vector<D>],
+    /// Volumes of the points in another state, m^D, and their ratio to those.
+    pub volumes: [&'a [f64]; 2],
+}
+
+impl<const D: usize> PointsInCells<'_, D> {
+    /// Volume of a point, m^D.
+    pub fn volume(&self, point: usize) -> f64 {
+        self.volumes[0][point] * self.volumes[1][point]
+    }
+}
+
+/// [`PointsInCells`] of a body, field by field: what is recovered may be another field of it.
+macro_rules! points_in_cells {
+    ($body:expr) => {
+        $crate::operators::recovery::PointsInCells {
+            grid: &$body.grid,
+            cells: &$body.cells,
+            nodes: &$body.nodes,
+            basis: &$body.basis,
+            positions: &$body.points.position,
+            volumes: [&$body.points.initial_volume, &$body.points.volume_ratio],
+        }
+    };
+}
+pub(crate) use points_in_cells;
 
 /// `R` of a method, with what it keeps from step to step.
 #[derive(Clone, Debug)]
 pub enum RecoveryOperator<const D: usize> {
-    /// The sites are the points.
+    /// The sites are the points, and each keeps its own value.
     Own,
-    /// [`constant`].
+    /// Each point takes the value of its cell.
     Constant,
-    /// [`patch`].
+    /// A plane fitted to the cells around each point.
     Patch(PatchRows<D>),
-    /// [`nodal`].
+    /// Means at the nodes.
     Nodal(NodalMeans),
-    /// [`nodal_field`]; the sites are the points.
-    NodalField(NodalField),
-    /// [`null_space`]; the sites are the points.
+    /// Values at the points without the part that no nodal force feels.
     NullSpace(CellPlanes<D>),
 }
 
 impl<const D: usize> RecoveryOperator<D> {
-    /// The operator of a method, with room for a grid and so many points.
+    /// The operator of a method, with room for a grid and `points` points.
     pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
-            (false, Recovery::Nodal) => Self::NodalField(NodalField::with_nodes(grid.node_count())),
+            (false, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Points, grid.node_count())),
             (false, Recovery::Constant | Recovery::Patch) => Self::Own,
             (true, Recovery::Constant | Recovery::NullSpace) => Self::Constant,
-            (true, Recovery::Patch) => Self::Patch(PatchRows::with_points(points, grid)),
-            (true, Recovery::Nodal) => Self::Nodal(NodalMeans::with_nodes(grid.node_count())),
+            (true, Recovery::Patch) => Self::Patch(PatchRows::new(points, grid)),
+            (true, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Cells, grid.node_count())),
         }
     }
 
     /// Brings the operator up to the points' places.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
-            rows.build(grid, cells);
+            wide!(rows.build(grid, cells));
         }
     }
 
     /// Recovers values at the points from those at the sites and puts each into its place of `out`.
-    #[inline]
     pub fn recover(
         &mut self,
         at: &PointsInCells<'_, D>,
@@ -69,17 +103,13 @@ impl<const D: usize> RecoveryOperator<D> {
     ) {
         match self {
             Self::Own => each(out, put, |point| sites[point]),
-            Self::Constant => each(out, put, |point| constant::value(at, point, sites)),
+            Self::Constant => each(out, put, |point| sites[at.cells.of_point[point]]),
             Self::Patch(rows) => {
-                wide!(rows.recover(at.grid, sites, out, put));
+                wide!(each(out, put, |point| rows.value(at.grid, point, sites)));
             }
             Self::Nodal(means) => {
                 means.fit(at, sites);
                 each(out, put, |point| means.value(at, point));
-            }
-            Self::NodalField(field) => {
-                field.fit(at, sites);
-                each(out, put, |point| field.value(at, point));
             }
             Self::NullSpace(planes) => {
                 planes.fit(at, |point| sites[point]);
@@ -90,21 +120,17 @@ impl<const D: usize> RecoveryOperator<D> {
 
     /// Whether a point's value is that of a few sites around it, and nothing is fitted first.
     pub fn is_local(&self) -> bool {
-        match self {
-            Self::Own | Self::Constant | Self::Patch(_) => true,
-            Self::Nodal(_) | Self::NodalField(_) | Self::NullSpace(_) => false,
-        }
+        matches!(self, Self::Own | Self::Constant | Self::Patch(_))
     }
 
-    /// The same as rows, `[point][entry]` of site and weight.
+    /// The sites that each point recovers its value from, `[point][entry]`, with their shares.
     pub fn rows(&self, at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
         let points = 0..at.positions.len();
         match self {
             Self::Own => points.map(|point| vec![(point, 1.0)]).collect(),
-            Self::Constant => points.map(|point| constant::row(at, point)).collect(),
+            Self::Constant => points.map(|point| vec![(at.cells.of_point[point], 1.0)]).collect(),
             Self::Patch(rows) => points.map(|point| rows.row(at.grid, point)).collect(),
-            Self::Nodal(_) => nodal::rows(at),
-            Self::NodalField(_) => nodal_field::rows(at),
+            Self::Nodal(means) => means.rows(at),
             Self::NullSpace(_) => null_space::rows(at),
         }
     }
@@ -112,7 +138,7 @@ impl<const D: usize> RecoveryOperator<D> {
 
 /// Puts the value of each point into its place.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+#[expect(clippy::inline_always, reason = "the innermost loops of the step")]
 fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f64) {
     for (point, place) in out.iter_mut().enumerate() {
         put(place, value(point));
@@ -123,9 +149,9 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 pub(crate) mod tests {
     use super::*;
     use crate::method::Basis;
-    use crate::operators::stencil::PointStencils;
-    use crate::state::nodes::{Nodes, Support};
+    use crate::state::nodes::Support;
     use crate::state::points::Points;
+    use oedometer_soil::material::Material;
 
     /// A lattice of points in free cells.
     pub(crate) struct SiteBlock {
@@ -143,8 +169,8 @@ pub(crate) mod tests {
             let mut cells = Cells::new(&grid, points.len());
             cells.locate(&grid, &points, 0.3);
             let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);
-            nodes.solid_mass.fill(1.0);
-            nodes.finish_masses();
+            nodes.sums.masses.fill([[1.0; 4]]);
+            nodes.take_masses(&Material::default());
             let mut basis = Basis::Cpgimp.stencils(points.len());
             let places = [&cells.place[..], &points.half_length[..]];
             Basis::Cpgimp.build(&mut basis, &grid, &Support::free(), places);
@@ -152,7 +178,7 @@ pub(crate) mod tests {
         }
 
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
-            crate::operators::recovery::points_in_cells::points_in_cells!(self)
+            points_in_cells!(self)
         }
     }
 

@@ -5,7 +5,7 @@
 //! span the constants and the lines along the [felt slopes](felt_slopes). What is felt is the plane
 //! `p̄ + s·(x − x̄)` through the values by least squares, in one dimension their mean; the rest is the null space.
 
-use crate::operators::recovery::points_in_cells::PointsInCells;
+use crate::operators::recovery::PointsInCells;
 use oedometer_soil::tensor::{Tensor, Vector, solve_symmetric};
 
 /// The plane through the values of each cell's points, `[cell]`.
@@ -90,7 +90,7 @@ impl<const D: usize> CellPlanes<D> {
     }
 }
 
-/// The same as rows: what each point keeps of the values of its cell's points.
+/// What each point keeps of the values of its cell's points.
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); at.grid.cell_count()];
     for (point, cell) in at.cells.of_point.iter().enumerate() {
@@ -128,9 +128,8 @@ fn felt_slopes<const D: usize>(at: &PointsInCells<'_, D>, cell: usize) -> [bool;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operators::basis::{Hat, ShapeFunction};
+    use crate::operators::basis::{Hat, Row, ShapeFunction};
     use crate::operators::recovery::tests::{SiteBlock, applied};
-    use crate::operators::row::Row;
 
     /// Forces `Σ V p ∇N` of pressures at the points on a corner of a cell.
     fn force(at: &PointsInCells<'_, 2>, values: &[f64], cell: usize, corner: usize) -> Vector<2> {
@@ -141,8 +140,8 @@ mod tests {
                 let rows: [Row<2>; 2] =
                     std::array::from_fn(|d| Hat::row(at.grid.in_cells(place[d]), home[d], 0.0));
                 let (i, j) = (corner & 1, corner >> 1);
-                force[0] += values[point] * rows[0].gradients[i] * rows[1].weights[j];
-                force[1] += values[point] * rows[0].weights[i] * rows[1].gradients[j];
+                force[0] += values[point] * rows[0].gradients[i] * rows[1].values[j];
+                force[1] += values[point] * rows[0].values[i] * rows[1].gradients[j];
             }
         }
         force

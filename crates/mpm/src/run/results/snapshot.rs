@@ -116,12 +116,12 @@ pub struct Totals {
     pub largest_velocity: f64,
     /// Pores and water, where both are counted apart: in two layers of points that move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<LayerTotals>,
+    pub double_point: Option<WaterTotals>,
 }
 
 /// Pores and water of two layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct LayerTotals {
+pub struct WaterTotals {
     /// Volume of the pores, `Σ n_s V_s`, m^D.
     pub pore_volume: f64,
     /// Volume of the water in the soil, `Σ m_w/ρ_w`, m^D.
@@ -239,7 +239,7 @@ impl<const D: usize> Body<D> {
                 / soil.water_bulk_modulus,
             internal_force_imbalance: self.internal_force_imbalance(),
             unbalanced_force: self.unbalanced_force(),
-            layers: None,
+            double_point: None,
             largest_velocity: self.largest_velocity(),
         }
     }

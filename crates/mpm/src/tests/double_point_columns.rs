@@ -1,0 +1,45 @@
+//! Columns in two layers of points for the tests of `crates/mpm/src/layers/`, which may not import scenes outside of tests.
+
+use crate::body::Body;
+use crate::double_point::DoublePoint;
+use crate::method::Method;
+use crate::scene::SceneKind;
+use crate::scene::arrangement::Arrangement;
+use crate::scene::column::Column;
+use crate::scene::problem::column_problem;
+use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
+
+/// Five cells of a column that may move, with so many points of skeleton and of water a cell and direction, at its
+/// start. In the plane it is two cells wide.
+pub(crate) fn moving_column<const D: usize>(
+    method: &str,
+    [of_skeleton, of_water]: [usize; 2],
+    load: f64,
+    soil: &Material,
+) -> DoublePoint<D> {
+    let points = Arrangement { sets: 2, water_per_cell: of_water, ..Arrangement::default() };
+    let column = Column { load, points, dimensions: D, ..Column::default() }.with_extent(0.4);
+    let soil = Material { law: Law::LogLinear, ..*soil };
+    let method = Method::named(method).expect("a known method");
+    let mut problem =
+        column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, of_skeleton).expect("a column");
+    let lattice = problem.water.take().expect("a layer of water");
+    let gradient = problem.initial_gradient;
+    DoublePoint::new(Body::new(problem), &lattice, &gradient)
+}
+
+/// A column whose water points all lie somewhat higher than their lattice; so many a cell, four of the skeleton.
+pub(crate) fn with_water_shifted(method: &str, of_water: usize) -> DoublePoint<1> {
+    let mut layers = moving_column::<1>(method, [4, of_water], 2e5, &Material::default());
+    let count = layers.water.len();
+    for place in &mut layers.water.place[..count - 1] {
+        place[0] += 0.02;
+    }
+    // The topmost domain holds what is left of the column.
+    layers.water.place[count - 1][0] += 0.01;
+    layers.water.reach[count - 1][0] -= 0.01;
+    layers.water.share[count - 1] = 1.0 - 0.02 / (0.2 / of_water as f64);
+    layers.build_water_operators();
+    layers
+}
