@@ -159,7 +159,7 @@ pub use cli::{main, main_with};
 pub use golden::compare::compare;
 pub use golden::tolerance::spread_by_group;
 pub use golden::{GoldenError, GoldenFile, values_of};
-pub use import::table::SampledState;
+pub use import::SampledState;
 pub use judge::comparison::situation::{Ended, ends_of};
 pub use judge::score::score;
 pub use judge::soundness;

@@ -2,6 +2,7 @@
 
 use crate::api::{scene_of, sentence};
 use crate::cli::commands::exact::parameters_of;
+use crate::cli::overrides::Assignments;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.
@@ -52,7 +53,8 @@ pub fn exact(
                 .to_owned(),
         );
     }
-    let (parameters, kind) = parameters_of(kind, assignments).map_err(|error| sentence(&error))?;
+    let (parameters, kind) = parameters_of(kind, &Assignments { assignments: assignments.to_vec() })
+        .map_err(|error| sentence(&error))?;
     let told = |error: oedometer_exact::exact_error::ExactError| error.to_string();
     let reference = Reference::new(kind, &parameters, time_factors).map_err(told)?;
     let mut values =

@@ -1,10 +1,10 @@
 //! Files of other programs as states.
 
+use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
-use crate::import::runs::{are_tables, files_of, run_of_tables, runs_of_arrays};
-use crate::import::table::SampledState;
+use crate::import::runs::{are_tables, files_of, runs_of};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -23,15 +23,9 @@ pub fn read(
     let body = SolvedBody { height, length: None, seconds_per_time_factor: 1.0 };
     let given = files_of(files).map_err(|error| error.to_string())?;
     let is_tables = are_tables(&given).map_err(|error| error.to_string())?;
-    let mapping = if is_tables { Mapping::convention(false) } else { preset.mapping(None, false) };
+    let mapping = Mapping::resolve(Some(preset).filter(|_| !is_tables), None, false);
     let mut mapping = mapping.map_err(|error| error.to_string())?;
     mapping.time.step = time_step;
-    let runs = if is_tables {
-        let files = given.into_iter().flat_map(|one| one.files).collect();
-        run_of_tables(files, &mapping, body).map(|run| vec![run])
-    } else {
-        runs_of_arrays(&given, &mapping, body)
-    };
-    let runs = runs.map_err(|error| error.to_string())?;
+    let runs = runs_of(&given, &mapping, body).map_err(|error| error.to_string())?;
     Ok(runs.into_iter().map(|run| run.states).collect())
 }

@@ -3,14 +3,15 @@
 use crate::api::sentence;
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::cli::commands::score::results::{Held, Results};
-use crate::cli::commands::score::{Asked, study_of};
+use crate::cli::commands::score::results::{Comparison, Results};
+use crate::cli::commands::score::study_of;
+use crate::cli::overrides::{Assignments, Outputs};
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody};
-use crate::import::rows::Rows;
 use crate::import::runs::Run;
+use crate::import::{SampledState, states_of};
 use crate::judge::score::Score;
-use oedometer_formats::import_error::ImportError;
+use oedometer_formats::ImportError;
 use std::path::Path;
 
 /// Samples of a result: of each list that is there one number a time and place, `[time][place]`.
@@ -48,9 +49,13 @@ pub fn score(
     reference: Option<&str>,
     assignments: &[String],
 ) -> Result<Score, String> {
-    let asked = Asked { scene, reference, time_factors: None, assignments };
-    let (study, _) = study_of(&asked).map_err(|error| sentence(&error))?;
-    let case = &study.planned.first().ok_or("the assignments leave no column")?.case;
+    let outputs = Outputs {
+        reference: reference.map(str::to_owned),
+        time_factor: None,
+        set: Assignments { assignments: assignments.to_vec() },
+    };
+    let (study, _) = study_of(scene, &outputs).map_err(|error| sentence(&error))?;
+    let case = &study.planned[0].case;
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
         let names = Sample::ALL.map(Sample::name).join(", ");
@@ -62,7 +67,7 @@ pub fn score(
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
     let references: Vec<_> = study.references.iter().map(|kind| kind.of_soil(&case.material)).collect();
-    let held = Held {
+    let comparison = Comparison {
         case,
         mapping: &mapping,
         references: &references,
@@ -70,7 +75,7 @@ pub fn score(
         tolerance: 1e-3,
         are_cells_found: false,
     };
-    let results = Results::of(vec![run], &held).map_err(|error| sentence(&error))?;
+    let results = Results::of(vec![run], &comparison).map_err(|error| sentence(&error))?;
     results
         .scores()
         .first()
@@ -80,27 +85,19 @@ pub fn score(
 
 impl Samples<'_> {
     /// The lists as states, every number looked at.
-    fn states(
-        &self,
-        case: &Case,
-        mapping: &Mapping,
-    ) -> Result<Vec<crate::import::table::SampledState>, String> {
+    fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
         let (times, places) = (self.time.len(), self.height.len());
         if times == 0 || places == 0 {
             return Err("there is no time or no place: give at least one of each".to_owned());
         }
         self.lists_fit(times, places)?;
-        let body = SolvedBody {
-            height: case.column.height,
-            length: case.scene.has_plane_fields().then_some(case.column.extent()),
-            seconds_per_time_factor: case.seconds_per_time_factor(),
-        };
-        let mut rows = Rows::default();
-        rows.reserve(times * places);
+        let body = SolvedBody::of(case);
+        let mut rows = Vec::with_capacity(times * places);
         for (at, time) in self.time.iter().enumerate() {
             for place in 0..places {
-                let refused =
-                    |why: String| ImportError::table(Path::new("arrays"), format!("[{at}][{place}]: {why}"));
+                let refused = |why: String| {
+                    ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))
+                };
                 let number = |list: &[f64], index: usize, name: &str| match list.get(index) {
                     None => Ok(None),
                     Some(value) if value.is_finite() => Ok(Some(*value)),
@@ -125,10 +122,10 @@ impl Samples<'_> {
                     moved: None,
                     others: place as u64,
                 };
-                rows.push(&raw.sample(mapping, body, &refused).map_err(|error| error.to_string())?);
+                rows.push(raw.sample(mapping, body, &refused).map_err(|error| error.to_string())?);
             }
         }
-        let mut states = rows.states().map_err(|error| error.to_string())?;
+        let mut states = states_of(&rows).map_err(|error| error.to_string())?;
         if let Some(at) = self.settlement.iter().position(|settlement| !settlement.is_finite()) {
             return Err(format!("arrays: [{at}]: `settlement` is {}", self.settlement[at]));
         }

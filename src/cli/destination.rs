@@ -1,5 +1,5 @@
-//! Files that a user names for a copy of the verdicts. A regular file is replaced as a whole; a link is
-//! followed, and what is no file (a terminal, a pipe, `/dev/stdout`) is written to and stays what it is.
+//! Writes files that a user names for a copy of the verdicts. A regular file is replaced as a whole, a link is followed,
+//! and other targets (a terminal, a pipe, `/dev/stdout`) are appended to. Also reads variables of the environment.
 
 use crate::cli::exit::{Ended, Exit};
 use crate::record::whole_file::write_whole;
@@ -9,17 +9,17 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes a document where a user wants it.
+/// Writes a document to a path.
 ///
 /// # Errors
-/// A sentence with the path, when the file system refuses.
+/// When the file system refuses, with the path.
 pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
     let text = &document(text);
     let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
     let target = fs::metadata(path);
     match target {
-        // What runs under the name of a device may be this program's own output: nothing is cut off it.
-        Ok(found) if !found.is_file() || is_of_the_system(path) => {
+        // A device may be this program's own output, so it is not truncated.
+        Ok(found) if !found.is_file() || is_system_path(path) => {
             through(path, OpenOptions::new().append(true), text)
         }
         Ok(_) if is_link => {
@@ -31,10 +31,10 @@ pub fn write_document(path: &Path, text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Adds text to the end of a file that a user names.
+/// Appends text to a file.
 ///
 /// # Errors
-/// A sentence with the path, when the file system refuses.
+/// When the file system refuses, with the path.
 pub fn append(path: &Path, text: &str) -> anyhow::Result<()> {
     through(path, OpenOptions::new().create(true).append(true), &document(text))
 }
@@ -48,22 +48,22 @@ fn refused(path: &Path, error: &dyn std::fmt::Display) -> anyhow::Error {
     Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display()))
 }
 
-fn is_of_the_system(path: &Path) -> bool {
+fn is_system_path(path: &Path) -> bool {
     path.starts_with("/dev") || path.starts_with("/proc")
 }
 
-/// Whether a variable of the environment is on: set, and neither empty nor a word for off.
+/// Whether a variable of the environment is set, and not empty, `0`, `false`, `no` or `off`.
 pub fn is_on(name: &str) -> bool {
-    is_word_for_on(std::env::var_os(name))
+    means_on(std::env::var_os(name))
 }
 
-fn is_word_for_on(value: Option<OsString>) -> bool {
+fn means_on(value: Option<OsString>) -> bool {
     value.is_some_and(|value| {
         !["", "0", "false", "no", "off"].contains(&value.to_string_lossy().to_lowercase().as_str())
     })
 }
 
-/// The path that a variable of the environment holds; an empty one is none.
+/// The path in a variable of the environment, unless it is empty.
 pub fn path_in(name: &str) -> Option<PathBuf> {
     std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from)
 }
@@ -77,9 +77,9 @@ mod tests {
         for (value, on) in
             [("true", true), ("1", true), ("yes", true), ("", false), ("0", false), ("False", false)]
         {
-            assert_eq!(is_word_for_on(Some(value.into())), on, "`{value}`");
+            assert_eq!(means_on(Some(value.into())), on, "`{value}`");
         }
-        assert!(!is_word_for_on(None));
+        assert!(!means_on(None));
     }
 
     #[cfg(unix)]

@@ -1,10 +1,10 @@
-//! Exit codes, decided in one place.
+//! Exit codes, and errors as messages.
 
 use crate::study::diagnostic::StudyError;
 use oedometer_exact::exact_error::ExactError;
-use oedometer_formats::import_error::ImportError;
+use oedometer_formats::ImportError;
 
-/// The exit codes, as `--help` tells them.
+/// The exit codes, for `--help`.
 pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \
                         out, 4 nothing selected, 5 golden missing or stale, 6 incomplete merge";
 
@@ -12,7 +12,7 @@ pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad s
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Exit {
-    /// All well.
+    /// Success.
     Pass = 0,
     /// A verdict failed.
     VerdictFailed = 1,
@@ -24,11 +24,11 @@ pub enum Exit {
     NothingSelected = 4,
     /// A golden value is missing or stale.
     Golden = 5,
-    /// A merge has holes.
+    /// A merge is incomplete.
     IncompleteMerge = 6,
 }
 
-/// An error that says how the command ends.
+/// An error with the exit code of the command.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct Ended {
@@ -37,7 +37,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// An error with a sentence and an exit code.
+    /// An error with a message and an exit code.
     pub fn with(exit: Exit, message: impl Into<String>) -> anyhow::Error {
         Self { message: message.into(), exit }.into()
     }
@@ -49,7 +49,7 @@ impl Ended {
 }
 
 impl Exit {
-    /// The exit of an error, by what caused it.
+    /// The exit code of an error.
     pub fn of(error: &anyhow::Error) -> Self {
         match error.downcast_ref::<Ended>() {
             Some(ended) => ended.exit,
@@ -61,12 +61,12 @@ impl Exit {
     }
 }
 
-/// An error as a person reads it.
+/// The message of an error.
 pub fn sentence(error: &anyhow::Error) -> String {
     if let Some(study) = error.downcast_ref::<StudyError>() {
         return study.to_string();
     }
-    // An error that already has its cause in its own words does not say it twice.
+    // A cause that the message already ends with is not repeated.
     let mut told = String::new();
     for cause in error.chain().map(ToString::to_string) {
         if told.is_empty() {
@@ -78,7 +78,7 @@ pub fn sentence(error: &anyhow::Error) -> String {
     format!("error: {}", without_numbers_of_the_system(&told))
 }
 
-/// A sentence without what only the system's manual explains: ` (os error 2)`.
+/// Removes error numbers of the system: ` (os error 2)`.
 fn without_numbers_of_the_system(sentence: &str) -> String {
     let mut rest = sentence;
     let mut told = String::new();

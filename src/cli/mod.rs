@@ -1,6 +1,6 @@
-//! The command line: one file a subcommand, exit codes in one place.
+//! The command line: one file per subcommand, exit codes in `exit`.
 //!
-//! Data goes to standard output, everything else to standard error.
+//! Data go to standard output, everything else to standard error.
 
 pub mod commands;
 pub mod destination;
@@ -22,7 +22,6 @@ use crate::cli::commands::{
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
-use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
@@ -37,11 +36,11 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run studies: one JSON record a case, one tidy CSV a study
+    /// Run studies: one JSON record per case, one tidy CSV per study
     Run(run::Arguments),
     /// Run what is missing and render the whole report
     Report(report::Arguments),
-    /// Judge studies by their expectations and by their golden values
+    /// Judge studies by their expectations and golden values
     Check(check::Arguments),
     /// Take the present values of a study as its golden values
     Accept(accept::Arguments),
@@ -49,31 +48,31 @@ enum Command {
     Exact(exact::Arguments),
     /// Solve one case and print its errors
     Solve(solve::Arguments),
-    /// Hold somebody else's result against exact solutions
+    /// Compare a result of another program with exact solutions
     Score(score::Arguments),
     /// Predict and observe the critical time step
     Stability(stability::Arguments),
     /// List the cases of studies with their hashes
     Plan(plan::Arguments),
-    /// List what a folder of results holds, or print single records of it
+    /// List the content of a folder of results, or print single records
     Records(records::Arguments),
-    /// Bring the records of shards together, with the whole table of each study
+    /// Combine the records of shards, with the whole table of each study
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List(list::Arguments),
-    /// Write a commented study to start from, or an adapter for somebody else's solver
+    /// Write a commented study to start from, or an adapter for another solver
     New(new::Arguments),
-    /// Say where the error of a case comes from and what changed
+    /// Show where the error of a case comes from and what changed
     Explain(explain::Arguments),
-    /// Measure how far results scatter that should be equal
+    /// Measure the scatter of results that should be equal
     Spread(spread::Arguments),
     /// Print the JSON Schema of study files, records, mappings or case files
     Schema(schema::Arguments),
-    /// Print the completions of a shell
+    /// Print the completions for a shell
     Completions(completions::Arguments),
 }
 
-/// The command line with help as a terminal shows it: without the markup of the source's comments.
+/// The command line, with help texts without the backticks of the source's comments.
 fn command() -> clap::Command {
     fn plain(command: clap::Command) -> clap::Command {
         let words = |help: &clap::builder::StyledStr| help.to_string().replace('`', "");
@@ -90,34 +89,19 @@ fn command() -> clap::Command {
     plain(Arguments::command())
 }
 
-/// A complaint about the value of an option in words for people, where the parser of numbers wrote it.
-fn of_a_value(said: &str) -> String {
-    let words = [
-        ("invalid digit found in string", "it is no whole number"),
-        ("invalid float literal", "it is no number"),
-        ("cannot parse integer from empty string", "it is empty"),
-        ("number too large to fit in target type", "it is too large"),
-    ];
-    words.iter().fold(said.trim_end().to_owned(), |said, (from, to)| said.replace(from, to))
-}
-
 /// Parses the command line, runs the command, and turns its end into an exit code.
 pub fn main() -> ExitCode {
     ExitCode::from(main_with(std::env::args_os()))
 }
 
-/// The same with words of a command line, the program's name first; the exit code.
+/// Runs the command of a command line, the program's name first, and returns the exit code.
 pub fn main_with(words: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
     let parsed =
         command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
     let arguments = match parsed {
         Ok(arguments) => arguments,
-        Err(error) if error.kind() == ErrorKind::ValueValidation => {
-            say!("{}", of_a_value(&error.render().to_string()));
-            return Exit::Usage as u8;
-        }
         Err(error) => {
-            // Help and version are asked for, and no usage error.
+            // Help and version are requested: not a usage error.
             let said = error.print().and_then(|()| std::io::stdout().flush());
             return match written(said) {
                 _ if error.use_stderr() => Exit::Usage as u8,
@@ -151,7 +135,7 @@ fn run(command: Command) -> anyhow::Result<Exit> {
     }
 }
 
-/// The exit code of a command; why it failed goes to standard error.
+/// The exit code of a command; the message of an error goes to standard error.
 fn end_of(result: anyhow::Result<Exit>) -> u8 {
     match result {
         Ok(exit) => exit as u8,

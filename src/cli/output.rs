@@ -1,4 +1,4 @@
-//! Tables on standard output: their formats, and colour on a terminal only.
+//! Output formats: tables, CSV and JSON; colour on terminals only.
 
 use crate::cli::stream::{print_as_it_is, print_data};
 use crate::render::escape::{csv_field, document};
@@ -19,7 +19,7 @@ pub enum TableFormat {
     Json,
 }
 
-/// Prints tables, parted by empty lines; JSON as one array of a list of rows a table.
+/// Prints tables separated by empty lines; JSON as an array with a list of rows per table.
 pub fn print_tables(tables: &[Table], format: TableFormat) -> anyhow::Result<()> {
     let write = match format {
         TableFormat::Table => Table::to_text,
@@ -46,12 +46,12 @@ pub fn csv_of<F: AsRef<[u8]>>(
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
-/// A value as JSON for programs, with an end of line.
+/// A value as indented JSON with a line break at the end.
 pub fn json_of(value: &impl serde::Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// The rows of a table by their headers, in the words of its CSV.
+/// The rows of a table by their headers, as in its CSV.
 fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_json::Value>>> {
     let text = table.to_plain_csv()?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
@@ -70,15 +70,15 @@ fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_js
         .collect()
 }
 
-/// Prints text for people, the marks of judgements in colour.
+/// Prints text for people, the marks of verdicts in colour.
 ///
 /// # Errors
-/// When the device refuses.
+/// When the device fails.
 pub fn print_coloured(text: &str) -> anyhow::Result<()> {
     print_as_it_is(&coloured(&document(text)))
 }
 
-/// The marks of judgements in colour, where standard output is a terminal that wants it.
+/// Colours the marks of verdicts if standard output is a terminal that wants it.
 fn coloured(text: &str) -> String {
     if wants_colour(std::io::stdout().is_terminal(), |name| std::env::var(name).ok()) {
         text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")

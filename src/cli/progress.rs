@@ -1,5 +1,4 @@
-//! Progress of long work on standard error: a bar with an estimate on a terminal, nothing but
-//! failures elsewhere.
+//! Progress of long work on standard error: a bar with an estimate on terminals, only failures elsewhere.
 
 use crate::campaign::run_report::{LongestCase, Progress};
 use crate::case::work_estimate::estimated_seconds;
@@ -12,15 +11,14 @@ use std::io::IsTerminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Bar of a study, or of several at once.
+/// The bar of a study, or of several at once.
 pub struct StudyBar {
     bar: ProgressBar,
-    /// Cases at the same time.
+    /// Number of cases at the same time.
     jobs: Arc<AtomicUsize>,
 }
 
-/// Seconds that are left of planned ones when a share of the work is done: by the plan at first, and as it went
-/// so far as soon as that says more.
+/// Seconds left when a share of the work is done: by the plan at first, then more and more by the pace so far.
 fn time_left(planned: f64, done: f64, elapsed: f64) -> f64 {
     let by_plan = planned * (1.0 - done).max(0.0);
     let by_experience = elapsed * (1.0 / done.max(f64::MIN_POSITIVE) - 1.0).max(0.0);
@@ -28,13 +26,13 @@ fn time_left(planned: f64, done: f64, elapsed: f64) -> f64 {
     if done > 0.0 { (1.0 - trust) * by_plan + trust * by_experience } else { by_plan }
 }
 
-/// Share of the work after which experience counts alone.
+/// Share of the work after which only the pace counts.
 const TRUSTED_SHARE: f64 = 0.05;
-/// Seconds after which it does.
+/// Seconds after which only the pace counts.
 const TRUSTED_SECONDS: f64 = 20.0;
 
 impl StudyBar {
-    /// A bar with a name; hidden where standard error is no terminal.
+    /// A bar with a name, hidden if standard error is not a terminal.
     pub fn new(name: &str) -> Self {
         let bar = ProgressBar::new(0);
         let jobs = Arc::new(AtomicUsize::new(1));
@@ -42,7 +40,7 @@ impl StudyBar {
         if !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        // The name and the message are cut where the terminal is narrow: a line that wraps is drawn anew below.
+        // Name and message are cut on a narrow terminal: a line that wraps would be drawn again below.
         let style =
             ProgressStyle::with_template("{prefix:<24!} [{bar:16}] {percent:>3} %, {left}, {wide_msg}");
         if let Ok(style) = style {
@@ -58,7 +56,7 @@ impl StudyBar {
         Self { bar, jobs }
     }
 
-    /// Takes a word of the runner.
+    /// Takes a message of the runner.
     pub fn tell(&self, progress: Progress) {
         match progress {
             Progress::Planned { cases, resumed, work, jobs, longest } => {
@@ -76,7 +74,7 @@ impl StudyBar {
         }
     }
 
-    /// Says how long the work will take, where that is worth a word.
+    /// Prints how long the work will take, if it is long.
     fn tell_of_time(&self, cases: usize, work: u64, jobs: usize, longest: Option<&LongestCase>) {
         let Some(longest) = longest else { return };
         let alone = estimated_seconds(&longest.case).min(longest.case_seconds);
@@ -87,7 +85,7 @@ impl StudyBar {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

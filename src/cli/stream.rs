@@ -1,13 +1,13 @@
-//! The one way to standard output and standard error. A reader who has seen enough closes the pipe: that
-//! is no failure, and the command goes on to the exit code that stands. A full device under standard
-//! output is one, for data are lost; what cannot be said on standard error stays unsaid and stops nothing.
+//! Writes to standard output and standard error. A reader that closes the pipe early is not a failure: the command goes
+//! on to its exit code. A full device under standard output is one, because data are lost; errors of standard error are
+//! ignored. Control characters that would steer a terminal are removed.
 
 use crate::cli::exit::{Ended, Exit};
 use crate::render::escape::document;
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write};
 
-/// Says a line on standard error, in the words of `format!`.
+/// Writes a line to standard error, formatted as by `format!`.
 macro_rules! say {
     ($($words:tt)*) => {
         $crate::cli::stream::say_line(format_args!($($words)*))
@@ -15,35 +15,35 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Writes data to standard output, down to the last byte; what would steer a terminal is not passed on.
+/// Writes data to standard output and flushes it.
 ///
 /// # Errors
-/// When the device refuses; a pipe that nobody reads any more is no error.
+/// When the device fails; a pipe that nobody reads any more is not an error.
 pub fn print_data(text: &str) -> anyhow::Result<()> {
     print_as_it_is(&document(text))
 }
 
-/// The same with what this program itself says to a terminal.
+/// Writes text to standard output with its control characters, like those of colours.
 ///
 /// # Errors
-/// The same.
+/// Those of [`print_data`].
 pub fn print_as_it_is(text: &str) -> anyhow::Result<()> {
     written(write_out(std::io::stdout().lock(), text))
 }
 
-/// Writes data to standard output as they are made.
+/// Writes data to standard output as they are produced.
 ///
 /// # Errors
-/// The same.
+/// Those of [`print_data`].
 pub fn print_with(fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> anyhow::Result<()> {
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     written(fill(&mut out).and_then(|()| out.flush()))
 }
 
-/// What came of writing to standard output, as an error of the command.
+/// Turns an error of standard output into that of the command.
 ///
 /// # Errors
-/// The same, unless the reader has gone.
+/// Those of [`print_data`].
 pub fn written(result: Result<()>) -> anyhow::Result<()> {
     match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -53,7 +53,7 @@ pub fn written(result: Result<()>) -> anyhow::Result<()> {
     }
 }
 
-/// An error of writing CSV as that of the device under it, which tells whether the reader has gone.
+/// The error of the device under a CSV writer, which shows whether the reader has gone.
 pub fn of_device(error: csv::Error) -> std::io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -61,13 +61,13 @@ pub fn of_device(error: csv::Error) -> std::io::Error {
     }
 }
 
-/// Writes and flushes: what is left in a buffer at the end of a program is lost without a word.
+/// Writes and flushes: what is left in a buffer at the end of the program is lost silently.
 fn write_out(mut out: impl Write, text: &str) -> Result<()> {
     out.write_all(text.as_bytes())?;
     out.flush()
 }
 
-/// Says words and an end of line on standard error, if anyone listens; what would steer a terminal is not passed on.
+/// Writes a line to standard error.
 pub fn say_line(words: Arguments<'_>) {
     let _ = writeln!(std::io::stderr().lock(), "{}", document(&words.to_string()));
 }

@@ -1,17 +1,16 @@
-//! Study files, read and named before any work begins: every result is kept under the name of its study.
+//! Reads study files and checks their names before any work begins: results are stored under the name of the study.
 
 use crate::cli::exit::Ended;
 use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
 use crate::study::shipped::{name_of, refused_name};
 use crate::study::shipped::{shipped_names, shipped_study};
-use oedometer_formats::input_file;
-use oedometer_formats::input_file::LARGEST_TEXT;
+use oedometer_formats::input_file::{self, LARGEST_TEXT};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// The texts of study files whose names are plain and differ.
+/// Reads study files, whose names must be valid and differ.
 pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
     let sources = paths.iter().map(|path| read(path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
     for (number, source) in sources.iter().enumerate() {
@@ -30,57 +29,53 @@ pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
     Ok(sources)
 }
 
-/// The file that a study came from: the named one, or a shipped one as a repository knows it.
+/// The file of a study: the given one, or that of a shipped study in the repository.
 pub fn file_of(study: &str, named: &[PathBuf]) -> String {
     let stem = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study);
     let file = named.iter().find(stem).map(|path| path.display().to_string());
     file.unwrap_or_else(|| format!("studies/{study}.toml"))
 }
 
-/// The shipped study that a path names: a plain name where no file has it.
+/// The shipped study of a name, unless there is a file of that name.
 pub fn shipped_of(path: &Path) -> Option<StudySource> {
     if path.is_file() { None } else { shipped_study(path.to_str()?) }
 }
 
-/// Whether a study came from inside the program: all did where none was named.
+/// Whether a study is a shipped one: all are if none was given.
 pub fn is_shipped(study: &str, named: &[PathBuf]) -> bool {
     named.is_empty() || named.iter().any(|path| path.as_os_str() == study && shipped_of(path).is_some())
 }
 
-/// What is said of a study that is neither a file nor shipped, with what may have been meant.
+/// The message about a study that is neither a file nor shipped, with what may have been meant.
 fn not_there(path: &Path) -> String {
     let told = path.display().to_string();
     let with_end = PathBuf::from(format!("{told}.toml"));
-    let shipped = shipped_names();
+    let mut known = shipped_names();
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let beside = files_beside(path);
     let help = if with_end.is_file() {
         format!("did you mean the file `{}`?", with_end.display())
-    } else if path.extension().is_some() && shipped.contains(&stem) {
-        format!("the shipped study is called `{stem}`, without a folder and an end")
-    } else if let Some(near) =
-        nearest(&told, shipped.iter().map(String::as_str).chain(beside.iter().map(String::as_str)))
-    {
-        format!("did you mean `{near}`?")
+    } else if path.extension().is_some() && known.contains(&stem) {
+        format!("the shipped study is called `{stem}`, without folder and extension")
     } else {
-        "`oedometer list` names the shipped ones, and `oedometer new NAME` writes one of your own".to_owned()
+        // The study files in the folder, as they would be given.
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let searched = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let entries = std::fs::read_dir(searched).into_iter().flatten().flatten();
+        let files = entries.map(|entry| folder.join(entry.file_name()));
+        let files = files.filter(|file| file.extension().is_some_and(|end| end == "toml"));
+        known.extend(files.map(|file| file.display().to_string()));
+        match nearest(&told, known.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => {
+                "`oedometer list` prints the shipped ones, and `oedometer new NAME` writes one of your own"
+                    .to_owned()
+            }
+        }
     };
     format!("cannot read the study {told}: no such file, and no shipped study: {help}")
 }
 
-/// The study files in the folder of a path, as they would be named.
-fn files_beside(path: &Path) -> Vec<String> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let searched = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let entries = std::fs::read_dir(searched).into_iter().flatten().flatten();
-    let names = entries.map(|entry| folder.join(entry.file_name()));
-    names
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
-        .map(|path| path.display().to_string())
-        .collect()
-}
-
-/// The text of one file, or of a pipe.
+/// Reads a file, or a pipe of this program.
 fn read(path: &Path) -> anyhow::Result<StudySource> {
     if let Some(shipped) = shipped_of(path) {
         return Ok(shipped);
@@ -91,7 +86,7 @@ fn read(path: &Path) -> anyhow::Result<StudySource> {
     if path.is_dir() {
         let told = path.display();
         return Err(Ended::usage(format!(
-            "cannot read the study {told}: it is a folder; name the study files in it, like {told}/*.toml"
+            "cannot read the study {told}: it is a folder; give the study files in it, like {told}/*.toml"
         )));
     }
     let refused =
@@ -100,19 +95,19 @@ fn read(path: &Path) -> anyhow::Result<StudySource> {
     Ok(StudySource { name: path.display().to_string(), text: text.map_err(refused)? })
 }
 
-/// Whether a path is one of this program's own open files: its standard input, or what a shell makes of `<(…)`. Any
-/// other pipe waits for a writer that may never come.
+/// Whether a path is one of this program's own open files: its standard input, or what a shell makes of `<(…)`. Opening
+/// any other pipe waits for a writer that may never come.
 fn is_own_stream(path: &Path) -> bool {
     let is_listed = ["/dev/fd", "/proc/self/fd"].iter().any(|folder| path.starts_with(folder));
     (is_listed || path == Path::new("/dev/stdin")) && !path.is_file()
 }
 
-/// The text of a stream, up to the largest study.
+/// Reads a stream, up to the size of the largest study.
 fn read_stream(path: &Path) -> std::io::Result<String> {
     let mut text = String::new();
     File::open(path)?.take(LARGEST_TEXT + 1).read_to_string(&mut text)?;
     if text.len() as u64 > LARGEST_TEXT {
-        let why = format!("it has more than {} MB: that is no study", LARGEST_TEXT / 1_000_000);
+        let why = format!("it has more than {} MB, which is too large for a study", LARGEST_TEXT / 1_000_000);
         return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why));
     }
     Ok(text)

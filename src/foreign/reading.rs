@@ -2,17 +2,17 @@
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
+use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
-use crate::import::opened_csv::not_ended;
+use crate::import::not_ended;
 use crate::import::raw_row::SolvedBody;
-use crate::import::runs::{Run, are_tables, files_of, run_of_tables, runs_of_arrays};
-use crate::import::table::SampledState;
+use crate::import::runs::{Run, files_of, runs_of};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::ExternalSolver;
 use clap::ValueEnum;
-use oedometer_formats::import_error::ImportError;
+use oedometer_formats::ImportError;
 use oedometer_formats::input_file;
 use oedometer_soil::wording::short;
 use std::path::PathBuf;
@@ -58,7 +58,7 @@ pub enum MappingError {
         source: std::io::Error,
     },
     /// It does not say what a result means.
-    #[error("{name} says nothing of {taken}: write it into [units] and [sign]")]
+    #[error("{name} does not declare {taken}: write it into [units] and [sign]")]
     Undeclared {
         /// The mapping.
         name: String,
@@ -84,21 +84,11 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
     });
     let own = own.transpose()?;
     let preset = solver.preset.as_deref().and_then(|name| Preset::from_str(name, false).ok());
-    let mut mapping = match (preset, own) {
-        (Some(preset), own) => preset.mapping(own.as_ref(), is_plane)?,
-        (None, None) => Mapping::convention(is_plane)?,
-        (None, Some(source)) => {
-            let mapping = Mapping::read(&source)?;
-            if is_plane {
-                mapping.check_plane(&source)?;
-            }
-            // A gate takes nothing for granted that nobody said.
-            if let Some(taken) = mapping.taken_for_granted().filter(|_| solver.is_given()) {
-                return Err(MappingError::Undeclared { name: source.name, taken });
-            }
-            mapping
-        }
-    };
+    let mut mapping = Mapping::resolve(preset, own.as_ref(), is_plane)?;
+    // A gate assumes nothing that is not declared.
+    if let (Some(taken), Some(source)) = (mapping.taken_for_granted().filter(|_| solver.is_given()), own) {
+        return Err(MappingError::Undeclared { name: source.name, taken });
+    }
     mapping.time.step = solver.time_step.or(mapping.time.step);
     Ok(mapping)
 }
@@ -109,22 +99,12 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
 /// Why there is none.
 pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadResult, Unread> {
     let given = files_of(result).map_err(|_| Unread::NoFile)?;
-    let files: Vec<PathBuf> = given.iter().flat_map(|one| one.files.iter().cloned()).collect();
+    let files = given.concat();
     if files.iter().any(|file| !file.is_file()) {
         return Err(Unread::NoFile);
     }
     let digest = digest_of(&files);
-    let body = SolvedBody {
-        height: case.column.height,
-        length: case.scene.has_plane_fields().then_some(case.column.extent()),
-        seconds_per_time_factor: case.seconds_per_time_factor(),
-    };
-    let unread = |error: ImportError| why_unread(&error);
-    let runs = if are_tables(&given).map_err(unread)? {
-        vec![run_of_tables(files, mapping, body).map_err(unread)?]
-    } else {
-        runs_of_arrays(&given, mapping, body).map_err(unread)?
-    };
+    let runs = runs_of(&given, mapping, SolvedBody::of(case)).map_err(|error| why_unread(&error))?;
     if runs.len() > 1 {
         return Err(Unread::Unreadable(format!(
             "the files hold {} results, of different meshes or names: let the study's `result` name one",
@@ -209,7 +189,7 @@ fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
 /// An error of the import, told apart where it is about a value that is no finite number.
 fn why_unread(error: &ImportError) -> Unread {
     let told = error.to_string();
-    let is_value = matches!(error, ImportError::Row { .. } | ImportError::Table { .. });
+    let is_value = matches!(error, ImportError::Content { .. });
     if is_value && names_no_finite_number(&told) { Unread::NotFinite(told) } else { Unread::Unreadable(told) }
 }
 
@@ -238,7 +218,7 @@ mod tests {
 
     #[test]
     fn the_presets_of_study_files_are_those_of_the_import() {
-        let known: Vec<&str> = Preset::value_variants().iter().map(|preset| preset.name()).collect();
+        let known: Vec<&str> = Preset::value_variants().iter().map(|preset| preset.name).collect();
         assert_eq!(known, PRESETS);
         for name in PRESETS {
             assert!(Preset::from_str(name, false).is_ok(), "{name}");
@@ -248,15 +228,15 @@ mod tests {
     #[test]
     fn what_is_no_finite_number_is_told_from_what_is_no_number() {
         for told in [
-            "a.csv:7: `NaN` in the column `p` is no finite number",
-            "a.csv:7: `-inf` in the column `p` is no finite number",
+            "a.csv:7: `NaN` in the column `p` is invalid: expected a finite number",
+            "a.csv:7: `-inf` in the column `p` is invalid: expected a finite number",
             "a.vtu: point 3: `p` is NaN",
             "a.vtu: its time is inf",
         ] {
             assert!(names_no_finite_number(told), "{told}");
         }
         for told in [
-            "a.csv:7: `1.0.0` in the column `p` is no finite number",
+            "a.csv:7: `1.0.0` in the column `p` is invalid: expected a finite number",
             "a.csv: no column `nan_p`; the header has `t`",
             "inf/a.csv: the initial height 2 m is outside the column of 1 m",
         ] {

@@ -2,7 +2,7 @@
 //! repeats of a run gave the same result.
 
 use crate::case::Case;
-use crate::import::table::SampledState;
+use crate::import::SampledState;
 use oedometer_soil::wording::{short, typed};
 
 /// How far, relative, a state may lie from the output that it stands for.

@@ -1,16 +1,15 @@
-//! What every state of a result must have: a quantity that is gone has no error, and no gate would see it.
+//! The quantities that every state of a result must have: one that is missing has no error, and no gate would see it.
 
-use crate::import::mapping::Mapping;
-use crate::import::table::SampledState;
+use crate::import::mapping::{Column, DeclaredBy, Mapping};
+use crate::import::samples::SampledState;
 
-/// Columns of a preset that a file of its program has; others depend on the problem.
-const PROMISED: [&str; 2] = ["p", "u_y"];
+/// Quantities of a result.
+const QUANTITIES: [Column; 4] = [Column::Pressure, Column::EffectiveStress, Column::Up, Column::Along];
 
 /// Quantities that the states of a result must have.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Expected {
-    /// By the keys of a mapping.
-    names: Vec<&'static str>,
+    columns: Vec<Column>,
     /// Whether a settlement curve has some of the times.
     pub settlement: bool,
 }
@@ -22,93 +21,84 @@ pub struct Absent {
     pub name: &'static str,
     /// Places of the states that lack it.
     pub states: Vec<usize>,
-    /// Whether all do.
+    /// Whether all of them do.
     pub is_in_none: bool,
 }
 
 impl Expected {
-    /// What a preset says that its program writes, and the user does not take out.
+    /// What files of a preset's program always have, unless the user takes it out; other columns depend on the problem.
     pub fn promised(mapping: &Mapping) -> Self {
-        let columns = &mapping.columns;
-        let is_named = |name: &&str| match *name {
-            "p" => columns.p.is_some(),
-            _ => columns.u_y.is_some(),
-        };
-        let names =
-            if mapping.is_of_preset { PROMISED.into_iter().filter(is_named).collect() } else { Vec::new() };
-        Self { names, settlement: false }
+        let mut expected = Self::default();
+        if matches!(mapping.declared_by, DeclaredBy::Preset(_)) {
+            let promised = [Column::Pressure, Column::Up].into_iter();
+            expected.add(promised.filter(|column| mapping.columns.get(*column).is_some()));
+        }
+        expected
     }
 
     /// What some of the states have.
     pub fn of_states(states: &[SampledState]) -> Self {
         let mut expected = Self::default();
         for state in states {
-            let all = ["p", "effective_stress", "u_y", "u_x"];
-            expected.add(all.into_iter().filter(|name| has(state, name)).collect());
+            expected.add(QUANTITIES.into_iter().filter(|column| has(state, *column)));
         }
         expected
     }
 
-    /// Adds what one state has.
-    pub fn add(&mut self, names: Vec<&'static str>) {
-        for name in names {
-            if !self.names.contains(&name) {
-                self.names.push(name);
+    /// Adds columns that a state has.
+    pub fn add(&mut self, columns: impl IntoIterator<Item = Column>) {
+        for column in columns {
+            if QUANTITIES.contains(&column) && !self.columns.contains(&column) {
+                self.columns.push(column);
             }
         }
     }
 
-    /// What states lack, one entry a quantity.
+    /// What states lack, one entry per quantity.
     pub fn absent(&self, states: &[SampledState]) -> Vec<Absent> {
-        let names = self.names.iter().copied().chain(self.settlement.then_some("settlement"));
-        let of_name = |name: &'static str| {
-            let lacks = |(_, state): &(usize, &SampledState)| !has(state, name);
-            let states_that: Vec<usize> =
-                states.iter().enumerate().filter(lacks).map(|(place, _)| place).collect();
-            let is_in_none = states_that.len() == states.len();
-            (!states_that.is_empty()).then_some(Absent { name, states: states_that, is_in_none })
+        let absent = |name: &'static str, has: &dyn Fn(&SampledState) -> bool| {
+            let lacking: Vec<usize> = (0..states.len()).filter(|place| !has(&states[*place])).collect();
+            let is_in_none = lacking.len() == states.len();
+            (!lacking.is_empty()).then_some(Absent { name, states: lacking, is_in_none })
         };
-        names.filter_map(of_name).collect()
+        let columns = self.columns.iter().map(|column| absent(column.name(), &|state| has(state, *column)));
+        let curve =
+            self.settlement.then(|| absent("settlement", &|state| state.surface_displacement.is_some()));
+        columns.chain(curve).flatten().collect()
     }
 }
 
-fn has(state: &SampledState, name: &str) -> bool {
-    match name {
-        "p" => !state.pressure.is_empty(),
-        "effective_stress" => !state.effective_stress.is_empty(),
-        "u_y" => !state.displacement.is_empty(),
-        "u_x" => !state.horizontal_displacement.is_empty(),
-        _ => state.surface_displacement.is_some(),
-    }
+fn has(state: &SampledState, column: Column) -> bool {
+    let list = match column {
+        Column::Pressure => &state.pressure,
+        Column::EffectiveStress => &state.effective_stress,
+        Column::Up => &state.displacement,
+        _ => &state.horizontal_displacement,
+    };
+    !list.is_empty()
 }
 
 impl Absent {
-    /// A sentence on it, with the times as the caller writes them.
+    /// A sentence about it; `when` writes the time of a state.
     pub fn sentence(&self, when: impl Fn(usize) -> String) -> String {
-        let Self { name, states, .. } = self;
-        if *name == "settlement" {
-            let first = states.first().map_or(String::new(), |place| when(*place));
-            return format!(
-                "the settlement curve has no {first}{}, and it has other times",
-                more(states.len())
-            );
+        let name = self.name;
+        let first = self.states.first().map_or(String::new(), |place| when(*place));
+        let more = match self.states.len() {
+            0 | 1 => String::new(),
+            count => format!(" (and {} more)", count - 1),
+        };
+        if name == "settlement" {
+            return format!("the settlement curve has no {first}{more}, and it has other times");
         }
-        let out = format!("`{name} = \"\"` in [columns] of a mapping takes it out on purpose");
-        match states.first() {
-            Some(first) if !self.is_in_none => {
-                format!(
-                    "there is no `{name}` at {}{}, and other states have it; {out}",
-                    when(*first),
-                    more(states.len())
-                )
-            }
-            _ => format!("there is no `{name}` at any time; {out}"),
-        }
+        let place = if self.is_in_none {
+            "any time".to_owned()
+        } else {
+            format!("{first}{more}, and other states have it")
+        };
+        format!(
+            "there is no `{name}` at {place}; `{name} = \"\"` in [columns] of a mapping takes it out on purpose"
+        )
     }
-}
-
-fn more(count: usize) -> String {
-    if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
 }
 
 #[cfg(test)]
@@ -116,6 +106,7 @@ mod tests {
     use super::*;
     use crate::import::mapping::preset::Preset;
     use crate::study::file::StudySource;
+    use clap::ValueEnum;
 
     fn states(pressures: [usize; 3]) -> Vec<SampledState> {
         let state = |count| SampledState {
@@ -140,7 +131,7 @@ mod tests {
         assert_eq!(Expected::of_states(&whole).absent(&whole), []);
         // Found in a state that is not scored: the start.
         let mut expected = Expected::of_states(&states([0, 0, 0]));
-        expected.add(vec!["p"]);
+        expected.add([Column::Pressure]);
         let absent = expected.absent(&states([0, 0, 0]));
         assert!(
             absent.len() == 1 && absent[0].is_in_none && absent[0].sentence(when).contains("at any time")
@@ -151,12 +142,14 @@ mod tests {
     fn a_preset_promises_a_pressure_and_a_displacement_and_a_mapping_takes_them_out() {
         let of = |text: &str| {
             let own = StudySource { name: "map.toml".to_owned(), text: text.to_owned() };
-            Expected::promised(&Preset::Ogs.mapping(Some(&own), false).expect("a mapping")).names
+            let ogs = Preset::from_str("ogs", false).expect("a preset");
+            let mapping = Mapping::resolve(Some(ogs), Some(&own), false).expect("a mapping");
+            Expected::promised(&mapping).columns.iter().map(|column| column.name()).collect::<Vec<_>>()
         };
         assert_eq!(of(""), ["p", "u_y"]);
         assert_eq!(of("[columns]\np = \"\"\n"), ["u_y"]);
         assert_eq!(of("[columns]\nu_y = \"\"\n"), ["p"]);
-        assert_eq!(Expected::promised(&Mapping::convention(false).expect("a constant")).names, [""; 0]);
+        assert_eq!(Expected::promised(&Mapping::convention(false).expect("a constant")).columns, []);
     }
 
     #[test]

@@ -1,16 +1,18 @@
-//! An external result: tables or files of other programs, with a declared meaning.
+//! Results of other programs: tables and files with arrays, whose meaning a mapping declares.
 //!
-//! Programs differ in units, signs, the origins of their coordinates and the place where they keep
-//! the time; a mapping file declares all of these, and nothing is guessed from the numbers.
+//! Programs differ in units, signs, the origin of their coordinates and where they write the time. A mapping file, a
+//! preset or the convention declares all of these; nothing is guessed from the numbers.
 
-pub mod expected;
-pub mod frame_rows;
+mod expected;
+mod frame_rows;
 pub mod mapping;
-pub mod opened_csv;
 pub mod raw_row;
-pub mod rows;
 pub mod runs;
-pub mod sample_row;
-pub mod settlement_series;
-pub mod step_times;
-pub mod table;
+mod samples;
+mod step_times;
+mod table_rows;
+#[cfg(test)]
+mod tests;
+
+pub use samples::{SampledState, states_of};
+pub use table_rows::not_ended;

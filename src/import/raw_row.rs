@@ -1,36 +1,35 @@
-//! One row as it stands in a file, and what it is in SI with the signs of this program.
+//! One row in the units and signs of its file, and how it becomes a sample in SI.
 
-use crate::import::mapping::Mapping;
+use crate::case::Case;
 use crate::import::mapping::mapping_parts::StressKind;
 use crate::import::mapping::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
-use oedometer_formats::import_error::ImportError;
+use crate::import::mapping::{Column, Mapping};
+use crate::import::samples::SampleRow;
+use oedometer_formats::ImportError;
 
-/// Share of the height by which a place may lie outside: round-off of a written number.
+/// Share of the height by which a place may lie outside: round-off of a number in a file.
 const RIM: f64 = 1e-6;
 
-/// What was solved, as far as it takes to read a result of it.
+/// What reading a result needs to know of the body that was solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolvedBody {
     /// Height, m.
     pub height: f64,
-    /// Length along a layer, m; a column has none.
+    /// Length of a layer, m; columns have none.
     pub length: Option<f64>,
     /// Seconds at which `T_v = 1`.
     pub seconds_per_time_factor: f64,
 }
 
-/// One row in SI.
-pub struct SampleRow {
-    pub time: f64,
-    pub initial_distance: Option<f64>,
-    pub initial_height: f64,
-    pub volume: f64,
-    pub pressure: Option<f64>,
-    pub effective_stress: Option<f64>,
-    pub displacement: Option<f64>,
-    pub horizontal_displacement: Option<f64>,
-    /// What tells it from other rows at its place and time, as a hash.
-    pub others: u64,
+impl SolvedBody {
+    /// The body of a case.
+    pub fn of(case: &Case) -> Self {
+        Self {
+            height: case.column.height,
+            length: case.scene.has_plane_fields().then_some(case.column.extent()),
+            seconds_per_time_factor: case.seconds_per_time_factor(),
+        }
+    }
 }
 
 /// A row in the units and signs of its file; the time is in seconds.
@@ -52,59 +51,95 @@ pub struct RawRow {
     pub displacement: Option<f64>,
     /// Horizontal displacement.
     pub horizontal_displacement: Option<f64>,
-    /// Change of `(x, y)` since the first state, where displacements come from there; `x` and `y` then are first ones.
+    /// Change of `(x, y)` since the first state, if displacements are derived from it; `x` and `y` are then those of the
+    /// first state.
     pub moved: Option<[f64; 2]>,
-    /// What tells it from other rows at its place and time, as a hash.
+    /// Hash of what distinguishes it from other rows at its place and time.
     pub others: u64,
 }
 
-/// Whether a place is the one that is asked for, to round-off of single precision.
-pub fn is_at(place: f64, asked: f64) -> bool {
-    (place - asked).abs() <= RIM * asked.abs().max(1.0)
+/// Whether a place is the requested one, up to the round-off of single precision.
+pub fn is_at(place: f64, requested: f64) -> bool {
+    (place - requested).abs() <= RIM * requested.abs().max(1.0)
 }
 
 impl RawRow {
-    /// The row in SI with the signs of this program.
+    /// Reads the columns of a row one by one.
+    ///
+    /// # Errors
+    /// Those of the columns.
+    pub fn read(
+        time: f64,
+        others: u64,
+        number: impl Fn(Column) -> Result<Option<f64>, ImportError>,
+    ) -> Result<Self, ImportError> {
+        Ok(Self {
+            time,
+            x: number(Column::X)?,
+            y: number(Column::Y)?.unwrap_or(f64::NAN),
+            volume: number(Column::Volume)?,
+            pressure: number(Column::Pressure)?,
+            stress: number(Column::EffectiveStress)?,
+            displacement: number(Column::Up)?,
+            horizontal_displacement: number(Column::Along)?,
+            moved: None,
+            others,
+        })
+    }
+
+    /// The row in SI with the signs of a [`SampledState`](crate::import::SampledState).
     ///
     /// # Errors
     /// When it lies outside the body, or its time or volume is negative.
     pub fn sample(
         &self,
         mapping: &Mapping,
-        frame: SolvedBody,
+        body: SolvedBody,
         refused: &dyn Fn(String) -> ImportError,
     ) -> Result<SampleRow, ImportError> {
         let (units, sign) = (&mapping.units, &mapping.sign);
         let stress = units.stress.map_or(1.0, StressUnit::pascals);
-        let length = units.displacement.unwrap_or(units.length).metres();
-        let upward = if sign.u_y == Some(VerticalSense::Down) { -1.0 } else { 1.0 };
-        let rightward = if sign.u_x == Some(HorizontalSense::Left) { -1.0 } else { 1.0 };
-        let compressive =
-            |sign: Option<StressSign>| if sign == Some(StressSign::TensionPositive) { -1.0 } else { 1.0 };
-        let mut displacement = self.displacement.map(|u| u * length * upward);
-        let mut horizontal = self.horizontal_displacement.map(|u| u * length * rightward);
-        if let Some([along, up]) = self.moved {
-            let up_sign = if sign.y == VerticalSense::Down { -1.0 } else { 1.0 };
-            displacement = Some(up * units.length.metres() * up_sign);
-            horizontal = self.x.map(|_| along * units.length.metres() * horizontal_sign(mapping));
-        }
-        let is_current = mapping.position.y == StatedPlace::Current && self.moved.is_none();
-        let y = (self.y - mapping.origin.y) * units.length.metres();
-        let height = match sign.y {
-            VerticalSense::Up => y,
-            VerticalSense::Down => frame.height - y,
+        let length = units.length.metres();
+        let u_length = units.displacement.unwrap_or(units.length).metres();
+        let negated = |is_negated: bool| if is_negated { -1.0 } else { 1.0 };
+        let compressive = |sign: Option<StressSign>| negated(sign == Some(StressSign::TensionPositive));
+        let (is_down, is_left) = (sign.y == VerticalSense::Down, sign.x == Some(HorizontalSense::Left));
+        let (displacement, horizontal) = match self.moved {
+            Some([along, up]) => {
+                (Some(up * length * negated(is_down)), self.x.map(|_| along * length * negated(is_left)))
+            }
+            None => (
+                self.displacement.map(|u| u * u_length * negated(sign.u_y == Some(VerticalSense::Down))),
+                self.horizontal_displacement
+                    .map(|u| u * u_length * negated(sign.u_x == Some(HorizontalSense::Left))),
+            ),
         };
-        let initial_height = if is_current { height - displacement.unwrap_or(0.0) } else { height };
-        if !(-RIM * frame.height..=(1.0 + RIM) * frame.height).contains(&initial_height) {
+        let is_current = mapping.position.y == StatedPlace::Current && self.moved.is_none();
+        let before = |place: f64, moved: Option<f64>| {
+            if is_current { place - moved.unwrap_or(0.0) } else { place }
+        };
+        let y = (self.y - mapping.origin.y) * length;
+        let height = before(if is_down { body.height - y } else { y }, displacement);
+        if !is_inside(height, body.height) {
             return Err(refused(format!(
-                "the initial height {initial_height} m is outside the column of {} m: look at the unit and the sign of \
-                 `y`, and at whose places they are",
-                frame.height
+                "the initial height {height} m is outside the column of {} m: look at the unit and the sign of `y`, \
+                 and at whether places are initial or current",
+                body.height
             )));
         }
-        let initial_height = initial_height.clamp(0.0, frame.height);
-        let moved = horizontal.filter(|_| is_current).unwrap_or(0.0);
-        let distance = self.x.map(|x| distance(x, mapping, frame, moved, refused)).transpose()?;
+        let height = height.clamp(0.0, body.height);
+        let distance = self.x.map(|x| {
+            let x = (x - mapping.origin.x) * length;
+            before(if is_left { body.length.unwrap_or(0.0) - x } else { x }, horizontal)
+        });
+        if let (Some(distance), Some(length)) = (distance, body.length)
+            && !is_inside(distance, length)
+        {
+            return Err(refused(format!(
+                "the initial distance {distance} m from the crest is outside the layer of {length} m: look at the \
+                 unit, the sign and the origin of `x`, and at whether places are initial or current"
+            )));
+        }
         let pore = self.pressure.map(|p| p * stress * compressive(sign.p));
         let vertical = self.stress.map(|given| -given * stress * compressive(sign.effective_stress));
         let effective = match mapping.stress.is {
@@ -112,51 +147,31 @@ impl RawRow {
             StressKind::Total => vertical.zip(pore).map(|(total, pore)| total + pore),
         };
         let at_rest = mapping.hydrostatic.map_or(0.0, |water| {
-            water.unit_weight * (water.surface.unwrap_or(frame.height) - initial_height).max(0.0)
+            water.unit_weight * (water.surface.unwrap_or(body.height) - height).max(0.0)
         });
-        let negative = |number: f64, what: &str| {
-            if number < 0.0 { Err(refused(format!("{what} is negative"))) } else { Ok(number) }
-        };
+        let volume = self.volume.unwrap_or(1.0);
+        for (number, what) in [(self.time, "the time"), (volume, "the volume")] {
+            if number < 0.0 {
+                return Err(refused(format!("{what} is negative")));
+            }
+        }
+        let or_absent = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Ok(SampleRow {
-            time: negative(self.time, "the time")?,
-            initial_distance: distance,
-            initial_height,
-            volume: negative(self.volume.unwrap_or(1.0), "the volume")?,
-            pressure: pore.map(|pore| pore - at_rest),
-            effective_stress: effective,
-            displacement,
-            horizontal_displacement: horizontal,
+            time: self.time,
+            initial_distance: or_absent(distance),
+            initial_height: height,
+            volume,
+            pressure: or_absent(pore.map(|pore| pore - at_rest)),
+            effective_stress: or_absent(effective),
+            displacement: or_absent(displacement),
+            horizontal_displacement: or_absent(horizontal),
             others: self.others,
         })
     }
 }
 
-fn horizontal_sign(mapping: &Mapping) -> f64 {
-    if mapping.sign.x == Some(HorizontalSense::Left) { -1.0 } else { 1.0 }
-}
-
-/// Initial distance from the scene's `x = 0`, m; a column has no ends that it could miss.
-fn distance(
-    x: f64,
-    mapping: &Mapping,
-    frame: SolvedBody,
-    moved: f64,
-    refused: &dyn Fn(String) -> ImportError,
-) -> Result<f64, ImportError> {
-    let x = (x - mapping.origin.x) * mapping.units.length.metres();
-    let length = frame.length.unwrap_or(0.0);
-    let distance = match mapping.sign.x {
-        Some(HorizontalSense::Left) => length - x,
-        _ => x,
-    };
-    let initial = distance - moved;
-    if frame.length.is_some() && !(-RIM * length..=(1.0 + RIM) * length).contains(&initial) {
-        return Err(refused(format!(
-            "the initial distance {initial} m from the crest is outside the layer of {length} m: look at the unit, \
-             the sign and the origin of `x`, and at whose places they are"
-        )));
-    }
-    Ok(initial)
+fn is_inside(place: f64, extent: f64) -> bool {
+    (-RIM * extent..=(1.0 + RIM) * extent).contains(&place)
 }
 
 #[cfg(test)]
@@ -169,7 +184,7 @@ mod tests {
         let source = StudySource { name: "map.toml".to_owned(), text: mapping.to_owned() };
         let mapping = Mapping::read(&source).expect("a mapping");
         let frame = SolvedBody { height: 2.0, length: None, seconds_per_time_factor: 1.0 };
-        let refused = |reason: String| ImportError::table(Path::new("a"), reason);
+        let refused = |reason: String| ImportError::content(Path::new("a"), reason);
         row.sample(&mapping, frame, &refused).unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -179,16 +194,16 @@ mod tests {
         let mapping = "stress = { is = \"total\" }\nhydrostatic = { unit_weight = 9810.0 }\n\
                        columns = { p = \"p\", effective_stress = \"s\" }\nunits = { stress = \"kPa\" }\n";
         let sample = sample(mapping, row);
-        assert!((sample.pressure.expect("a pressure") - (20e3 - 1.5 * 9810.0)).abs() < 1e-9);
-        assert!((sample.effective_stress.expect("a stress") + 30e3).abs() < 1e-9, "-50 kPa + 20 kPa");
+        assert!((sample.pressure - (20e3 - 1.5 * 9810.0)).abs() < 1e-9);
+        assert!((sample.effective_stress + 30e3).abs() < 1e-9, "-50 kPa + 20 kPa");
     }
 
     #[test]
     fn a_place_that_moved_gives_the_displacement_in_the_sense_of_its_axis() {
         let row = RawRow { y: 0.5, moved: Some([0.0, 0.01]), ..RawRow::default() };
         let up = sample("displacement = { from = \"first-frame\" }", row);
-        assert_eq!((up.initial_height, up.displacement), (0.5, Some(0.01)));
+        assert_eq!((up.initial_height, up.displacement), (0.5, 0.01));
         let down = sample("displacement = { from = \"first-frame\" }\nsign = { y = \"down\" }", row);
-        assert_eq!((down.initial_height, down.displacement), (1.5, Some(-0.01)));
+        assert_eq!((down.initial_height, down.displacement), (1.5, -0.01));
     }
 }

@@ -168,8 +168,7 @@ fn a_case_file_keeps_to_its_schema() {
 #[test]
 fn the_convention_of_a_mapping_keeps_to_the_schema() {
     let schema = schema_of(Document::Mapping);
-    for text in
-        [crate::import::mapping::convention::CONVENTION, crate::import::mapping::convention::PLANE_CONVENTION]
+    for text in [crate::import::mapping::preset::CONVENTION, crate::import::mapping::preset::PLANE_CONVENTION]
     {
         assert_eq!(breach(&schema, &study_value(text), "mapping"), None);
     }

@@ -125,7 +125,7 @@ fn kratos_has_its_steps_in_names_or_a_series_and_suction_positive() {
         score(&["kratos-vtu/PorousDomain.porous_computational_model_part.vtm.series", "--preset", "kratos"]);
     let found = values(&told, PRESSURE);
     assert!(found.len() == 4 && are(&found[..1], &["1.67e-2"]), "ten times the step: {found:?}");
-    for said in ["16 of the 20 files that it names are not there", "left out the block", "10 cells"] {
+    for said in ["16 of its 20 files are missing", "left out the block", "10 cells"] {
         assert!(told.err.contains(said), "{said}: {}", told.err);
     }
     let told = score(&["kratos-vtk/porous_computational_model_part_0_50.vtk", "--preset", "kratos"]);
@@ -255,8 +255,8 @@ fn an_array_that_is_not_there_is_told_with_those_that_are() {
 #[test]
 fn what_cannot_be_scored_is_answered_with_what_can() {
     for (arguments, told) in [
-        (&["ogs"][..], "it is a folder: name the collection in it, ogs/col.pvd"),
-        (&["kratos-vtk"], "name its files, 'kratos-vtk/*.vtk' with the quotes"),
+        (&["ogs"][..], "it is a folder: give the collection in it, ogs/col.pvd"),
+        (&["kratos-vtk"], "give its files, 'kratos-vtk/*.vtk' with the quotes"),
         (&["ogs/col_ts_50_t_4.087500.vtu"], "score ogs/col.pvd, which lists it"),
         (&["porepy/col_2_000001.vtu", "--preset", "porepy"], "score porepy/col.pvd, which lists it"),
         (&["geotaichi/particles/*.npz"], "it looks like a file for `--preset geotaichi`"),
@@ -287,7 +287,7 @@ fn a_slab_and_a_column_in_the_plane_are_scored_without_a_grid_that_fits_them() {
     let found = values(&told, ",pressure,points,l2,");
     assert!(found.len() == 1 && found[0] < 1e-12, "{found:?}: {}", told.err);
     let settled = values(&told, ",settlement,");
-    assert!(settled.is_empty() && told.err.contains("it is the plate's"), "{settled:?}: {}", told.err);
+    assert!(settled.is_empty() && told.err.contains("it is that of the plate"), "{settled:?}: {}", told.err);
     let plane = ["ogs/col.pvd", "--preset", "ogs", "--set", "column.dimensions=2"];
     assert!(are(&values(&score(&plane), PRESSURE), &TEN));
 }

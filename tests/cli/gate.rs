@@ -189,7 +189,7 @@ fn a_given_result_is_explained_reported_and_planned_like_a_case() {
     fs::write(at.join("kratos.toml"), STUDY.replace("preset = \"kratos\"", "mapping = \"map.toml\""))
         .expect("a file");
     let told = check(at, &[]);
-    assert!(told.code == 2 && told.err.contains("says nothing of the unit of stresses"), "{}", told.err);
+    assert!(told.code == 2 && told.err.contains("does not declare the unit of stresses"), "{}", told.err);
 }
 
 /// The commands of a code block of docs/gate.md.

@@ -115,7 +115,7 @@ fn what_is_cut_another_meshs_or_beyond_the_load_is_no_result() {
         sound.replace(second, &entries.join(","))
     };
     for (text, of_study, of_gate) in [
-        (sound.trim_end().to_owned(), "a.csv does not end with an end of line", "end-missing"),
+        (sound.trim_end().to_owned(), "a.csv does not end with a line break", "end-missing"),
         (with("1e308"), "more than 100 times the load", "value-impossible"),
         (with("-2e9"), "a pressure is -2.000e9 Pa", "value-impossible: pressure of 2.000e9 at T_v = 0.1"),
     ] {

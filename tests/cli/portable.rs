@@ -9,7 +9,7 @@ use tempfile::TempDir;
 const CALLS: [&[&str]; 6] = [
     &["exact", "dynamic-column", "--set", "column.loading_time=0.002", "--format", "json"],
     &["exact", "mandel", "--time-factor", "0.001,0.01,0.1,1", "--format", "json"],
-    &["exact", "cosine-layer", "--along", "0,0.5", "--format", "json"],
+    &["exact", "cosine-layer", "--x", "0,0.5", "--format", "json"],
     &["exact", "xie-leo", "--set", "column.load=2e5", "--format", "json"],
     &["exact", "large-strain", "--set", "column.load=2e5", "--time-factor", "0.1", "--format", "json"],
     &["schema", "study"],

@@ -162,7 +162,7 @@ fn exact_takes_places_along_a_layer_and_of_nothing_else() {
     );
     let told = call(at, &["exact", "terzaghi", "--x", "0"]);
     assert_eq!((told.code, told.out.as_str()), (2, ""));
-    assert!(told.err.contains("`--x` is of a layer"), "{}", told.err);
+    assert!(told.err.contains("`--x` is for layers"), "{}", told.err);
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
     }
     let told = score(at, &whole, &["--strict"]);
     assert!(
-        told.code == 0 && told.err.contains("name those that must be there by --time-factor"),
+        told.code == 0 && told.err.contains("give the times that must be there by --time-factor"),
         "{}",
         told.err
     );

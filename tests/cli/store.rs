@@ -132,7 +132,7 @@ fn a_study_comes_from_a_pipe_and_never_from_what_does_not_end() {
     let told = call(folder.path(), &["plan", "/dev/zero"]);
     assert_eq!((told.code, told.out.as_str()), (2, ""), "{}", told.err);
     assert!(
-        told.err.contains("the study /dev/zero: it is no file: a device or a pipe may never end"),
+        told.err.contains("the study /dev/zero: it is not a regular file: a device or a pipe may never end"),
         "{}",
         told.err
     );

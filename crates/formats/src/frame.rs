@@ -1,4 +1,4 @@
-//! What every format is read into: named arrays on points or cells, their places and the cells.
+//! The form that every format is read into: points, cells, and named arrays on them.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ pub enum Association {
 }
 
 impl Association {
-    /// Its word in messages.
+    /// Its name in messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Points => "points",
@@ -35,14 +35,14 @@ pub struct Array {
     pub components: usize,
     /// Tuples.
     pub tuples: usize,
-    /// `[tuple][component]`; empty where it was not asked for.
+    /// `[tuple][component]`; empty if the array was not asked for.
     pub values: Vec<f64>,
 }
 
 /// Cells as lists of points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells {
-    /// Type of each cell, a number of VTK.
+    /// Type of each cell, as VTK numbers them.
     pub types: Vec<u8>,
     /// End of each cell in `connectivity`.
     pub ends: Vec<usize>,
@@ -51,7 +51,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// How many there are.
+    /// Number of cells.
     pub fn count(&self) -> usize {
         self.ends.len()
     }
@@ -77,7 +77,7 @@ impl Cells {
         &points[..corners.min(points.len())]
     }
 
-    /// Which of a number of points are corners of a cell.
+    /// For each of a number of points, whether it is a corner of a cell.
     pub fn are_corners(&self, points: usize) -> Vec<bool> {
         let mut are_corners = vec![false; points];
         for cell in 0..self.count() {
@@ -90,7 +90,7 @@ impl Cells {
         are_corners
     }
 
-    /// Highest dimension of a cell.
+    /// Highest dimension of the cells.
     pub fn dimension(&self) -> usize {
         let dimension = |kind: &u8| match kind {
             1 | 2 => 0,
@@ -101,21 +101,18 @@ impl Cells {
         self.types.iter().map(dimension).max().unwrap_or(0)
     }
 
-    /// Whether the parts fit each other and a number of points.
-    ///
-    /// # Errors
-    /// What does not fit.
-    pub fn check(&self, points: usize) -> Result<(), String> {
+    /// Checks that the lists fit each other and a number of points.
+    pub(crate) fn check(&self, points: usize) -> Result<(), String> {
         if self.types.len() != self.ends.len() {
-            return Err(format!("there are {} cells and types of {}", self.ends.len(), self.types.len()));
+            return Err(format!("there are {} cells and types for {}", self.ends.len(), self.types.len()));
         }
         if self.ends.windows(2).any(|pair| pair[0] > pair[1]) {
-            return Err("the offsets of the cells fall".to_owned());
+            return Err("the offsets of the cells decrease".to_owned());
         }
         let end = self.ends.last().copied().unwrap_or(0);
         if end != self.connectivity.len() {
             return Err(format!(
-                "the cells name {} points, their offsets end at {end}",
+                "the cells have {} points, and their offsets end at {end}",
                 self.connectivity.len()
             ));
         }
@@ -129,44 +126,41 @@ impl Cells {
 /// One state of a result, as a file holds it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Time that the file itself states, in its own unit.
+    /// Time in the file, in the file's own unit.
     pub time: Option<f64>,
-    /// Places of the points; empty where they are an array like others, or not asked for.
+    /// Places of the points; empty if the format keeps them in an array like others.
     pub coordinates: Vec<[f64; 3]>,
-    /// Cells, where there are some.
+    /// Cells, if there are any.
     pub cells: Option<Cells>,
     /// Arrays.
     pub arrays: Vec<Array>,
-    /// What was left out, a sentence each.
+    /// One sentence for each thing that was left out.
     pub notes: Vec<String>,
 }
 
 impl Frame {
-    /// An array by its name, on what is asked for or on anything.
+    /// The array of a name, on what is asked for or on anything.
     pub fn array(&self, name: &str, on: Option<Association>) -> Option<&Array> {
         self.arrays.iter().find(|array| array.name == name && on.is_none_or(|on| array.on == on))
     }
 
     /// Memory of its numbers, bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let numbers: usize = self.arrays.iter().map(|array| array.values.len()).sum();
         let of_cells =
             self.cells.as_ref().map_or(0, |cells| 9 * cells.count() + 4 * cells.connectivity.len());
         (8 * numbers + 24 * self.coordinates.len() + of_cells) as u64
     }
 
-    /// Names of all arrays, as a message lists them.
+    /// Names of all arrays, for a message.
     pub fn names(&self) -> String {
         let named = |array: &Array| format!("`{}` on {}", array.name, array.on.name());
         let all: Vec<String> = self.arrays.iter().map(named).collect();
         if all.is_empty() { "no array".to_owned() } else { all.join(", ") }
     }
 
-    /// Appends the points, cells and arrays of another part of the same state.
-    ///
-    /// # Errors
-    /// When the parts have different arrays.
-    pub fn append(&mut self, part: Self) -> Result<(), String> {
+    /// Appends the points, cells and arrays of another part of the same state. The parts must have the same arrays.
+    pub(crate) fn append(&mut self, part: Self) -> Result<(), String> {
         let shift = u32::try_from(self.coordinates.len()).map_err(|_| "too many points".to_owned())?;
         if self.arrays.len() != part.arrays.len() {
             return Err(format!("its parts have different arrays: {} and {}", self.names(), part.names()));
@@ -197,15 +191,21 @@ impl Frame {
     }
 }
 
-/// Names of the arrays that are to be decoded; of the others only names and sizes are kept.
+/// Names of the arrays to decode; of the others only names and sizes are kept.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted<'a>(pub &'a BTreeSet<String>);
 
 impl Wanted<'_> {
-    /// Whether an array's values are wanted.
-    pub fn has(self, name: &str) -> bool {
+    /// Whether the values of an array are wanted.
+    pub(crate) fn has(self, name: &str) -> bool {
         self.0.contains(name)
     }
+}
+
+/// Places from numbers with two or three components each; a third component that is missing is 0.
+pub(crate) fn points_of(numbers: &[f64], components: usize) -> Vec<[f64; 3]> {
+    let place = |at: &[f64]| [at[0], at[1], at.get(2).copied().unwrap_or(0.0)];
+    numbers.chunks_exact(components).map(place).collect()
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! HDF5: data sets by their paths, states over times, and tables of records.
 //!
-//! The groups are walked once: to find a data set by its path, the library walks its group anew.
+//! The groups are walked once and the data sets kept: the library would walk a group again for each path.
 
 use crate::bytes::{Budget, Scalar};
-use crate::frame::{Array, Association, Frame, Wanted};
+use crate::frame::{Array, Association, Frame, Wanted, points_of};
 use crate::input_file;
 use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, FileAccessProperties, Group};
 use std::collections::HashMap;
@@ -17,17 +17,17 @@ const MOST: usize = 200_000;
 const MOST_OF_A_STATE: usize = 10_000;
 
 /// An open file.
-pub struct Store {
+pub(crate) struct Store {
     sets: Vec<Listed>,
     /// Places in the list by path.
     by_path: HashMap<String, usize>,
-    /// Data sets and groups that were looked at, however often.
-    pub(super) looked_at: usize,
+    /// Data sets and groups that were listed.
+    pub(super) listed: usize,
     size: usize,
     budget: Budget,
 }
 
-/// A data set as it lies in a file.
+/// A data set with its path.
 struct Listed {
     path: String,
     shape: Vec<u64>,
@@ -36,20 +36,17 @@ struct Listed {
 
 impl Store {
     /// Opens a file.
-    ///
-    /// # Errors
-    /// When it is damaged.
     pub fn open(path: &Path) -> Result<Self, String> {
         let bytes = input_file::read(path).map_err(|error| error.to_string())?;
         let size = bytes.len();
-        // Unpacked pieces are not kept: a data set keeps its own, and there may be thousands of them.
+        // Without a cache of unpacked chunks: each data set has its own, and there may be thousands.
         let pieces = ChunkCacheConfig::new().with_max_bytes(0).with_max_slots(0);
         let access = FileAccessProperties::new().with_chunk_cache(pieces);
         let file = File::from_bytes_with_options(bytes, access).map_err(|error| damaged(&error))?;
         let mut store = Self {
             sets: Vec::new(),
             by_path: HashMap::new(),
-            looked_at: 0,
+            listed: 0,
             size,
             budget: Budget::of_file(size),
         };
@@ -58,20 +55,18 @@ impl Store {
         Ok(store)
     }
 
-    /// Begins another state: each may become as much in memory as the file allows.
+    /// Renews the memory budget for another state.
     pub fn renew_budget(&mut self) {
         self.budget = Budget::of_file(self.size);
     }
 
-    /// Shape of a data set, and the numbers of all its rows or of some: first, and how many.
-    ///
-    /// # Errors
-    /// When there is no such set, or it is damaged or too large.
-    pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<(Vec<u64>, Vec<f64>), String> {
+    /// The numbers of a data set, of all rows or of a first one and a count.
+    pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<Vec<f64>, String> {
         let named = |why: String| format!("the data set `{path}`: {why}");
         let known = self.by_path.get(path.trim_matches('/'));
         let listed = known.and_then(|place| self.sets.get(*place));
-        let Listed { shape, set, .. } = listed.ok_or_else(|| named("it is not in the file".to_owned()))?;
+        let Listed { shape, set, .. } =
+            listed.ok_or_else(|| named("the file does not have it".to_owned()))?;
         let per_row = product(shape.get(1..).unwrap_or_default()).map_err(named)?;
         let (first, count) = rows.unwrap_or((0, shape.first().copied().unwrap_or(1)));
         let total = per_row.checked_mul(count).ok_or_else(|| named("it claims too much".to_owned()))?;
@@ -85,25 +80,19 @@ impl Store {
         if numbers.len() as u64 != total {
             return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));
         }
-        Ok((shape.clone(), numbers))
+        Ok(numbers)
     }
 
-    /// Times of the states of a file, where it has a list of them.
-    ///
-    /// # Errors
-    /// When it is damaged.
+    /// Times of the states, if the file has a list of them.
     pub fn times(&mut self) -> Result<Vec<f64>, String> {
         let is_list = |set: &&Listed| is_named(&set.path, &["times", "time"]) && set.shape.len() == 1;
         match self.sets.iter().find(is_list).map(|set| set.path.clone()) {
-            Some(path) => Ok(self.numbers(&path, None)?.1),
+            Some(path) => self.numbers(&path, None),
             None => Ok(Vec::new()),
         }
     }
 
-    /// The state of a place in the list of times; the only one where there is no list.
-    ///
-    /// # Errors
-    /// When it is damaged or too large.
+    /// A state by its place in the list of times; the only state if there is no list.
     pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
         self.renew_budget();
         if self.sets.len() > MOST_OF_A_STATE {
@@ -138,24 +127,21 @@ impl Store {
                 _ => None,
             };
             if is_place && (2..=3).contains(&components) {
-                let numbers = self.numbers(&path, rows)?.1;
-                let third = |place: &[f64]| place.get(2).copied().unwrap_or(0.0);
-                frame.coordinates =
-                    numbers.chunks_exact(components).map(|at| [at[0], at[1], third(at)]).collect();
+                frame.coordinates = points_of(&self.numbers(&path, rows)?, components);
             }
             let mut array = Array { name, on: Association::Points, components, tuples, values: Vec::new() };
             if wanted.has(&array.name) {
-                array.values = self.numbers(&path, rows)?.1;
+                array.values = self.numbers(&path, rows)?;
             }
             frame.arrays.push(array);
         }
         if frame.arrays.is_empty() {
-            return Err("it has no data set of numbers".to_owned());
+            return Err("it has no numbers".to_owned());
         }
         Ok(frame)
     }
 
-    /// Takes the columns of a table of records; whether the set is one.
+    /// Adds the columns of a table of records; false if the set is not a table.
     fn records(&mut self, number: usize, wanted: Wanted, frame: &mut Frame) -> Result<bool, String> {
         let Listed { shape, set, .. } = &self.sets[number];
         let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
@@ -191,15 +177,15 @@ impl Store {
         Ok(true)
     }
 
-    /// Lists what is in a group, and in the groups in it.
+    /// Lists the data sets of a group and of the groups in it.
     fn list(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), String> {
         for (name, set) in group.iter_datasets().map_err(|error| damaged(&error))? {
-            self.look()?;
+            self.count()?;
             let shape = set.shape().map_err(|error| damaged(&error))?;
             self.sets.push(Listed { path: format!("{path}{name}"), shape, set });
         }
         for (name, below) in group.iter_groups().map_err(|error| damaged(&error))? {
-            self.look()?;
+            self.count()?;
             if depth == DEEPEST {
                 return Err(format!("it has groups deeper than {DEEPEST}"));
             }
@@ -208,13 +194,9 @@ impl Store {
         Ok(())
     }
 
-    fn look(&mut self) -> Result<(), String> {
-        self.looked_at += 1;
-        if self.looked_at > MOST {
-            Err(format!("it has more than {MOST} data sets and groups"))
-        } else {
-            Ok(())
-        }
+    fn count(&mut self) -> Result<(), String> {
+        self.listed += 1;
+        if self.listed > MOST { Err(format!("it has more than {MOST} data sets and groups")) } else { Ok(()) }
     }
 }
 
@@ -229,29 +211,19 @@ fn product(shape: &[u64]) -> Result<u64, String> {
 }
 
 fn damaged(error: &hdf5_pure::Error) -> String {
-    format!("it is no sound HDF5: {error}")
+    format!("its HDF5 is damaged: {error}")
 }
 
-/// Kind of the numbers of a field, and whether the lowest byte stands first.
+/// Type of the numbers of a field, and whether the lowest byte comes first.
 fn scalar_of(kind: &Datatype) -> Option<(Scalar, bool)> {
-    let (size, order, is_float, is_signed) = match kind {
-        Datatype::FixedPoint { size, byte_order, layout } => (*size, byte_order, false, layout.signed),
-        Datatype::FloatingPoint { size, byte_order, .. } => (*size, byte_order, true, true),
+    let (code, size, order) = match kind {
+        Datatype::FixedPoint { size, byte_order, layout } => {
+            (if layout.signed { 'i' } else { 'u' }, size, byte_order)
+        }
+        Datatype::FloatingPoint { size, byte_order, .. } => ('f', size, byte_order),
         _ => return None,
     };
-    let scalar = match (size, is_float, is_signed) {
-        (8, true, _) => Scalar::F64,
-        (4, true, _) => Scalar::F32,
-        (8, false, true) => Scalar::I64,
-        (8, false, false) => Scalar::U64,
-        (4, false, true) => Scalar::I32,
-        (4, false, false) => Scalar::U32,
-        (2, false, true) => Scalar::I16,
-        (2, false, false) => Scalar::U16,
-        (1, false, true) => Scalar::I8,
-        (1, false, false) => Scalar::U8,
-        _ => return None,
-    };
+    let scalar = Scalar::of_code(&format!("{code}{size}"))?;
     Some((scalar, *order == DatatypeByteOrder::LittleEndian))
 }
 

@@ -1,6 +1,6 @@
-//! The one way to open a file that somebody names: a regular file, and none that is larger than any result.
+//! Opens files that a user or another file names: regular files only, up to the size of any result.
 //!
-//! A device or a pipe may never end, and a file that names other files may name one of these.
+//! A device or a pipe may never end, and a file that refers to other files may refer to one of these.
 
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
@@ -8,15 +8,15 @@ use std::path::Path;
 
 /// Largest file that is read, bytes.
 pub const LARGEST: u64 = 8 << 30;
-/// Largest text of settings that is read, bytes: a study of a million cases takes less.
+/// Largest text file that is read, bytes: a study of a million cases takes less.
 pub const LARGEST_TEXT: u64 = 16_000_000;
 
 /// Opens a file.
 ///
 /// # Errors
-/// When it is not there, is no regular file, or is too large.
+/// When it is missing, not a regular file, or too large.
 pub fn open(path: &Path) -> io::Result<File> {
-    // Asked before it is opened, for opening a pipe waits for whoever writes to it; and again of what was opened.
+    // Checked before it is opened, because opening a pipe waits for its writer; and again after, if it was replaced.
     check(&std::fs::metadata(path)?, LARGEST)?;
     let file = File::open(path)?;
     check(&file.metadata()?, LARGEST)?;
@@ -26,15 +26,15 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// The bytes of a file.
 ///
 /// # Errors
-/// As of opening it, and when it cannot be read.
+/// Those of [`open`], and when it cannot be read.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_at_most(path, LARGEST)
 }
 
-/// The text of a file of settings.
+/// The text of a small file.
 ///
 /// # Errors
-/// As of reading it, and when it is no text.
+/// Those of [`read`], and when it is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read_at_most(path, LARGEST_TEXT)?).map_err(|_| refused("it is not UTF-8".to_owned()))
 }
@@ -54,7 +54,7 @@ fn check(about: &Metadata, most: u64) -> io::Result<()> {
         return Err(refused("it is a folder".to_owned()));
     }
     if !about.is_file() {
-        return Err(refused("it is no file: a device or a pipe may never end".to_owned()));
+        return Err(refused("it is not a regular file: a device or a pipe may never end".to_owned()));
     }
     if about.len() > most {
         return Err(refused(format!("it has {} bytes, and at most {most} are read", about.len())));

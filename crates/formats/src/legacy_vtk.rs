@@ -1,12 +1,12 @@
-//! VTK's legacy files, in text and binary (big endian), of unstructured grids and of points.
+//! VTK's legacy files of unstructured grids and points, in text and in binary (big endian).
 //!
 //! Format: "VTK Legacy Formats", docs.vtk.org; cells of versions up to 4 and from 5.1 on.
 
-use crate::bytes::{Budget, Scalar, counts, number_of_word, short};
-use crate::frame::{Array, Association, Cells, Frame, Wanted};
-use crate::vtu::{is_time, kinds, places};
+use crate::bytes::{Budget, Scalar, excerpt, number_of_word, whole};
+use crate::frame::{Array, Association, Cells, Frame, Wanted, points_of};
+use crate::vtu::is_time;
 
-/// A place in a file.
+/// A position in a file.
 struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -15,10 +15,7 @@ struct Cursor<'a> {
 }
 
 /// Reads a file.
-///
-/// # Errors
-/// What is damaged, cut or claims too much.
-pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
+pub(crate) fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     let mut cursor = Cursor { bytes, at: 0, is_binary: false, budget: Budget::of_file(bytes.len()) };
     cursor.line();
     cursor.line();
@@ -26,7 +23,7 @@ pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     cursor.is_binary = match mode.to_ascii_uppercase().as_str() {
         "ASCII" => false,
         "BINARY" => true,
-        _ => return Err(format!("its third line is `{}`, neither ASCII nor BINARY", short(&mode))),
+        _ => return Err(format!("its third line is `{}`: expected ASCII or BINARY", excerpt(&mode))),
     };
     let mut reading =
         Reading { cursor, wanted, frame: Frame::default(), on: Association::Whole, points: 0, cells: 0 };
@@ -36,7 +33,7 @@ pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
             "DATASET" => {
                 let kind = reading.cursor.word().unwrap_or_default();
                 if !["UNSTRUCTURED_GRID", "POLYDATA", "STRUCTURED_GRID"].contains(&kind.as_str()) {
-                    return Err(format!("a data set of the type `{}` is not read", short(&kind)));
+                    return Err(format!("a data set of the type `{}` is not read", excerpt(&kind)));
                 }
             }
             "DIMENSIONS" => reading.cursor.skip_words(3),
@@ -44,7 +41,7 @@ pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
             "CELLS" => listed = Some(reading.cells()?),
             "CELL_TYPES" => {
                 let count = reading.cursor.count()?;
-                types = kinds(&reading.cursor.numbers(Scalar::I32, count, 1)?)?;
+                types = whole(&reading.cursor.numbers(Scalar::I32, count, 1)?)?;
             }
             "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" => {
                 reading.cells()?;
@@ -67,7 +64,7 @@ pub fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     Ok(frame)
 }
 
-/// What has been read so far.
+/// A file that is being read.
 struct Reading<'a> {
     cursor: Cursor<'a>,
     wanted: Wanted<'a>,
@@ -81,29 +78,27 @@ impl Reading<'_> {
     fn points(&mut self) -> Result<(), String> {
         self.points = self.cursor.count()?;
         let scalar = self.cursor.scalar()?;
-        let numbers = self.cursor.numbers(scalar, self.points, 3)?;
-        self.frame.coordinates =
-            numbers.chunks_exact(3).map(|place| [place[0], place[1], place[2]]).collect();
+        self.frame.coordinates = points_of(&self.cursor.numbers(scalar, self.points, 3)?, 3);
         Ok(())
     }
 
-    /// Ends and points of cells, of both versions of the format.
+    /// Ends and points of the cells, in both versions of the format.
     fn cells(&mut self) -> Result<(Vec<usize>, Vec<u32>), String> {
         let (first, second) = (self.cursor.count()?, self.cursor.count()?);
         if self.cursor.peek().as_deref() == Some("OFFSETS") {
             self.cursor.word();
             let scalar = self.cursor.scalar()?;
-            let offsets = counts(&self.cursor.numbers(scalar, first, 1)?)?;
+            let offsets: Vec<usize> = whole(&self.cursor.numbers(scalar, first, 1)?)?;
             if self.cursor.word().as_deref() != Some("CONNECTIVITY") {
                 return Err("no CONNECTIVITY follows the OFFSETS of the cells".to_owned());
             }
             let scalar = self.cursor.scalar()?;
-            let connectivity = places(&self.cursor.numbers(scalar, second, 1)?)?;
+            let connectivity = whole(&self.cursor.numbers(scalar, second, 1)?)?;
             self.cells = first.saturating_sub(1);
             return Ok((offsets.get(1..).unwrap_or_default().to_vec(), connectivity));
         }
         self.cells = first;
-        let list = places(&self.cursor.numbers(Scalar::I32, second, 1)?)?;
+        let list: Vec<u32> = whole(&self.cursor.numbers(Scalar::I32, second, 1)?)?;
         let (mut ends, mut connectivity) = (Vec::new(), Vec::new());
         let mut rest = list.as_slice();
         while let Some((length, after)) = rest.split_first() {
@@ -124,7 +119,7 @@ impl Reading<'_> {
         let count = self.cursor.count()?;
         let there = if on == Association::Points { self.points } else { self.cells };
         if count != there && !(on == Association::Cells && there == 0) {
-            return Err(format!("data of {count} {} are declared, and there are {there}", on.name()));
+            return Err(format!("data for {count} {} are declared, and there are {there}", on.name()));
         }
         Ok(())
     }
@@ -133,7 +128,7 @@ impl Reading<'_> {
         if self.on == Association::Cells { self.cells } else { self.points }
     }
 
-    /// Arrays that a keyword begins.
+    /// Reads the arrays behind a keyword.
     fn data(&mut self, keyword: &str) -> Result<(), String> {
         match keyword {
             "SCALARS" => {
@@ -167,8 +162,8 @@ impl Reading<'_> {
                 Ok(())
             }
             other => Err(format!(
-                "`{}` at its byte {} is no keyword that is read, or an array is longer than declared",
-                short(other),
+                "`{}` before byte {} is not a known keyword, or an array is longer than declared",
+                excerpt(other),
                 self.cursor.at
             )),
         }
@@ -231,7 +226,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Leaves a block of metadata, which ends with an empty line.
+    /// Skips a block of metadata, which ends with an empty line.
     fn skip_metadata(&mut self) {
         self.line();
         while self.at < self.bytes.len() {
@@ -251,15 +246,16 @@ impl Cursor<'_> {
 
     fn count(&mut self) -> Result<usize, String> {
         let word = self.word().unwrap_or_default();
-        word.parse().map_err(|_| format!("`{}` at its byte {} is no count", short(&word), self.at))
+        word.parse()
+            .map_err(|_| format!("`{}` before byte {} is invalid: expected a count", excerpt(&word), self.at))
     }
 
     fn scalar(&mut self) -> Result<Scalar, String> {
         let word = self.word().unwrap_or_default();
-        Scalar::of_legacy(&word).ok_or_else(|| format!("`{}` is no kind of numbers", short(&word)))
+        Scalar::of_legacy(&word).ok_or_else(|| format!("`{}` is not a type of numbers", excerpt(&word)))
     }
 
-    /// The numbers that follow.
+    /// Reads numbers.
     fn numbers(&mut self, scalar: Scalar, tuples: usize, components: usize) -> Result<Vec<f64>, String> {
         let cut = |there: usize| {
             format!(
@@ -267,7 +263,7 @@ impl Cursor<'_> {
             )
         };
         let left = self.bytes.len().saturating_sub(self.at);
-        // A written number takes two bytes at least.
+        // A number in text takes at least two bytes.
         let least = if self.is_binary { scalar.size() } else { 2 };
         let total = tuples.checked_mul(components).filter(|total| *total <= left / least + 1);
         let total = total.ok_or_else(|| cut(left / least))?;
@@ -285,7 +281,7 @@ impl Cursor<'_> {
             if start == end {
                 return Err(cut(numbers.len()));
             }
-            numbers.push(number_of_word(&self.bytes[start..end])?);
+            numbers.push(number_of_word(&String::from_utf8_lossy(&self.bytes[start..end]))?);
             self.at = end;
         }
         Ok(numbers)

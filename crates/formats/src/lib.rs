@@ -1,31 +1,84 @@
-//! Files of other programs: recognised by their content, each format read by its own file into one form.
+//! Readers of the result files of other programs: VTU, PVD and legacy VTK, XDMF and HDF5, NPZ and NPY.
+//!
+//! A file is recognised by its content ([`Kind::of`]), its states are listed ([`steps_of`]), and each state is read into
+//! one form, a [`Frame`] ([`read_states`]). Every reader refuses damaged files with a sentence and bounds the memory by
+//! the size of the file.
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod appended;
-pub mod bytes;
-pub mod collections;
-pub mod frame;
-#[cfg(feature = "hdf5")]
-pub mod hdf5;
-#[cfg(not(feature = "hdf5"))]
-#[path = "without_hdf5.rs"]
-pub mod hdf5;
-pub mod hints;
-pub mod import_error;
+mod bytes;
+mod collections;
+mod frame;
+mod hdf5;
 pub mod input_file;
-pub mod legacy_vtk;
-pub mod numpy;
-pub mod steps;
-pub mod vtk_data;
-pub mod vtu;
-#[cfg(all(test, feature = "hdf5"))]
-#[expect(dead_code, reason = "only what refuses is tried here; a build without the feature uses all of it")]
-mod without_hdf5;
-pub mod xdmf;
-pub mod xdmf_states;
-pub mod xml;
+mod legacy_vtk;
+mod numpy;
+mod steps;
+mod vtk_data;
+mod vtu;
+mod xdmf;
+mod xdmf_states;
+mod xml;
+
+pub use bytes::excerpt;
+pub use collections::collection_of;
+pub use frame::{Array, Association, Cells, Frame, Wanted};
+pub use steps::{Kind, Step, read_states, steps_of};
+
+use std::path::{Path, PathBuf};
 
 #[cfg(test)]
 mod tests;
+
+/// Longest reason in an error, bytes.
+const LONGEST_REASON: usize = 4000;
+
+/// Why a result cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        source: std::io::Error,
+    },
+    /// The content of the file is damaged, incomplete or not what its mapping says.
+    #[error("{place}: {reason}")]
+    Content {
+        /// The file, and the line where it is a table.
+        place: String,
+        /// What is wrong, and what would be right.
+        reason: String,
+    },
+}
+
+impl ImportError {
+    /// An error about the content of a file.
+    pub fn content(path: &Path, reason: impl Into<String>) -> Self {
+        Self::at(path.display().to_string(), reason.into())
+    }
+
+    /// An error about one line of a file, counted from 1.
+    pub fn line(path: &Path, line: u64, reason: impl Into<String>) -> Self {
+        Self::at(format!("{}:{line}", path.display()), reason.into())
+    }
+
+    /// An error about a place in a result. Reasons quote the file, which may be one long line, so they are truncated.
+    fn at(place: String, mut reason: String) -> Self {
+        if reason.len() > LONGEST_REASON {
+            let end = (0..=LONGEST_REASON).rfind(|end| reason.is_char_boundary(*end));
+            reason.truncate(end.unwrap_or(0));
+            reason.push('…');
+        }
+        Self::Content { place, reason }
+    }
+
+    /// Adds the path to an error of the system.
+    pub fn io(path: &Path) -> impl Fn(std::io::Error) -> Self + '_ {
+        |source| Self::Io { path: path.to_owned(), source }
+    }
+}

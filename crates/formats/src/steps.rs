@@ -1,21 +1,17 @@
-//! From a file to its states: what kind it is, which states it holds or names, and one of them read.
+//! From a file to its states: its kind, the states that it holds or refers to, and how each is read.
 
 use crate::bytes::Budget;
-use crate::collections::{Member, of_blocks, of_pvd, of_series};
+use crate::collections::{Member, of_blocks, of_folder, of_pvd, of_series};
 use crate::frame::{Frame, Wanted};
 use crate::hdf5::Store;
-use crate::hints::of_folder;
-use crate::import_error::ImportError;
-use crate::input_file;
-use crate::xdmf::Document;
-use crate::{legacy_vtk, numpy, vtu};
+use crate::{ImportError, input_file, legacy_vtk, numpy, vtu, xdmf, xml};
 use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// How far files may name files.
+/// Deepest nesting of collections.
 const DEEPEST: usize = 8;
-/// Bytes by which a file is recognised.
+/// Bytes at the start of a file by which it is recognised.
 const LOOK: u64 = 4096;
 /// Most files that a collection may name.
 const MOST: usize = 100_000;
@@ -23,21 +19,21 @@ const MOST: usize = 100_000;
 /// Kind of a file, by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Rows of a text.
+    /// Text with one row per line.
     Table,
     /// VTK's XML of points and cells.
     Vtu,
     /// VTK's legacy format.
     LegacyVtk,
-    /// PVD: files by times.
+    /// PVD: files with their times.
     Collection,
-    /// Files by times, in JSON.
+    /// Files with their times, in JSON.
     Series,
     /// `.vtm`: files of one time.
     Blocks,
-    /// A zip of arrays of `NumPy`.
+    /// A zip of `NumPy` arrays.
     Npz,
-    /// An array of `NumPy`.
+    /// A `NumPy` array.
     Npy,
     /// HDF5.
     Hdf5,
@@ -51,18 +47,18 @@ impl Kind {
     /// # Errors
     /// When it cannot be read.
     pub fn of(path: &Path) -> Result<Self, ImportError> {
-        let io = |source| ImportError::Io { path: path.to_owned(), source };
+        let io = ImportError::io(path);
         let mut head = Vec::new();
-        let about = std::fs::metadata(path).map_err(io)?;
+        let about = std::fs::metadata(path).map_err(&io)?;
         if about.is_dir() {
-            return Err(ImportError::table(path, of_folder(path)));
+            return Err(ImportError::content(path, of_folder(path)));
         }
-        input_file::open(path).map_err(io)?.take(LOOK).read_to_end(&mut head).map_err(io)?;
+        input_file::open(path).map_err(&io)?.take(LOOK).read_to_end(&mut head).map_err(&io)?;
         Ok(Self::of_head(&head))
     }
 
-    /// The kind of what begins so.
-    pub fn of_head(head: &[u8]) -> Self {
+    /// The kind of a file that begins with these bytes.
+    pub(crate) fn of_head(head: &[u8]) -> Self {
         if head.starts_with(b"\x89HDF\r\n\x1a\n") {
             return Self::Hdf5;
         }
@@ -111,16 +107,16 @@ pub struct Step {
     pub kind: Kind,
     /// Its place among the states of the file.
     pub place: usize,
-    /// Its time, where something tells it before the state is read.
+    /// Its time, if it is known before the state is read.
     pub time: Option<f64>,
-    /// The file that the user named: a collection, or the file itself.
+    /// The file that the user gave: a collection, or the file itself.
     pub named: PathBuf,
 }
 
-/// All states of a file, with what is to be said of them.
+/// Lists the states of a file; notes say what is left out.
 ///
 /// # Errors
-/// What cannot be read.
+/// When a file cannot be read, or a collection is damaged or refers to itself.
 pub fn steps_of(path: &Path, notes: &mut Vec<String>) -> Result<Vec<Step>, ImportError> {
     let mut listing = Listing { above: vec![path.to_owned()], looked_at: 0, steps: Vec::new(), notes };
     listing.list(path, None)?;
@@ -133,9 +129,9 @@ pub fn steps_of(path: &Path, notes: &mut Vec<String>) -> Result<Vec<Step>, Impor
 
 /// States found so far.
 struct Listing<'a> {
-    /// Collections that are being read, each named by the one before it.
+    /// Collections that are being read, each referred to by the one before it.
     above: Vec<PathBuf>,
-    /// Files looked at, whatever they held.
+    /// Files looked at, whatever they hold.
     looked_at: usize,
     steps: Vec<Step>,
     notes: &'a mut Vec<String>,
@@ -143,7 +139,7 @@ struct Listing<'a> {
 
 impl Listing<'_> {
     fn list(&mut self, path: &Path, time: Option<f64>) -> Result<(), ImportError> {
-        let refused = |why: String| ImportError::table(path, why);
+        let refused = |why: String| ImportError::content(path, why);
         let kind = Kind::of(path)?;
         let step = |place: usize, time: Option<f64>| Step {
             file: path.to_owned(),
@@ -154,11 +150,11 @@ impl Listing<'_> {
         };
         self.looked_at += 1;
         if self.looked_at > MOST {
-            return Err(refused(format!("it names more than {MOST} files")));
+            return Err(refused(format!("it refers to more than {MOST} files")));
         }
         let members = match kind {
-            Kind::Collection => of_pvd(path, &read(path)?).map_err(refused)?,
-            Kind::Series => of_series(path, &read(path)?).map_err(refused)?,
+            Kind::Collection => of_pvd(path, &read_text(path)?).map_err(refused)?,
+            Kind::Series => of_series(path, &read_text(path)?).map_err(refused)?,
             Kind::Hdf5 => {
                 let times = Store::open(path).and_then(|mut store| store.times()).map_err(refused)?;
                 let of_place = |(place, own): (usize, &f64)| step(place, Some(*own));
@@ -167,8 +163,9 @@ impl Listing<'_> {
                 return Ok(());
             }
             Kind::Xdmf => {
+                let text = read_text(path)?;
                 let times =
-                    Document::of(path, &read(path)?).and_then(|file| file.times()).map_err(refused)?;
+                    xml::parse(&text).and_then(|document| xdmf::times_of(&document)).map_err(refused)?;
                 self.steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
                 return Ok(());
             }
@@ -180,14 +177,14 @@ impl Listing<'_> {
         self.members(path, time, &members)
     }
 
-    /// The states of the files that a collection names.
+    /// Lists the states of the files in a collection.
     fn members(&mut self, path: &Path, time: Option<f64>, members: &[Member]) -> Result<(), ImportError> {
-        let refused = |why: String| ImportError::table(path, why);
+        let refused = |why: String| ImportError::content(path, why);
         let (mut absent, mut twice) = (0, 0);
         let mut seen: HashMap<&Path, Option<f64>> = HashMap::new();
         for Member { file, time: own } in members {
             if self.above.contains(file) || self.above.len() > DEEPEST {
-                return Err(refused(format!("it names {}, which names it again", file.display())));
+                return Err(refused(format!("it refers to {}, which refers back to it", file.display())));
             }
             match seen.insert(file, *own) {
                 Some(other) if other == *own => {
@@ -195,7 +192,7 @@ impl Listing<'_> {
                     continue;
                 }
                 Some(_) => {
-                    let why = format!("it names {} at two times: one state has one time", file.display());
+                    let why = format!("it lists {} at two times: a state has one", file.display());
                     return Err(refused(why));
                 }
                 None => {}
@@ -209,22 +206,21 @@ impl Listing<'_> {
             self.above.pop();
         }
         if absent == members.len() {
-            return Err(refused(format!("none of the {absent} files that it names is there")));
+            return Err(refused(format!("none of its {absent} files is there")));
         }
         let all = members.len();
-        for (count, what) in
-            [(absent, "are not there, and left out"), (twice, "are named twice, and read once")]
+        for (count, what) in [(absent, "are missing and left out"), (twice, "are listed twice and read once")]
         {
             if count > 0 {
                 let path = path.display();
-                self.notes.push(format!("{path}: {count} of the {all} files that it names {what}"));
+                self.notes.push(format!("{path}: {count} of its {all} files {what}"));
             }
         }
         Ok(())
     }
 }
 
-/// Bytes of files together, each once.
+/// Total size of files in bytes, each counted once.
 fn size_of_all(files: &[PathBuf]) -> usize {
     let once: HashSet<&PathBuf> = files.iter().collect();
     let size = |file: &PathBuf| std::fs::metadata(file).map_or(0, |told| told.len());
@@ -232,110 +228,97 @@ fn size_of_all(files: &[PathBuf]) -> usize {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
-    input_file::read(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })
+    input_file::read(path).map_err(ImportError::io(path))
 }
 
-/// Reads states one after the other. A document or a store of many states is read once for all that follow each other,
-/// for a state takes a small part of it.
-#[derive(Default)]
-pub struct Frames {
-    open: Option<(PathBuf, Opened)>,
-    /// How many documents and stores were read.
-    pub opened: usize,
+/// The text of a file; what is not UTF-8 is replaced.
+fn read_text(path: &Path) -> Result<String, ImportError> {
+    let bytes = read(path)?;
+    Ok(String::from_utf8(bytes)
+        .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
 }
 
-/// A file of several states.
-enum Opened {
-    Hdf5(Store),
-    Xdmf(Document),
-}
-
-impl Frames {
-    /// Reads a state.
-    ///
-    /// # Errors
-    /// What is damaged, cut or claims too much.
-    pub fn frame(&mut self, step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
-        let path = step.file.as_path();
-        let refused = |why: String| ImportError::table(path, why);
-        if !matches!(step.kind, Kind::Hdf5 | Kind::Xdmf) {
-            return frame_of(step, wanted);
-        }
-        let (file, mut opened) = if let Some(open) = self.open.take().filter(|(file, _)| file == path) {
-            open
-        } else {
-            self.opened += 1;
-            let opened = if step.kind == Kind::Hdf5 {
-                Opened::Hdf5(Store::open(path).map_err(refused)?)
-            } else {
-                Opened::Xdmf(Document::of(path, &read(path)?).map_err(refused)?)
-            };
-            (path.to_owned(), opened)
-        };
-        let frame = match &mut opened {
-            Opened::Hdf5(store) => store.frame(step.place, wanted),
-            Opened::Xdmf(document) => document.frame(step.place, wanted),
-        };
-        self.open = Some((file, opened));
-        frame.map_err(refused)
-    }
-}
-
-/// Reads a state.
+/// Reads states one after the other and hands each over. A file with several states is opened once for all that follow
+/// each other.
 ///
 /// # Errors
-/// What is damaged, cut or claims too much.
-pub fn frame_of(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
-    let path = step.file.as_path();
-    let refused = |why: String| ImportError::table(path, why);
-    match step.kind {
-        Kind::Vtu => vtu::read_file(path, wanted).map_err(refused),
-        Kind::LegacyVtk => legacy_vtk::read(&read(path)?, wanted).map_err(refused),
-        Kind::Npz => numpy::read_npz(&read(path)?, wanted).map_err(refused),
-        Kind::Npy => {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            numpy::read_npy(&read(path)?, &name, wanted).map_err(refused)
+/// When a file is damaged, cut or claims too much memory, and what `take` returns.
+pub fn read_states(
+    steps: &[Step],
+    wanted: Wanted,
+    take: &mut dyn FnMut(&Step, Frame) -> Result<(), ImportError>,
+) -> Result<(), ImportError> {
+    for steps in steps.chunk_by(|one, next| one.file == next.file) {
+        let path = steps[0].file.as_path();
+        let refused = |why: String| ImportError::content(path, why);
+        match steps[0].kind {
+            Kind::Hdf5 => {
+                let mut store = Store::open(path).map_err(refused)?;
+                for step in steps {
+                    take(step, store.frame(step.place, wanted).map_err(refused)?)?;
+                }
+            }
+            Kind::Xdmf => {
+                let text = read_text(path)?;
+                let document = xml::parse(&text).map_err(refused)?;
+                let mut reader = xdmf::Reader::of(path, &document).map_err(refused)?;
+                for step in steps {
+                    take(step, reader.frame(step.place, wanted).map_err(refused)?)?;
+                }
+            }
+            kind => {
+                for step in steps {
+                    take(step, single_state(path, kind, wanted)?)?;
+                }
+            }
         }
-        Kind::Hdf5 | Kind::Xdmf => Frames::default().frame(step, wanted),
-        Kind::Blocks => blocks(path, wanted, 0, &mut None),
-        Kind::Table | Kind::Collection | Kind::Series => Err(refused("it holds no arrays".to_owned())),
     }
+    Ok(())
 }
 
-/// The blocks of the highest dimension, joined: loads on edges are blocks too, and repeat points. All blocks
-/// together, however deep, have the memory that their files may take.
+/// Reads a file with one state.
+fn single_state(path: &Path, kind: Kind, wanted: Wanted) -> Result<Frame, ImportError> {
+    let frame = match kind {
+        Kind::Vtu => vtu::read(&read(path)?, wanted),
+        Kind::LegacyVtk => legacy_vtk::read(&read(path)?, wanted),
+        Kind::Npz => numpy::read_npz(&read(path)?, wanted),
+        Kind::Npy => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            numpy::read_npy(&read(path)?, &name, wanted)
+        }
+        Kind::Blocks => return blocks(path, wanted, 0, &mut None),
+        _ => Err("it holds no arrays".to_owned()),
+    };
+    frame.map_err(|why| ImportError::content(path, why))
+}
+
+/// Joins the blocks of the highest dimension: loads on edges are blocks too, and repeat points. All blocks together,
+/// however deep, share the memory that their files may take.
 fn blocks(
     path: &Path,
     wanted: Wanted,
     depth: usize,
     budget: &mut Option<Budget>,
 ) -> Result<Frame, ImportError> {
-    let refused = |why: String| ImportError::table(path, why);
+    let refused = |why: String| ImportError::content(path, why);
     if depth > DEEPEST {
-        return Err(refused("its blocks name each other".to_owned()));
+        return Err(refused("its blocks refer to each other".to_owned()));
     }
     let mut parts = Vec::new();
-    let files = of_blocks(path, &read(path)?).map_err(refused)?;
+    let files = of_blocks(path, &read_text(path)?).map_err(refused)?;
     if budget.is_none() {
         *budget = Some(Budget::of_file(size_of_all(&files)));
     }
     let mut seen = HashSet::new();
     for file in files {
         if !seen.insert(file.clone()) {
-            return Err(refused(format!("it names the block {} twice", file.display())));
+            return Err(refused(format!("it lists the block {} twice", file.display())));
         }
-        // A block that holds nothing takes time all the same.
+        // An empty block takes time all the same.
         let least = 1 << 12;
-        let kind = Kind::of(&file)?;
-        let frame = match kind {
+        let frame = match Kind::of(&file)? {
             Kind::Blocks => blocks(&file, wanted, depth + 1, budget)?,
-            Kind::Collection | Kind::Series | Kind::Table => {
-                return Err(refused(format!("the block {} holds no arrays", file.display())));
-            }
-            _ => {
-                let step = Step { file: file.clone(), kind, place: 0, time: None, named: PathBuf::new() };
-                frame_of(&step, wanted)?
-            }
+            kind => single_state(&file, kind, wanted)?,
         };
         let taken = budget.as_mut().map_or(Ok(()), |budget| budget.take(frame.bytes().max(least)));
         taken.map_err(refused)?;
@@ -348,7 +331,7 @@ fn blocks(
     for (file, frame) in parts {
         if dimension(&frame) < highest {
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            notes.push(format!("left out the block {name}: its cells are edges or faces of others"));
+            notes.push(format!("left out the block {name}: its cells are edges or faces of other blocks"));
             continue;
         }
         match &mut whole {
@@ -356,7 +339,7 @@ fn blocks(
             None => whole = Some(frame),
         }
     }
-    let mut whole = whole.ok_or_else(|| refused("it names no block".to_owned()))?;
+    let mut whole = whole.ok_or_else(|| refused("it has no block".to_owned()))?;
     whole.notes.extend(notes);
     Ok(whole)
 }

@@ -1,177 +1,173 @@
-//! The payload of one `DataArray` of VTK's XML files: text, base64, appended, packed or not.
+//! The data of one `DataArray` of VTK's XML files: text, base64 or raw, inline or appended, packed or not.
 
-use crate::appended::{Appended, Raw};
-use crate::bytes::{Budget, Scalar, base64, counts, decode_text_as, unzlib};
+use crate::bytes::{Budget, Scalar, numbers_of_text, unpack, whole};
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
 
-/// How a file keeps its data.
+/// The tag of the appended data.
+const MARK: &[u8] = b"<AppendedData";
+
+/// Base64 of programs, which may leave out the padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
+/// Data that follow the XML, behind an underscore.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Appended<'a> {
+    bytes: &'a [u8],
+    is_raw: bool,
+}
+
+/// Splits a file into its XML and the appended data, which are not XML.
+pub(crate) fn split(bytes: &[u8]) -> Result<(&[u8], Option<Appended<'_>>), String> {
+    let Some(end) = bytes.windows(MARK.len()).position(|window| window == MARK) else {
+        return Ok((bytes, None));
+    };
+    let (xml, rest) = bytes.split_at(end);
+    let cut = || "its appended data are missing: the file is cut".to_owned();
+    let tag = rest.iter().position(|symbol| *symbol == b'>').ok_or_else(cut)?;
+    let underscore = rest[tag..].iter().position(|symbol| *symbol == b'_').ok_or_else(cut)?;
+    let is_raw = rest[..tag].windows(3).any(|window| window == b"raw");
+    Ok((xml, Some(Appended { bytes: &rest[tag + underscore + 1..], is_raw })))
+}
+
+/// How a file encodes its data.
 #[derive(Clone, Debug)]
-pub struct Payloads<'a> {
-    /// Whether the lowest byte stands first.
+pub(crate) struct Encoding<'a> {
+    /// Whether the lowest byte of a number comes first.
     pub is_little: bool,
-    /// Kind of the numbers in the headers.
+    /// Type of the numbers in the headers.
     pub header: Scalar,
     /// Whether blocks are packed by zlib.
     pub is_packed: bool,
-    /// What stands behind the underscore of `AppendedData`.
+    /// The appended data.
     pub appended: Option<Appended<'a>>,
 }
 
-/// Where the numbers of an array stand.
+/// Where the numbers of an array are.
 #[derive(Clone, Copy, Debug)]
-pub enum Place<'a> {
-    /// In a text, as written numbers.
-    Ascii(&'a [u8]),
-    /// In a text, as base64.
-    Inline(&'a [u8]),
-    /// So many bytes into the appended data.
+pub(crate) enum Place<'a> {
+    /// Written as text.
+    Text(&'a str),
+    /// In the XML, as base64.
+    Inline(&'a str),
+    /// In the appended data, from this byte on.
     Appended(usize),
 }
 
-impl Payloads<'_> {
-    /// The numbers at a place, each taken as what it stands for; `expected` of them, where that is known.
-    ///
-    /// # Errors
-    /// When they are damaged, cut, not as many as expected, or one stands for nothing.
-    pub fn take<T>(
+impl Encoding<'_> {
+    /// The numbers at a place. Any other count than the expected one is an error.
+    pub fn numbers(
         &self,
         place: Place,
         scalar: Scalar,
         expected: Option<usize>,
         budget: &mut Budget,
-        take: impl Fn(f64) -> Result<T, String>,
-    ) -> Result<Vec<T>, String> {
-        let all = if let Place::Ascii(text) = place {
-            budget.take(4 * text.len() as u64)?;
-            decode_text_as(text, expected.unwrap_or(usize::MAX), take)?
-        } else {
-            let bytes = self.bytes(place, budget)?;
-            if !bytes.len().is_multiple_of(scalar.size()) {
-                return Err(format!(
-                    "its {} bytes are no whole numbers of {} bytes",
-                    bytes.len(),
-                    scalar.size()
-                ));
+    ) -> Result<Vec<f64>, String> {
+        let joined: Vec<u8>;
+        let (data, is_raw) = match place {
+            Place::Text(text) => {
+                budget.take(4 * text.len() as u64)?;
+                return counted(numbers_of_text(text, expected.unwrap_or(usize::MAX))?, expected);
             }
-            budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
-            scalar.decode_as(&bytes, self.is_little, take)?
-        };
-        match expected {
-            Some(expected) if expected != all.len() => {
-                Err(format!("it holds {} numbers, and {expected} are declared", all.len()))
+            Place::Inline(text) => {
+                joined = text.bytes().filter(|symbol| !symbol.is_ascii_whitespace()).collect();
+                (joined.as_slice(), false)
             }
-            _ => Ok(all),
-        }
-    }
-
-    /// The bytes at a place, unpacked.
-    fn bytes<'b>(&'b self, place: Place<'b>, budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
-        match place {
-            Place::Ascii(text) => Ok(text.into()),
-            Place::Inline(text) => Ok(self.of_base64(text.trim_ascii(), budget)?.into()),
             Place::Appended(offset) => {
-                let beyond = |there: usize| {
-                    format!("an array begins at the byte {offset} of {there} appended ones: the file is cut")
-                };
-                match self.appended.ok_or("its data are appended, and nothing is")? {
-                    Appended::Raw(data) if offset <= data.count() => self.of_raw(data, offset, budget),
-                    Appended::Raw(data) => Err(beyond(data.count())),
-                    Appended::Base64(data) => {
-                        let data = data.get(offset..).ok_or_else(|| beyond(data.len()))?;
-                        Ok(self.of_base64(data, budget)?.into())
-                    }
-                }
+                let appended = self.appended.ok_or("its data are appended, and the file has none")?;
+                let data = appended.bytes.get(offset..).ok_or_else(|| {
+                    let there = appended.bytes.len();
+                    format!("an array begins at byte {offset} of {there} appended ones: the file is cut")
+                })?;
+                (data, appended.is_raw)
             }
+        };
+        let bytes = self.bytes(data, is_raw, budget)?;
+        if !bytes.len().is_multiple_of(scalar.size()) {
+            return Err(format!(
+                "it has {} bytes, which is not a multiple of the {} bytes of a number",
+                bytes.len(),
+                scalar.size()
+            ));
         }
+        budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
+        counted(scalar.decode(&bytes, self.is_little), expected)
     }
 
     fn sizes(&self, bytes: &[u8]) -> Result<Vec<usize>, String> {
-        counts(&self.header.decode(bytes, self.is_little))
+        whole(&self.header.decode(bytes, self.is_little))
     }
 
-    /// Bytes behind the header with which raw ones begin, unpacked.
-    fn of_raw<'b>(&self, data: Raw<'b>, offset: usize, budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
-        let width = self.header.size();
-        let first = self.sizes(&data.part(offset, width)?)?[0];
-        if !self.is_packed {
-            return data.part(offset + width, first);
-        }
-        let head = packed_head(first, width, data.count() - offset)?;
-        let header = self.sizes(&data.part(offset, head)?)?;
-        let packed = data.part(offset + head, blocks_of(&header)?)?;
-        Ok(unpacked(&header, &packed, budget)?.into())
-    }
-
-    /// Bytes of base64 that begins with a header, unpacked.
-    fn of_base64(&self, text: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
-        let spaced = text.iter().take(1 << 16).any(u8::is_ascii_whitespace) && self.appended.is_none();
-        let joined: Vec<u8>;
-        let text = if spaced {
-            joined = text.iter().copied().filter(|symbol| !symbol.is_ascii_whitespace()).collect();
-            &joined
-        } else {
-            text
-        };
-        let width = self.header.size();
-        let part = |from: usize, bytes: usize| {
-            let symbols = bytes.div_ceil(3).checked_mul(4).and_then(|symbols| symbols.checked_add(from));
-            let text = symbols.and_then(|end| text.get(from..end)).ok_or_else(|| {
-                let there = text.len().saturating_sub(from) / 4 * 3;
-                format!("{bytes} bytes are declared and {there} are there: the file is cut")
-            })?;
-            let found = base64(text)?;
-            match found.len().checked_sub(bytes) {
-                Some(_) => Ok(found),
-                None => Err(format!("{bytes} bytes are declared and {} are there", found.len())),
+    /// The unpacked bytes of data that begin with a header.
+    fn bytes<'b>(&self, data: &'b [u8], is_raw: bool, budget: &mut Budget) -> Result<Cow<'b, [u8]>, String> {
+        // Symbols that encode so many bytes.
+        let symbols = |bytes: usize| if is_raw { bytes } else { bytes.div_ceil(3).saturating_mul(4) };
+        let part = |from: usize, count: usize| -> Result<Cow<'b, [u8]>, String> {
+            let found = from.checked_add(symbols(count)).and_then(|end| data.get(from..end));
+            let cut = || {
+                let there = data.len().saturating_sub(from);
+                format!("{count} bytes are declared and {there} symbols are there: the file is cut")
+            };
+            let found = found.ok_or_else(cut)?;
+            if is_raw {
+                return Ok(found.into());
             }
+            let mut decoded =
+                BASE64.decode(found).map_err(|error| format!("its base64 is damaged: {error}"))?;
+            if decoded.len() < count {
+                return Err(cut());
+            }
+            decoded.truncate(count);
+            Ok(decoded.into())
         };
-        let first = self.sizes(&part(0, width)?[..width])?[0];
-        let symbols = width.div_ceil(3) * 4;
+        let width = self.header.size();
+        let first = self.sizes(&part(0, width)?)?[0];
         if !self.is_packed {
             // Some writers encode the header by itself, which then ends with padding.
-            let is_alone = text[..symbols].ends_with(b"=");
-            let (from, skip) = if is_alone { (symbols, 0) } else { (0, width) };
-            let length = first.checked_add(skip).ok_or("it declares more bytes than there can be")?;
-            let mut bytes = part(from, length)?;
-            bytes.truncate(length);
-            bytes.drain(..skip);
-            return Ok(bytes);
+            if is_raw || data[..symbols(width)].ends_with(b"=") {
+                return part(symbols(width), first);
+            }
+            let mut bytes = part(0, first.saturating_add(width))?.into_owned();
+            bytes.drain(..width);
+            return Ok(bytes.into());
         }
-        let head = packed_head(first, width, text.len())?;
-        let header = self.sizes(&part(0, head)?[..head])?;
-        let packed = part(head.div_ceil(3) * 4, blocks_of(&header)?)?;
-        unpacked(&header, &packed, budget)
+        // Number of blocks, size of a block, size of the last one, packed sizes.
+        let head = first.checked_add(3).and_then(|entries| entries.checked_mul(width));
+        let head = head.filter(|head| *head <= data.len().max(3 * width)).ok_or_else(|| {
+            format!("{first} packed blocks are declared in {} bytes: the file is damaged or cut", data.len())
+        })?;
+        let header = self.sizes(&part(0, head)?)?;
+        let (block, last, sizes) = (header[1], header[2], &header[3..]);
+        let total = sizes.iter().try_fold(0_usize, |sum, size| sum.checked_add(*size));
+        let total = total.ok_or("its packed blocks are larger than any file")?;
+        let packed = part(symbols(head), total)?;
+        let length_of = |place: usize| if place + 1 == sizes.len() && last > 0 { last } else { block };
+        // What all blocks claim together is taken before any is unpacked.
+        for place in 0..sizes.len() {
+            budget.take(length_of(place) as u64)?;
+        }
+        let mut bytes = Vec::new();
+        let mut rest = &packed[..];
+        for (place, size) in sizes.iter().enumerate() {
+            let (own, after) = rest.split_at(*size);
+            bytes.extend(unpack(own, length_of(place), true)?);
+            rest = after;
+        }
+        Ok(bytes.into())
     }
 }
 
-/// Bytes of the header of packed data: number of blocks, size of one, size of the last, packed sizes.
-fn packed_head(blocks: usize, width: usize, there: usize) -> Result<usize, String> {
-    let head = blocks.checked_add(3).and_then(|entries| entries.checked_mul(width));
-    head.filter(|head| *head <= there.max(3 * width)).ok_or_else(|| {
-        format!("{blocks} packed blocks are declared in {there} bytes: the file is damaged or cut")
-    })
-}
-
-/// Bytes of all packed blocks together.
-fn blocks_of(header: &[usize]) -> Result<usize, String> {
-    let sum = header[3..].iter().try_fold(0_usize, |sum, size| sum.checked_add(*size));
-    sum.ok_or_else(|| "the packed blocks are larger than any file".to_owned())
-}
-
-/// The blocks of a header, unpacked one after the other.
-fn unpacked(header: &[usize], packed: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
-    let (block, last, sizes) = (header[1], header[2], &header[3..]);
-    let length_of = |place: usize| if place + 1 == sizes.len() && last > 0 { last } else { block };
-    // What all blocks claim together, before any is unpacked.
-    for place in 0..sizes.len() {
-        budget.take(length_of(place) as u64)?;
+fn counted(numbers: Vec<f64>, expected: Option<usize>) -> Result<Vec<f64>, String> {
+    match expected {
+        Some(expected) if expected != numbers.len() => {
+            Err(format!("it holds {} numbers, and {expected} are declared", numbers.len()))
+        }
+        _ => Ok(numbers),
     }
-    let mut bytes = Vec::new();
-    let mut from = 0;
-    for (place, size) in sizes.iter().enumerate() {
-        let length = length_of(place);
-        unzlib(&packed[from..from + size], length, &mut bytes)?;
-        from += size;
-    }
-    Ok(bytes)
 }

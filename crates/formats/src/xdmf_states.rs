@@ -1,221 +1,145 @@
-//! The states of an XDMF document, each with its mesh: the one that it holds or names, or that of the state before it.
+//! The states of an XDMF document and the mesh of each: its own, one that it refers to, or that of the state before.
 //!
-//! A mesh is named as `OpenGeoSys` and meshio do, by an `XInclude` with the places of its elements
+//! A state refers to a mesh as `OpenGeoSys` and meshio do, by an `XInclude` with the position of its elements
 //! (`element(/1/1/2/1/2)`) or the name of a grid (`xpointer(//Grid[@Name="mesh"]/*[self::Topology or self::Geometry])`),
 //! or as XDMF itself does, by a `Reference` with a path (`/Xdmf/Domain/Grid[1]/Geometry`).
 
-use crate::bytes::short;
-use crate::xml::Element;
+use crate::bytes::excerpt;
+use crate::xml::{all, attribute, child};
+use roxmltree::{Document, Node};
 use std::collections::HashMap;
 
-/// Places among children, from the root on.
-type Place = Vec<usize>;
+/// Parts of a mesh.
+const PARTS: [&str; 2] = ["Geometry", "Topology"];
 
 /// A state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State<'a> {
     /// Its grid.
-    pub grid: Place,
-    /// The places of its points, where there are some.
-    pub geometry: Option<Place>,
-    /// Its cells, where there are some.
-    pub topology: Option<Place>,
+    pub grid: Node<'a, 'a>,
+    /// The places of its points, if there are any.
+    pub geometry: Option<Node<'a, 'a>>,
+    /// Its cells, if there are any.
+    pub topology: Option<Node<'a, 'a>>,
 }
 
-/// The states of a document, in its order.
-///
-/// # Errors
-/// When there is none, or one names a mesh that is not there.
-pub fn states_of(root: &Element) -> Result<Vec<State>, String> {
-    let mut grids = Vec::new();
-    grids_below(root, &mut Vec::new(), &mut grids);
-    let mut by_name = HashMap::new();
-    for place in &grids {
-        if let Some(grid) = root.at(place) {
-            by_name.entry(grid.attribute("Name")).or_insert(place);
-        }
-    }
-    let meshes = Meshes { root, by_name };
-    let is_collection = |grid: &Element| ["Collection", "Tree"].contains(&grid.attribute("GridType"));
-    let singles: Vec<(&Place, &Element)> = grids
-        .iter()
-        .filter_map(|place| Some((place, root.at(place)?)))
-        .filter(|(_, grid)| !is_collection(grid))
-        .collect();
-    // meshio keeps the mesh as a grid of its own beside the collection.
-    let has_times = singles.iter().any(|(_, grid)| grid.child("Time").is_some());
-    let alone = [meshes.only("Geometry"), meshes.only("Topology")];
-    let mut before: [Option<Place>; 2] = [None, None];
+/// The states of a document, in its order. Each reference must point at a mesh.
+pub(crate) fn states_of<'a>(document: &'a Document<'a>) -> Result<Vec<State<'a>>, String> {
+    let is_state = |grid: &Node| !["Collection", "Tree"].contains(&attribute(*grid, "GridType"));
+    let grids: Vec<Node> = all(document.root(), "Grid").filter(is_state).collect();
+    // meshio writes the mesh as a grid of its own beside the collection.
+    let has_times = grids.iter().any(|grid| child(*grid, "Time").is_some());
+    let only = PARTS.map(|name| {
+        let mut parts = all(document.root(), name);
+        parts.next().filter(|_| parts.next().is_none())
+    });
+    let mut found_before = HashMap::new();
+    let mut latest = [None, None];
     let mut states = Vec::new();
-    for (place, grid) in singles {
-        let own = meshes.of(place, grid)?;
-        for (own, before) in own.into_iter().zip(&mut before) {
-            *before = own.or_else(|| before.take());
+    for grid in grids {
+        for part in mesh_parts(grid, &mut found_before)? {
+            latest[usize::from(part.has_tag_name(PARTS[1]))] = Some(part);
         }
-        if has_times && grid.child("Time").is_none() {
-            continue;
+        if !has_times || child(grid, "Time").is_some() {
+            let [geometry, topology] = [0, 1].map(|part| latest[part].or(only[part]));
+            states.push(State { grid, geometry, topology });
         }
-        let [geometry, topology] = [0, 1].map(|part| before[part].clone().or_else(|| alone[part].clone()));
-        states.push(State { grid: place.clone(), geometry, topology });
     }
     if states.is_empty() { Err("it has no grid".to_owned()) } else { Ok(states) }
 }
 
-/// Places of all grids, in the order of the document.
-fn grids_below(element: &Element, at: &mut Place, all: &mut Vec<Place>) {
-    for (number, child) in element.children.iter().enumerate() {
-        at.push(number);
-        if child.name == "Grid" {
-            all.push(at.clone());
-        }
-        grids_below(child, at, all);
-        at.pop();
-    }
-}
-
-/// Where meshes are found.
-struct Meshes<'a> {
-    root: &'a Element,
-    by_name: HashMap<&'a str, &'a Place>,
-}
-
-impl Meshes<'_> {
-    /// Geometry and topology that a grid holds or names.
-    fn of(&self, place: &Place, grid: &Element) -> Result<[Option<Place>; 2], String> {
-        let mut own = [None, None];
-        for (number, child) in grid.children.iter().enumerate() {
-            let named = if child.name.ends_with("include") {
-                self.named(child.attribute("xpointer"))?
-            } else if part_of(child).is_some() && child.attributes.contains_key("Reference") {
-                let typed = Some(child.attribute("Reference")).filter(|typed| *typed != "XML");
-                self.named(typed.unwrap_or(child.text.trim()))?
-            } else {
-                vec![[&place[..], &[number]].concat()]
-            };
-            for place in named {
-                if let Some(part) = self.root.at(&place).and_then(part_of) {
-                    own[part] = Some(place);
+/// Geometry and topology that a grid contains or refers to.
+fn mesh_parts<'a>(
+    grid: Node<'a, 'a>,
+    found_before: &mut HashMap<&'a str, Vec<Node<'a, 'a>>>,
+) -> Result<Vec<Node<'a, 'a>>, String> {
+    let mut parts = Vec::new();
+    for element in grid.children().filter(Node::is_element) {
+        let pointer = if element.has_tag_name("include") {
+            attribute(element, "xpointer")
+        } else if !is_part(&element) {
+            continue;
+        } else {
+            match element.attribute("Reference") {
+                None => {
+                    parts.push(element);
+                    continue;
                 }
+                Some("XML") => element.text().unwrap_or_default().trim(),
+                Some(path) => path,
             }
-        }
-        Ok(own)
-    }
-
-    /// The only element of a name in the document.
-    fn only(&self, name: &str) -> Option<Place> {
-        let mut all = Vec::new();
-        self.root.all(name, &mut all);
-        let [element] = all[..] else { return None };
-        find(self.root, element, &mut Vec::new())
-    }
-
-    /// The elements that a text names.
-    fn named(&self, text: &str) -> Result<Vec<Place>, String> {
-        let inside = |function: &str| text.strip_prefix(function).and_then(|rest| rest.strip_suffix(')'));
-        let found = match (inside("element("), inside("xpointer(")) {
-            (Some(places), _) => self.by_places(places),
-            (None, Some(path)) => self.by_path(path),
-            (None, None) => self.by_path(text),
         };
-        let is_mesh = |places: &Vec<Place>| !places.is_empty();
-        found
-            .filter(is_mesh)
-            .ok_or_else(|| format!("a state names its mesh by `{}`, which is not there", short(text)))
-    }
-
-    /// `/1/1/2/1/2`: counted from 1, the root first.
-    fn by_places(&self, text: &str) -> Option<Vec<Place>> {
-        let numbers: Option<Place> = text
-            .strip_prefix('/')?
-            .split('/')
-            .map(|typed| typed.parse::<usize>().ok()?.checked_sub(1))
-            .collect();
-        let numbers = numbers?;
-        let place = numbers.strip_prefix(&[0])?.to_vec();
-        self.root.at(&place).map(|element| parts_of(&place, element))
-    }
-
-    /// `/Xdmf/Domain/Grid[2]/Geometry`, or `//Grid[@Name="mesh"]` and on.
-    fn by_path(&self, text: &str) -> Option<Vec<Place>> {
-        let (mut place, rest) = match text.strip_prefix("//Grid[@Name=") {
-            Some(rest) => {
-                let quote = rest.chars().next().filter(|quote| ['"', '\''].contains(quote))?;
-                let (name, rest) = rest.get(1..)?.split_once(quote)?;
-                ((*self.by_name.get(name)?).clone(), rest.strip_prefix(']')?)
-            }
-            None => (Vec::new(), text.strip_prefix(&format!("/{}", self.root.name))?),
-        };
-        for step in rest.split('/').filter(|step| !step.is_empty()) {
-            let element = self.root.at(&place)?;
-            if step.starts_with('*') {
-                return Some(parts_of(&place, element));
-            }
-            place.push(child_of(element, step)?);
+        if !found_before.contains_key(pointer) {
+            let found = referenced(grid.document(), pointer).map(parts_of).unwrap_or_default();
+            found_before.insert(pointer, found);
         }
-        let element = self.root.at(&place)?;
-        Some(parts_of(&place, element))
+        let found = &found_before[pointer];
+        if found.is_empty() {
+            return Err(format!("a state refers to the mesh `{}`, which is missing", excerpt(pointer)));
+        }
+        parts.extend(found);
     }
+    Ok(parts)
 }
 
-/// An element that is a part of a mesh, or those parts in it.
-fn parts_of(place: &Place, element: &Element) -> Vec<Place> {
-    if part_of(element).is_some() {
-        return vec![place.clone()];
+/// The element that a pointer or a path leads to.
+fn referenced<'a>(document: &'a Document<'a>, pointer: &str) -> Option<Node<'a, 'a>> {
+    let inside = |function: &str| pointer.strip_prefix(function)?.strip_suffix(')');
+    if let Some(places) = inside("element(") {
+        // `/1/1/2`: counted from 1, the root first.
+        let step = |element: Node<'a, 'a>, place: &str| {
+            let place = place.parse::<usize>().ok()?.checked_sub(1)?;
+            element.children().filter(Node::is_element).nth(place)
+        };
+        return places.strip_prefix('/')?.split('/').try_fold(document.root(), step);
     }
-    let parts = element.children.iter().enumerate().filter(|(_, child)| part_of(child).is_some());
-    parts.map(|(number, _)| [&place[..], &[number]].concat()).collect()
-}
-
-/// Which part of a mesh an element is.
-fn part_of(element: &Element) -> Option<usize> {
-    ["Geometry", "Topology"].iter().position(|name| *name == element.name)
-}
-
-/// The child that a step of a path names: `Grid`, `Grid[2]`, `Grid[@Name="mesh"]`.
-fn child_of(element: &Element, step: &str) -> Option<usize> {
-    let (name, which) = step.split_once('[').map_or((step, None), |(name, which)| (name, Some(which)));
-    let mut alike = element.children.iter().enumerate().filter(|(_, child)| child.name == name);
-    let found = match which.map(|which| which.trim_end_matches(']')) {
-        None => alike.next(),
-        Some(which) => match which.strip_prefix("@Name=") {
-            Some(quoted) => {
-                alike.find(|(_, child)| child.attribute("Name") == quoted.trim_matches(['"', '\'']))
-            }
-            None => alike.nth(which.parse::<usize>().ok()?.checked_sub(1)?),
-        },
+    let path = inside("xpointer(").unwrap_or(pointer);
+    let (start, rest) = match path.strip_prefix("//") {
+        Some(path) => {
+            let end = path.find(']').map_or(path.len(), |end| end + 1);
+            let (step, rest) = path.split_at(end);
+            (select(document.root().descendants(), step)?, rest)
+        }
+        None => (document.root(), path),
     };
-    found.map(|(number, _)| number)
+    let steps = rest.split('/').filter(|step| !step.is_empty()).take_while(|step| !step.starts_with('*'));
+    steps.into_iter().try_fold(start, |element, step| select(element.children(), step))
 }
 
-/// The place of an element below another.
-fn find(below: &Element, wanted: &Element, at: &mut Place) -> Option<Place> {
-    for (number, child) in below.children.iter().enumerate() {
-        at.push(number);
-        if std::ptr::eq(child, wanted) {
-            return Some(at.clone());
+/// The element that a step of a path selects: `Grid`, `Grid[2]`, `Grid[@Name="mesh"]`.
+fn select<'a>(mut elements: impl Iterator<Item = Node<'a, 'a>>, step: &str) -> Option<Node<'a, 'a>> {
+    let (name, which) = step.trim_end_matches(']').split_once('[').unwrap_or((step, "1"));
+    let mut alike = elements.by_ref().filter(|element| element.has_tag_name(name));
+    match which.strip_prefix("@Name=") {
+        Some(quoted) => {
+            let wanted = quoted.trim_matches(['"', '\'']);
+            alike.find(|element| attribute(*element, "Name") == wanted)
         }
-        if let Some(found) = find(child, wanted, at) {
-            return Some(found);
-        }
-        at.pop();
+        None => alike.nth(which.parse::<usize>().ok()?.checked_sub(1)?),
     }
-    None
+}
+
+/// An element that is a part of a mesh, or those of its children that are.
+fn parts_of<'a>(element: Node<'a, 'a>) -> Vec<Node<'a, 'a>> {
+    if is_part(&element) { vec![element] } else { element.children().filter(is_part).collect() }
+}
+
+fn is_part(element: &Node) -> bool {
+    PARTS.iter().any(|name| element.has_tag_name(*name))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::xml::tree_of;
+    use crate::xml::parse;
 
-    /// Of each state the words of its geometry and of its topology.
+    /// The texts of the geometry and the topology of each state.
     fn meshes(grids: &str) -> Result<Vec<[String; 2]>, String> {
-        let text = format!("<Xdmf><Domain><Information/>{grids}</Domain></Xdmf>");
-        let root = tree_of(text.as_bytes()).expect("sound XML");
-        let words = |place: &Option<Place>| {
-            place.as_ref().map_or("none".to_owned(), |place| root.at(place).expect("an element").text.clone())
-        };
-        states_of(&root)
-            .map(|states| states.iter().map(|one| [words(&one.geometry), words(&one.topology)]).collect())
+        let text = format!("<Xdmf xmlns:xi=\"x\"><Domain><Information/>{grids}</Domain></Xdmf>");
+        let document = parse(&text).expect("XML");
+        let text = |part: Option<Node>| part.map_or("none", |part| part.text().expect("a text")).to_owned();
+        let states = states_of(&document)?;
+        Ok(states.iter().map(|state| [text(state.geometry), text(state.topology)]).collect())
     }
 
     const HELD: &str = "<Grid Name=\"one\"><Time Value=\"1\"/><Geometry>a</Geometry><Topology>A</Topology></Grid>\
@@ -262,7 +186,7 @@ mod tests {
         assert_eq!(meshes(&named).expect("a state"), [["a", "A"]]);
         for absent in ["element(/1/1/9/2)", "xpointer(//Grid[@Name='mash']/*)", "range(1)", "element(/2/1)"] {
             let grids = format!("{HELD}<Grid><Time Value=\"3\"/><xi:include xpointer=\"{absent}\"/></Grid>");
-            assert!(meshes(&grids).is_err_and(|why| why.contains("which is not there")), "{absent}");
+            assert!(meshes(&grids).is_err_and(|why| why.contains("which is missing")), "{absent}");
         }
     }
 }

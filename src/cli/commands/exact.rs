@@ -2,37 +2,32 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::overrides;
-use crate::cli::overrides::StudyLines;
+use crate::cli::overrides::{Assignments, StudyLines, numbers};
 use crate::cli::stream::{print_data, say};
-use crate::study::check::Purpose;
 use clap::ValueEnum;
 use oedometer_exact::consolidation;
-use oedometer_exact::cosine_layer::LayerFields;
 use oedometer_exact::field_values::Accuracy;
 use oedometer_exact::mandel::Mandel;
-use oedometer_exact::manufactured::PlaneValues;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
 
-/// Distances from the middle of a slab printed where none are asked for.
+/// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
-/// Depths printed where none are asked for.
+/// Depths if none are given.
 const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
+/// Effect of round-off on the fields over the load: at most 7.5e-15 was seen against values of 40 digits.
+const ROUND_OFF: f64 = 1e-14;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// One row a time factor and depth, 17 significant digits.
+    /// One row per time factor and depth, 17 significant digits
     Csv,
-    /// The same with terms used and tail bounds.
+    /// The same with terms used and tail bounds
     Json,
 }
-
-/// What round-off does to the fields over the load: 7.5e-15 is the most seen against values of 40 digits.
-const ROUND_OFF: f64 = 1e-14;
 
 /// Arguments of `exact`.
 #[derive(Debug, clap::Args)]
@@ -52,12 +47,8 @@ pub struct Arguments {
     /// middle of Mandel's slab
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     x: Option<String>,
-    /// Older name of --x, under which the column is called xi
-    #[arg(long, value_name = "LIST", hide = true, conflicts_with = "x", allow_hyphen_values = true)]
-    along: Option<String>,
-    /// Set a dotted key of a study file, like material.porosity=0.45
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    assignments: Vec<String>,
+    #[command(flatten)]
+    set: Assignments,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
@@ -72,67 +63,13 @@ impl serde::Serialize for PrintedRow {
     }
 }
 
-/// The same of a motion that was chosen, over the side of its square and the amplitude of its pressure.
-fn motion_columns(fields: &PlaneValues, parameters: &ColumnParameters) -> [(&'static str, f64); 5] {
-    let [[xx, xy], [_, yy]] = fields.effective_stress.map(|row| row.map(|stress| stress / parameters.load));
-    let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
-    [
-        ("horizontal_displacement_ratio", horizontal),
-        ("vertical_displacement_ratio", vertical),
-        ("effective_stress_ratio_xx", xx),
-        ("effective_stress_ratio_yy", yy),
-        ("effective_stress_ratio_xy", xy),
-    ]
-}
-
-/// What `--x` adds: the distance, displacements over the height, effective stresses over the load.
-fn plane_columns(fields: &LayerFields, parameters: &ColumnParameters) -> [(&'static str, f64); 5] {
-    let [xx, yy, _, xy] = fields.effective_stress.map(|stress| stress / parameters.load);
-    let [horizontal, vertical] = fields.displacement.map(|component| component / parameters.height);
-    [
-        ("horizontal_displacement_ratio", horizontal),
-        ("vertical_displacement_ratio", vertical),
-        ("effective_stress_ratio_xx", xx),
-        ("effective_stress_ratio_yy", yy),
-        ("effective_stress_ratio_xy", xy),
-    ]
-}
-
-/// Places along a layer, with the name of their column.
-struct Distances {
-    /// As it is called in the header.
-    column: &'static str,
-    /// `x/L` from the crest of the load.
-    ratios: Vec<f64>,
-}
-
-impl Distances {
-    /// Those that were asked for, of a solution that has them.
-    fn of(arguments: &Arguments, kind: ReferenceKind) -> anyhow::Result<Option<Self>> {
-        let (option, column, typed) = match (&arguments.x, &arguments.along) {
-            (Some(typed), _) => ("--x", "x", typed),
-            (None, Some(typed)) => ("--along", "xi", typed),
-            (None, None) => return Ok(None),
-        };
-        let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
-        if !is_layer && !kind.is_manufactured() {
-            return Err(Ended::usage(format!(
-                "`{option}` is of a layer: `{kind}` depends on the depth alone; leave it out, or ask for `{}` or `{}`",
-                ReferenceKind::CosineLayer,
-                ReferenceKind::Mandel
-            )));
-        }
-        Ok(Some(Self { column, ratios: overrides::numbers(option, typed)? }))
-    }
-}
-
-/// Truncation at one time factor.
+/// Truncation and round-off at one time factor.
 #[derive(serde::Serialize)]
 struct Truncation {
     time_factor: f64,
     terms: usize,
     tail_bound: f64,
-    /// What round-off does to the fields over the load.
+    /// Effect of round-off on the fields over the load.
     round_off: f64,
 }
 
@@ -153,28 +90,43 @@ struct ExactJson<'a> {
 /// Evaluates and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
-        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-        Ended::usage(format!(
-            "no exact solution is called `{}`; there are {}",
-            arguments.scene,
-            names.join(", ")
-        ))
+        let names = ReferenceKind::ALL.map(ReferenceKind::name).join(", ");
+        Ended::usage(format!("no exact solution is called `{}`; there are {names}", arguments.scene))
     })?;
-    let (parameters, kind) = parameters_of(kind, &arguments.assignments)?;
-    let depths = overrides::numbers("--zeta", &arguments.zeta)?;
+    let (parameters, kind) = parameters_of(kind, &arguments.set)?;
     let time_factors = match &arguments.degree {
-        Some(degrees) => time_factors_of(kind, &parameters, &overrides::numbers("--degree", degrees)?)?,
-        None => overrides::numbers("--time-factor", &arguments.time_factor)?,
+        Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
+        None => numbers("--time-factor", &arguments.time_factor)?,
     };
-    if kind == ReferenceKind::Mandel {
-        let (rows, accuracy) = slab_rows(&Mandel::new(&parameters)?, &time_factors, arguments)?;
-        return print(kind.name(), &rows, &accuracy, arguments.format);
+    let (rows, accuracy) = if kind == ReferenceKind::Mandel {
+        slab_rows(&parameters, &time_factors, arguments)?
+    } else {
+        column_rows(kind, &parameters, &time_factors, arguments)?
+    };
+    print(kind.name(), &rows, &accuracy, arguments.format)?;
+    Ok(Exit::Pass)
+}
+
+/// The rows over times and depths, and with `--x` over distances.
+fn column_rows(
+    kind: ReferenceKind,
+    parameters: &ColumnParameters,
+    time_factors: &[f64],
+    arguments: &Arguments,
+) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
+    let depths = numbers("--zeta", &arguments.zeta)?;
+    let distances = arguments.x.as_ref().map(|typed| numbers("--x", typed)).transpose()?;
+    let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
+    if distances.is_some() && !is_layer && !kind.is_manufactured() {
+        return Err(Ended::usage(format!(
+            "`--x` is for layers, and `{kind}` depends on the depth alone: leave it out, or ask for `{}` or `{}`",
+            ReferenceKind::CosineLayer,
+            ReferenceKind::Mandel
+        )));
     }
-    let distances = Distances::of(arguments, kind)?;
-    let reference = Reference::new(kind, &parameters, &time_factors)?;
-    let mut rows = Vec::new();
-    let mut accuracy = Vec::new();
-    for time_factor in time_factors {
+    let reference = Reference::new(kind, parameters, time_factors)?;
+    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
+    for &time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
         let row = |zeta: f64, pressure: f64| {
@@ -187,48 +139,54 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             ]
         };
         let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
-        for zeta in &depths {
-            let fields = reference.fields(time_factor, *zeta)?;
-            if let (Some(motion), Some(distances)) = (reference.manufactured(), &distances) {
-                for ratio in &distances.ratios {
-                    let at = motion.plane_fields(time_factor, [*ratio, 1.0 - zeta])?;
-                    let mut columns = row(*zeta, at.pressure);
-                    columns.push((distances.column, *ratio));
-                    columns.extend(motion_columns(&at, &parameters));
-                    rows.push(PrintedRow(columns));
-                }
-                continue;
-            }
-            let (Some(state), Some(distances)) = (&state, &distances) else {
-                rows.push(PrintedRow(row(*zeta, fields.pressure)));
+        for &zeta in &depths {
+            let Some(distances) = &distances else {
+                rows.push(PrintedRow(row(zeta, reference.fields(time_factor, zeta)?.pressure)));
                 continue;
             };
-            for ratio in &distances.ratios {
-                let at = state.fields(ratio * parameters.length, (1.0 - zeta) * parameters.height)?;
-                let mut columns = row(*zeta, at.pressure);
-                columns.push((distances.column, *ratio));
-                columns.extend(plane_columns(&at, &parameters));
+            for &distance in distances {
+                let (pressure, displacement, [xx, yy, xy]) = if let Some(motion) = reference.manufactured() {
+                    let at = motion.plane_fields(time_factor, [distance, 1.0 - zeta])?;
+                    let [[xx, xy], [_, yy]] = at.effective_stress;
+                    (at.pressure, at.displacement, [xx, yy, xy])
+                } else if let Some(state) = &state {
+                    let height = (1.0 - zeta) * parameters.height;
+                    let at = state.fields(distance * parameters.length, height)?;
+                    let [xx, yy, _, xy] = at.effective_stress;
+                    (at.pressure, at.displacement, [xx, yy, xy])
+                } else {
+                    continue;
+                };
+                let mut columns = row(zeta, pressure);
+                columns.extend([
+                    ("x", distance),
+                    ("horizontal_displacement_ratio", displacement[0] / parameters.height),
+                    ("vertical_displacement_ratio", displacement[1] / parameters.height),
+                    ("effective_stress_ratio_xx", xx / parameters.load),
+                    ("effective_stress_ratio_yy", yy / parameters.load),
+                    ("effective_stress_ratio_xy", xy / parameters.load),
+                ]);
                 rows.push(PrintedRow(columns));
             }
         }
-        let truncation = reference.accuracy(time_factor)?;
-        accuracy.push(Truncation::of(time_factor, truncation));
+        accuracy.push(Truncation::of(time_factor, reference.accuracy(time_factor)?));
     }
-    print(reference.name(), &rows, &accuracy, arguments.format)
+    Ok((rows, accuracy))
 }
 
 /// The rows of Mandel's slab, which depend on the distance from its middle.
 fn slab_rows(
-    slab: &Mandel,
+    parameters: &ColumnParameters,
     time_factors: &[f64],
     arguments: &Arguments,
 ) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
-    if arguments.zeta != DEFAULT_DEPTHS || arguments.along.is_some() {
+    if arguments.zeta != DEFAULT_DEPTHS {
         return Err(Ended::usage(
             "the fields of `mandel` depend on the distance from the middle: give it by `--x`",
         ));
     }
-    let distances = overrides::numbers("--x", arguments.x.as_deref().unwrap_or(DEFAULT_DISTANCES))?;
+    let slab = Mandel::new(parameters)?;
+    let distances = numbers("--x", arguments.x.as_deref().unwrap_or(DEFAULT_DISTANCES))?;
     let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
     for &time_factor in time_factors {
         for &distance in &distances {
@@ -247,45 +205,33 @@ fn slab_rows(
     Ok((rows, accuracy))
 }
 
-/// Prints rows, and how far they can be trusted.
-fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Format) -> anyhow::Result<Exit> {
+/// Prints rows and their accuracy.
+fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Format) -> anyhow::Result<()> {
     match format {
         Format::Csv => {
             print_data(&rows_csv(rows)?)?;
-            for one in accuracy {
+            for Truncation { time_factor, terms, tail_bound, round_off } in accuracy {
                 say!(
-                    "T_v = {}: {} terms, tail below {:.1e}, round-off below {:.0e}",
-                    one.time_factor,
-                    one.terms,
-                    one.tail_bound,
-                    one.round_off
+                    "T_v = {time_factor}: {terms} terms, tail below {tail_bound:.1e}, round-off below {round_off:.0e}"
                 );
             }
+            Ok(())
         }
-        Format::Json => {
-            let json = ExactJson { reference: name, rows, accuracy };
-            print_data(&json_of(&json)?)?;
-        }
+        Format::Json => print_data(&json_of(&ExactJson { reference: name, rows, accuracy })?),
     }
-    Ok(Exit::Pass)
 }
 
-/// The column of the seed with the assignments, judged as a study's, and the reference with the
+/// The parameters of the default column with the assignments, checked like a study's, and the reference for the
 /// equations that they choose.
 pub fn parameters_of(
     kind: ReferenceKind,
-    assignments: &[String],
+    set: &Assignments,
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
-    let scene = SceneKind::of_solution(kind);
-    let mut lines = StudyLines::of("exact", scene.name(), "the solution's name")?;
-    lines.assign(assignments)?;
-    lines.refuse_without_effect(&overrides::OF_RUNS)?;
-    let study = lines.study_for(Purpose::Theory, ["method = [\"MPM\"]", "cells = [1]"].map(str::to_owned))?;
-    let Some(planned) = study.planned.first() else {
-        return Err(Ended::usage("the assignments leave no column"));
-    };
-    let soil = &planned.case.material;
-    Ok((column_parameters(&planned.case.column, soil), kind.of_soil(soil)))
+    let mut lines = StudyLines::of("exact", SceneKind::of_solution(kind).name(), "the solution's name")?;
+    lines.assign(set)?;
+    let study = lines.theory_study()?;
+    let case = &study.planned[0].case;
+    Ok((column_parameters(&case.column, &case.material), kind.of_soil(&case.material)))
 }
 
 /// Time factors at which degrees of consolidation are reached.
@@ -296,7 +242,7 @@ fn time_factors_of(
 ) -> anyhow::Result<Vec<f64>> {
     let storage = match kind {
         ReferenceKind::Terzaghi => parameters.storage_ratio(),
-        // Xie & Leo's degree by settlement is Terzaghi's.
+        // Xie & Leo's degree by settlement equals Terzaghi's.
         ReferenceKind::TerzaghiIncompressible | ReferenceKind::XieLeo => 1.0,
         _ => return Err(Ended::usage(format!("`{kind}` has no time factor for a degree in closed form"))),
     };
@@ -316,7 +262,7 @@ fn time_factors_of(
     degrees.iter().map(one).collect()
 }
 
-/// The rows as CSV: what was asked for as it is, what was found with 17 significant digits.
+/// The rows as CSV: the first two columns as requested, results with 17 significant digits.
 fn rows_csv(rows: &[PrintedRow]) -> anyhow::Result<String> {
     let names = rows.first().into_iter().flat_map(|row| row.0.iter().map(|(name, _)| *name));
     let fields = |row: &PrintedRow| {

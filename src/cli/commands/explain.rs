@@ -1,5 +1,5 @@
-//! `oedometer explain`: which norm and place carries the error of a case, how it stands among the
-//! other levels, what changed against the golden values, and the command that runs it again.
+//! `oedometer explain`: which norm and place the error of a case comes from, how it compares with the other levels,
+//! what changed against the golden values, and the command that runs it again.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::stop;
@@ -19,7 +19,7 @@ use crate::render::tables::explanation;
 use crate::study::check::Study;
 use std::path::{Path, PathBuf};
 
-/// Cases that are named where a description fits several.
+/// Cases that a message lists if a description fits several.
 const MOST_NAMED: usize = 10;
 
 /// Arguments of `explain`.
@@ -27,11 +27,11 @@ const MOST_NAMED: usize = 10;
 pub struct Arguments {
     /// Case: the first digits of its hash, words of its label, or a golden value as `check` names it
     case: String,
-    /// Study files or names of shipped studies; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one if none is given
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Folder of results: a record that this program made is taken from there, else the case is solved; no other program
-    /// is ever started
+    /// Folder of results: a record that this program made is taken from there, or else the case is solved; no other
+    /// program is ever started
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
@@ -43,7 +43,7 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-/// Finds, runs where it must, and explains.
+/// Finds the case, solves it if there is no record, and explains.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
     let (description, focus) = match arguments.case.split_once(" | ") {
@@ -70,49 +70,41 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
-/// The one case that a description fits.
+/// The only case that a description fits.
 fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a Study, &'a Case)> {
     let all =
         studies.iter().flat_map(|study| study.cases(Tier::Full).into_iter().map(move |case| (study, case)));
     let all: Vec<(&Study, &Case)> = all.collect();
-    let exact: Vec<_> = all
-        .iter()
-        .filter(|(study, case)| {
-            let label = case.label();
-            label == description || format!("{}/{label}", study.name) == description
-        })
-        .collect();
-    let has_words = |told: &str| {
+    let is_label = |(study, case): &&(&Study, &Case)| {
+        let label = case.label();
+        label == description || format!("{}/{label}", study.name) == description
+    };
+    let has_words = |text: &str| {
         description.split_whitespace().all(|word| {
-            told.split([' ', '/']).any(|part| part == word || part.trim_matches(['(', ')', ',']) == word)
+            text.split([' ', '/']).any(|part| part == word || part.trim_matches(['(', ')', ',']) == word)
         })
     };
-    let by_label = |(_, case): &&(&Study, &Case)| has_words(&format!("{} {}", case.label(), case.method));
-    let by_words = |(study, case): &&(&Study, &Case)| {
+    let has_words_of_case =
+        |(_, case): &&(&Study, &Case)| has_words(&format!("{} {}", case.label(), case.method));
+    let has_hash_or_words = |(study, case): &&(&Study, &Case)| {
         case.hash().starts_with(description)
             || has_words(&format!("{}/{} {}", study.name, case.label(), case.method))
     };
-    let mut fitting = exact;
-    // A study may be called as one of its methods: the case's own words go first.
+    // A study may have the name of one of its methods, so the case's own words come first.
+    let mut fitting: Vec<_> = all.iter().filter(is_label).collect();
     if fitting.is_empty() {
-        fitting = all.iter().filter(by_label).collect();
+        fitting = all.iter().filter(has_words_of_case).collect();
     }
     if fitting.is_empty() {
-        fitting = all.iter().filter(by_words).collect();
+        fitting = all.iter().filter(has_hash_or_words).collect();
     }
     match fitting.as_slice() {
-        [] => Err(Ended::with(
-            Exit::NothingSelected,
-            match studies {
-                [study] => {
-                    format!(
-                        "no case of `{}` is described by `{description}`: `oedometer plan` lists them",
-                        study.name
-                    )
-                }
-                _ => format!("no case is described by `{description}`: `oedometer plan` lists them all"),
-            },
-        )),
+        [] => {
+            let whose = if let [study] = studies { format!(" of `{}`", study.name) } else { String::new() };
+            let reason =
+                format!("no case{whose} is described by `{description}`: `oedometer plan` lists them");
+            Err(Ended::with(Exit::NothingSelected, reason))
+        }
         [(study, case)] => Ok((study, case)),
         several => {
             let mut lines: Vec<String> = several
@@ -132,8 +124,8 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
     }
 }
 
-/// The stored record, if this very program made it; else the case is solved and nothing is kept. Of a case of an attached
-/// solver that is run the record is taken as it is, for nothing is started here.
+/// The stored record, if this program made it; or else the case is solved and nothing is stored. The record of an
+/// attached solver is taken as it is, because no other program is started here.
 fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Record> {
     let store = RecordStore::new(results, &study.name);
     if study.solver_of(case).is_some_and(|solver| !solver.is_given()) {
@@ -152,10 +144,7 @@ fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Recor
     }
     let record = CaseRunner::of(study).run_alone(case, None)?;
     if stop::is_asked() && is_stopped(&record) {
-        return Err(Ended::with(
-            Exit::IncompleteMerge,
-            "the case was not run to its end, for it was told to end",
-        ));
+        return Err(Ended::with(Exit::IncompleteMerge, "the case was stopped before its end"));
     }
     Ok(record)
 }

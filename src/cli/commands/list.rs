@@ -1,4 +1,4 @@
-//! `oedometer list`: what there is to choose from.
+//! `oedometer list`: the names of scenes, methods, integrators, references and shipped studies.
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::print_data;
@@ -18,7 +18,7 @@ pub struct Arguments {
     show: Option<String>,
 }
 
-/// Prints scenes, methods, integrators, references and shipped studies, or one of these.
+/// Prints all names, or the file of one shipped study.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(name) = &arguments.show {
         let Some(study) = shipped_study(name) else {

@@ -1,5 +1,5 @@
-//! `oedometer plan`: which cases there are, with their hashes and times, before anything runs; which of them are
-//! missing; and the commands that run them in shares.
+//! `oedometer plan`: lists cases with their hashes and estimated times before anything runs, the missing ones, and the
+//! commands that run them in shares.
 
 use crate::campaign::run_report::LongestCase;
 use crate::campaign::shares::Parting;
@@ -24,7 +24,7 @@ const COLUMNS: [&str; 5] = ["study", "case", "estimated_point_updates", "label",
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files or names of shipped studies; every shipped one where none is named
+    /// Study files or names of shipped studies; every shipped one if none is given
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// How much of each study
@@ -33,16 +33,16 @@ pub struct Arguments {
     /// Only cases without a finished record in this folder of results
     #[arg(long, value_name = "DIR")]
     missing: Option<PathBuf>,
-    /// Print a job list instead: one command a line for each of so many shares that has anything to do
+    /// Print a job list instead: one command per line for each of this many shares that has something to do
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     tasks: Option<u64>,
-    /// Part the cases by what they cost, the longest first, and not by their hashes
+    /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "tasks")]
     balance: bool,
-    /// Folder for the results of the commands; that of `--missing` where it is named
+    /// Folder for the results of the commands; by default that of `--missing`
     #[arg(long, value_name = "DIR", requires = "tasks")]
     out: Option<PathBuf>,
-    /// Output format: one line a case, or the case files that attached solvers are given
+    /// Output format: one line per case, or the case files that attached solvers get
     #[arg(long, value_enum, default_value_t = PlanFormat::Csv)]
     format: PlanFormat,
     /// Write the case file of each case into this folder, as HASH/case.json
@@ -53,15 +53,15 @@ pub struct Arguments {
 /// How the plan is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum PlanFormat {
-    /// A line a case
+    /// One line per case
     Csv,
-    /// The case files in one list
+    /// A list of the case files
     Json,
 }
 
-/// Prints one line a case as CSV, the case files as JSON, or a job list; what it adds up to goes to standard error.
+/// Prints one line per case as CSV, the case files as JSON, or a job list; totals go to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    // Every file is judged before anything is printed.
+    // Every file is checked before anything is printed.
     let studies = load_or_shipped(&arguments.studies)?;
     let tier = arguments.tier;
     if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {

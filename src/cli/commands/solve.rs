@@ -5,8 +5,7 @@ use crate::campaign::run_report::LongestCase;
 use crate::case::Case;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::overrides;
-use crate::cli::overrides::StudyLines;
+use crate::cli::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use crate::cli::stream::{print_data, say};
 use crate::cli::time_notes::note_on_solve;
 use crate::judge::soundness;
@@ -14,6 +13,7 @@ use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::render::tables::measures;
 use crate::render::tables::phases::phases_table;
+use crate::study::check::Purpose;
 use crate::study::check::Study;
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
@@ -23,11 +23,11 @@ use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SolveFormat {
-    /// For people.
+    /// For people
     Table,
-    /// One row a measure or case.
+    /// One row per measure or case
     Csv,
-    /// Everything.
+    /// Everything
     Json,
 }
 
@@ -45,25 +45,16 @@ pub struct Arguments {
     /// Cells over the height
     #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
     cells: i64,
-    /// Points a cell and direction
+    /// Points per cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
     /// Step rule: stable=0.8, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4 [default:
     /// stable=0.8; semi-implicit: stable=0.1; implicit: growth=0.05]
     #[arg(long, value_name = "RULE")]
     time_step: Option<String>,
-    /// Time factors of the outputs, comma-separated
-    ///
-    /// [default: 0.05,0.1,0.2,0.5,1.0]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    time_factor: Option<String>,
-    /// Hold the result against this reference only
-    #[arg(long, value_name = "NAME")]
-    reference: Option<String>,
-    /// Set a dotted key of a study file, like material.porosity=0.45
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    assignments: Vec<String>,
-    /// Visit every point in every step, even where one banded map does the same
+    #[command(flatten)]
+    outputs: Outputs,
+    /// Visit every point in every step, even if one banded matrix gives the same
     #[arg(long)]
     point_wise: bool,
     /// Show where the time went, phase by phase
@@ -78,7 +69,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let study = study_of(arguments)?;
     let [planned] = study.planned.as_slice() else {
-        return Err(Ended::with(Exit::NothingSelected, "the command line describes no single case"));
+        return Err(Ended::with(Exit::NothingSelected, "the command line describes several cases or none"));
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
@@ -93,7 +84,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
         SolveFormat::Table => print_data(&measures::table_of(&record)?)?,
     }
-    // A CSV is of one kind of row; its profile goes where notes go.
+    // A CSV has one kind of row, so its profile goes to standard error.
     match arguments.format {
         SolveFormat::Table if arguments.profile => {
             print_data(&format!("\n{}", phases_table(&phases, &record).to_text()?))?;
@@ -122,7 +113,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(Exit::Pass)
 }
 
-/// Says before a long run that it is one, and what takes less.
+/// Warns before a long run, with what takes less.
 fn tell_of_long(study: &Study) {
     let Some(planned) = study.planned.first() else { return };
     let (study, case_seconds) = ("solve".to_owned(), study.case_seconds);
@@ -135,29 +126,25 @@ fn tell_of_long(study: &Study) {
 /// The study of one case that the command line describes.
 fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     let mut lines = StudyLines::of("solve", &arguments.scene, "the scene's name")?;
-    lines.give_outputs(arguments.reference.as_deref(), arguments.time_factor.as_deref())?;
-    lines.assign(&arguments.assignments)?;
-    lines.refuse_without_effect(&[
-        ("task", "`oedometer stability` looks for critical steps"),
-        overrides::TIMING,
-    ])?;
+    lines.give_outputs(&arguments.outputs)?;
+    lines.refuse_without_effect(&[("task", "`oedometer stability` looks for critical steps"), TIMING])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
             return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));
         }
     }
     let mut sweep = vec![
-        format!("method = [{}]", overrides::quoted(&arguments.method)),
+        format!("method = [{}]", toml_of(arguments.method.as_str())),
         format!("cells = [{}]", arguments.cells),
         format!("points_per_cell = [{}]", arguments.points_per_cell),
     ];
     if let Some(integrator) = &arguments.integrator {
-        sweep.push(format!("integrator = [{}]", overrides::quoted(integrator)));
+        sweep.push(format!("integrator = [{}]", toml_of(integrator.as_str())));
     }
     if let Some(rule) = &arguments.time_step {
-        sweep.push(format!("time_step = [{}]", overrides::step_rule(rule)?));
+        sweep.push(format!("time_step = [{}]", step_rule(rule)?));
     }
-    lines.study_with(sweep)
+    lines.study(Purpose::Solving, sweep)
 }
 
 /// Keys of a sweep that `solve` takes as options.
@@ -169,7 +156,7 @@ const OWN_OPTIONS: [(&str, &str); 5] = [
     ("time_step", "--time-step RULE"),
 ];
 
-/// The JSON of `solve`: the record without its snapshots, the essentials on top.
+/// The JSON of `solve`: the record without its snapshots, the essentials first.
 #[derive(serde::Serialize)]
 struct SolveJson<'a> {
     status: String,

@@ -1,4 +1,4 @@
-//! Parts of a mapping: which rows count, where times stand, and what is derived from columns.
+//! Parts of a mapping: which rows count, where times come from, and what is derived from columns.
 
 use crate::import::mapping::units::VerticalSense;
 use serde::Deserialize;
@@ -8,36 +8,36 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RowFilter {
-    /// Only points at corners of cells: programs write 0, or nothing of use, at the middle of sides.
+    /// Only points at corners of cells: programs write 0 or meaningless values at mid-side nodes.
     pub corners: bool,
-    /// Only rows at this place along `x`, in the file's unit: one column of nodes of several.
+    /// Only rows at this place along `x`, in the file's unit: selects one of several columns of nodes.
     pub x: Option<f64>,
-    /// Only rows where a column has this value, like a material.
+    /// Only rows in which a column has this value, like a material.
     pub equals: BTreeMap<String, f64>,
 }
 
-/// Where the time stands, where it is no column.
+/// Where the time comes from if it is not a column.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Time {
-    /// Time of each file that holds one step, by its file name.
+    /// Time of each file with one step, by its file name.
     pub files: BTreeMap<String, f64>,
     /// Times of the files, in the order in which they are given.
     pub list: Vec<f64>,
-    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    /// Seconds from one numbered step to the next, if file names have the number of the step.
     pub step: Option<f64>,
     /// The file name with `{step}` where the number of the step stands and `*` for what differs; the last number of
-    /// the name where it is left out.
+    /// the name by default.
     pub pattern: Option<String>,
 }
 
-/// Whence the displacement.
+/// Where the displacement comes from.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisplacementSource {
-    /// What is subtracted from the present place.
+    /// What is subtracted from the current place.
     pub from: ZeroState,
-    /// Column that names each point; the order of the rows where it is left out.
+    /// Column that identifies each point; the order of the rows by default.
     pub id: Option<String>,
 }
 
@@ -55,11 +55,11 @@ pub enum ZeroState {
 pub struct Hydrostatic {
     /// Its unit weight, Pa per m.
     pub unit_weight: f64,
-    /// Height of its table over the base, m; the surface where it is left out.
+    /// Height of its table over the base, m; the surface by default.
     pub surface: Option<f64>,
 }
 
-/// What a column of stress holds.
+/// What a column of stress contains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StressMeaning {
@@ -71,10 +71,10 @@ pub struct StressMeaning {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StressKind {
-    /// Of the skeleton.
+    /// Stress of the skeleton.
     #[default]
     Effective,
-    /// Of skeleton and water together.
+    /// Stress of skeleton and water together.
     Total,
 }
 
@@ -82,15 +82,15 @@ pub enum StressKind {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SettlementSeries {
-    /// CSV file, beside the mapping's results or from the folder in which the program is called.
+    /// CSV file, relative to the results or to the current folder.
     pub file: String,
-    /// Column of the time, in the unit of [units]; `t` where it is left out.
+    /// Column of the time, in the unit of [units]; `t` by default.
     #[serde(default = "time_column")]
     pub t: String,
-    /// Column of the settlement, in the unit of displacements; `s` where it is left out.
+    /// Column of the settlement, in the unit of displacements; `s` by default.
     #[serde(default = "settlement_column")]
     pub s: String,
-    /// `down` where a settlement is positive, `up` where the displacement of the surface is given.
+    /// `down` if settlement is positive, `up` if the displacement of the surface is given.
     #[serde(default = "downward")]
     pub sign: VerticalSense,
 }

@@ -1,6 +1,5 @@
-//! The declared meaning of a file's columns.
+//! The declared meaning of the columns of a file.
 
-pub mod convention;
 pub mod mapping_parts;
 pub mod preset;
 pub mod units;
@@ -14,6 +13,7 @@ use crate::import::mapping::units::{
 };
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::file::StudySource;
+use oedometer_soil::wording::words;
 use serde::Deserialize;
 
 /// What the columns of a file mean.
@@ -23,39 +23,39 @@ pub struct Mapping {
     /// Kind of the places: a name for tables.
     #[serde(default = "points")]
     pub sample: Sample,
-    /// What the volumes of all samples add up to, in the unit of their column. Where it is left out and the sum is
-    /// no volume of the scene, they are mere weights.
+    /// Sum of the volumes of all samples, in the unit of their column. Without it, volumes whose sum is not a volume of
+    /// the scene are taken as weights.
     #[serde(default)]
     pub whole_volume: Option<f64>,
     /// Names of the columns, as the header spells them, or of arrays: `displacement[1]` is the second component,
     /// `cells:pressure` the array on cells, `coordinates[1]` the height of points or centres.
     #[serde(default)]
     pub columns: ColumnNames,
-    /// Units of the columns; SI where they are left out.
+    /// Units of the columns; SI by default.
     #[serde(default)]
     pub units: Units,
-    /// Directions that count as positive; of x and y with the end from which they count.
+    /// Positive directions, and for x and y the end from which they count.
     #[serde(default)]
     pub sign: Signs,
-    /// Whether places are initial or present ones, of x as of y.
+    /// Whether places are initial or current, for both x and y.
     #[serde(default)]
     pub position: Position,
-    /// What the file writes at the end from which x and y count, in its unit of length.
+    /// Coordinates in the file at the end from which x and y count, in its unit of length.
     #[serde(default)]
     pub origin: Origin,
-    /// Where the time stands, where it is no column.
+    /// Where the time comes from if it is not a column.
     #[serde(default)]
     pub time: Time,
-    /// Which rows count; all where nothing is said.
+    /// Which rows count; all by default.
     #[serde(default)]
     pub rows: RowFilter,
-    /// Where the displacement comes from, where it is no column.
+    /// Where the displacement comes from if it is not a column.
     #[serde(default)]
     pub displacement: Option<DisplacementSource>,
-    /// A hydrostatic part of the pressure, which is taken off.
+    /// A hydrostatic part of the pressure, which is subtracted.
     #[serde(default)]
     pub hydrostatic: Option<Hydrostatic>,
-    /// What the column of the effective stress holds.
+    /// What the column of the effective stress contains.
     #[serde(default)]
     pub stress: StressMeaning,
     /// A settlement curve in a file of its own.
@@ -64,22 +64,50 @@ pub struct Mapping {
     /// Layout of the file.
     #[serde(default)]
     pub csv: TableLayout,
-    /// Whether nobody declared it: a layer's horizontal displacement then may be missing.
+    /// Who declared it.
     #[serde(skip)]
-    pub is_convention: bool,
-    /// Whether a preset says what it does not.
-    #[serde(skip)]
-    pub is_of_preset: bool,
-    /// Name of that preset; empty where there is none.
-    #[serde(skip)]
-    pub preset: &'static str,
-    /// Columns of a preset that a file may lack, by their keys.
+    pub declared_by: DeclaredBy,
+    /// Keys of the columns that a file may lack.
     #[serde(skip)]
     pub optional: Vec<String>,
-    /// Whether the kind of the places is to be found out from the files.
+    /// Whether the files show the kind of the places.
     #[serde(skip)]
     pub is_sample_open: bool,
 }
+
+/// Who declared a mapping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DeclaredBy {
+    /// The user, in a mapping file.
+    #[default]
+    User,
+    /// Nobody: it is the convention.
+    Convention,
+    /// The preset of a name, with what the user declares over it.
+    Preset(&'static str),
+}
+
+/// A column of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Time.
+    Time,
+    /// Distance along a layer.
+    X,
+    /// Height or depth.
+    Y,
+    /// Excess pore pressure.
+    Pressure,
+    /// Horizontal displacement.
+    Along,
+    /// Vertical displacement.
+    Up,
+    /// Vertical effective stress.
+    EffectiveStress,
+    /// Volume or weight.
+    Volume,
+}
+words!(Column: Time "t", X "x", Y "y", Pressure "p", Along "u_x", Up "u_y", EffectiveStress "effective_stress", Volume "volume");
 
 fn points() -> Sample {
     Sample::Points
@@ -93,7 +121,7 @@ pub struct ColumnNames {
     pub t: Option<String>,
     /// Distance along a layer.
     pub x: Option<String>,
-    /// Height or depth; `y` where it is left out.
+    /// Height or depth; `y` by default.
     #[serde(default = "height_column")]
     pub y: String,
     /// Excess pore pressure.
@@ -104,12 +132,26 @@ pub struct ColumnNames {
     pub u_y: Option<String>,
     /// Vertical effective stress.
     pub effective_stress: Option<String>,
-    /// Volume or weight of each place; all weigh alike where none is named.
+    /// Volume or weight of each place; equal weights by default.
     pub volume: Option<String>,
 }
 
 impl ColumnNames {
-    /// An empty name takes a column out.
+    /// The name of a column, if it has one.
+    pub fn get(&self, column: Column) -> Option<&String> {
+        match column {
+            Column::Time => self.t.as_ref(),
+            Column::X => self.x.as_ref(),
+            Column::Y => Some(&self.y),
+            Column::Pressure => self.p.as_ref(),
+            Column::Along => self.u_x.as_ref(),
+            Column::Up => self.u_y.as_ref(),
+            Column::EffectiveStress => self.effective_stress.as_ref(),
+            Column::Volume => self.volume.as_ref(),
+        }
+    }
+
+    /// Removes the columns that an empty name takes out.
     fn leave_out_empty(&mut self) {
         let optional = [
             &mut self.t,
@@ -150,45 +192,43 @@ impl Default for ColumnNames {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Units {
-    /// Unit of the time; seconds where it is left out.
+    /// Unit of the time; seconds by default.
     pub time: TimeUnit,
-    /// Unit of the places; metres where it is left out.
+    /// Unit of the places; metres by default.
     pub length: LengthUnit,
-    /// Unit of the displacement; that of the places where it is left out.
+    /// Unit of the displacement; that of the places by default.
     pub displacement: Option<LengthUnit>,
-    /// Unit of pressure and stress; pascals where it is left out.
+    /// Unit of pressure and stress; pascals by default.
     pub stress: Option<StressUnit>,
 }
 
-/// Directions that count as positive.
+/// Positive directions.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Signs {
-    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end; `right` where it
-    /// is left out.
+    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end; `right` by default.
     pub x: Option<HorizontalSense>,
-    /// `up` from the base, or `down` from the initial surface; `up` where it is left out.
+    /// `up` from the base, or `down` from the initial surface; `up` by default.
     pub y: VerticalSense,
-    /// Sign of the pore pressure; positive in compression where it is left out.
+    /// Sign of the pore pressure; positive in compression by default.
     pub p: Option<StressSign>,
-    /// Sign of the horizontal displacement; `right` where it is left out.
+    /// Sign of the horizontal displacement; `right` by default.
     pub u_x: Option<HorizontalSense>,
-    /// Sign of the vertical displacement; `up` where it is left out.
+    /// Sign of the vertical displacement; `up` by default.
     pub u_y: Option<VerticalSense>,
-    /// Sign of the effective stress; positive in compression where it is left out.
+    /// Sign of the effective stress; positive in compression by default.
     pub effective_stress: Option<StressSign>,
 }
 
-/// Whose places the coordinates are.
+/// Whether the coordinates are initial or current places.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Position {
-    /// Initial places, or present ones; of `x` as of `y`. Initial where it is left out.
+    /// Initial or current places, for both `x` and `y`; initial by default.
     pub y: StatedPlace,
 }
 
-/// Where the scene begins in the file's coordinates and their unit: what the file writes at the end
-/// from which `sign` counts.
+/// Coordinates in the file at the end from which `sign` counts, in the file's unit of length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Origin {
@@ -202,9 +242,9 @@ pub struct Origin {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TableLayout {
-    /// What parts the columns.
+    /// Separator of the columns.
     pub delimiter: char,
-    /// What begins a line that is no row.
+    /// Mark at the start of a comment line.
     pub comment: Option<char>,
 }
 
@@ -215,44 +255,38 @@ impl Default for TableLayout {
 }
 
 impl Mapping {
-    /// The mapping of a text.
+    /// Reads and checks a mapping file.
     ///
     /// # Errors
-    /// What is wrong, at its place: an unknown key or word; or everything in it that no file can have.
+    /// An unknown key or word at its place, or all values that no file can have.
     pub fn read(source: &StudySource) -> Result<Self, StudyError> {
         let mut mapping: Self = source.read()?;
         mapping.columns.leave_out_empty();
         mapping.checked(source)
     }
 
-    /// The mapping, where nothing in it is wrong.
-    ///
-    /// # Errors
-    /// All faults together.
-    pub fn checked(self, source: &StudySource) -> Result<Self, StudyError> {
+    /// The mapping, if none of its values is wrong.
+    fn checked(self, source: &StudySource) -> Result<Self, StudyError> {
         let faults = self.faults();
         if faults.is_empty() { Ok(self) } else { Err(source.error(faults)) }
     }
 
-    /// What a mapping lacks for a layer: its fields depend on the place along it.
-    ///
-    /// # Errors
-    /// When no column holds that place.
-    pub fn check_plane(&self, source: &StudySource) -> Result<(), StudyError> {
+    /// Checks that a column holds the place along a layer, on which the layer's fields depend.
+    fn check_plane(&self, source: &StudySource) -> Result<(), StudyError> {
         if self.columns.x.is_some() {
             return Ok(());
         }
         Err(source.complaint(
-            "the scene is a layer, and no column `x` says where along it a sample lies".to_owned(),
+            "the scene is a layer, and no column `x` gives the place of a sample along it".to_owned(),
             "add `x = \"x\"` to [columns] and `x = \"right\"` to [sign], for a distance from the crest of the load"
                 .to_owned(),
         ))
     }
 
-    /// What a file is taken to mean where the mapping says nothing, of the columns that it names. A preset says
-    /// everything, and who gives no mapping is told the convention.
+    /// What is assumed about the columns that the mapping names without declaring their unit or sign. Presets and the
+    /// convention declare everything.
     pub fn taken_for_granted(&self) -> Option<String> {
-        if self.is_convention || self.is_of_preset {
+        if self.declared_by != DeclaredBy::User {
             return None;
         }
         let (columns, units, sign) = (&self.columns, &self.units, &self.sign);
@@ -274,7 +308,7 @@ impl Mapping {
         (!taken.is_empty()).then(|| taken.join("; "))
     }
 
-    /// Everything in it that no file can have, and what would be right.
+    /// The values that no file can have, and what would be right.
     fn faults(&self) -> Vec<Diagnostic> {
         let columns = &self.columns;
         let mut faults = Vec::new();
@@ -306,7 +340,7 @@ impl Mapping {
         }
         refuse(
             !(self.origin.x.is_finite() && self.origin.y.is_finite()),
-            "an origin is no finite number",
+            "an origin is invalid: expected a finite number",
             "write it as in the file",
         );
         refuse(
@@ -316,7 +350,7 @@ impl Mapping {
         );
         refuse(
             !self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()),
-            "a delimiter or comment mark is no ASCII character",
+            "the delimiter or the comment mark is not an ASCII character",
             "use \",\" or \";\"",
         );
         refuse(
@@ -326,7 +360,7 @@ impl Mapping {
         );
         refuse(
             self.time.list.iter().chain(self.time.files.values()).any(|time| !time.is_finite()),
-            "a time in [time] is no finite number",
+            "a time in [time] is invalid: expected a finite number",
             "give times in the unit of [units]",
         );
         refuse(
@@ -352,7 +386,7 @@ impl Mapping {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::mapping::convention::{CONVENTION, PLANE_CONVENTION};
+    use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 
     fn read(text: &str) -> Result<Mapping, String> {
         Mapping::read(&StudySource { name: "map.toml".to_owned(), text: text.to_owned() })

@@ -1,155 +1,121 @@
-//! What other programs' files mean, as mappings that a user's own goes over.
+//! Mappings that are built in: those of known programs, which a user's own mapping overrides, and the convention.
 
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{DeclaredBy, Mapping};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use oedometer_formats::{Array, Frame};
+
+/// The mapping of a column's result for which nothing is declared.
+pub const CONVENTION: &str = include_str!("../presets/column.toml");
+/// The mapping of a layer's result for which nothing is declared.
+pub const PLANE_CONVENTION: &str = include_str!("../presets/layer.toml");
 
 /// A program whose files are known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Preset {
-    /// `OpenGeoSys` 6.
-    #[value(help = "OpenGeoSys 6")]
-    Ogs,
-    /// `KratosMultiphysics` with its `GeoMechanicsApplication`.
-    #[value(help = "KratosMultiphysics with its GeoMechanicsApplication")]
-    Kratos,
-    /// `PorePy`.
-    #[value(help = "PorePy")]
-    Porepy,
-    /// `GeoTaichi`'s material points.
-    #[value(help = "GeoTaichi's material points")]
-    Geotaichi,
-    /// meshio, scikit-fem, `FEniCS` and others with a pressure and a displacement.
-    #[value(help = "meshio, scikit-fem, FEniCS and others with a pressure and a displacement")]
-    Meshio,
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// Its name at the command line and in study files.
+    pub name: &'static str,
+    about: &'static str,
+    /// Its mapping file.
+    pub text: &'static str,
+    /// Names of arrays that show that a file is the program's.
+    signs: &'static [&'static str],
 }
 
-const OGS: &str = r#"sample = "nodes"
-[columns]
-x = "coordinates[0]"
-y = "coordinates[1]"
-p = "pressure"
-u_x = "displacement[0]"
-u_y = "displacement[1]"
-effective_stress = "sigma[1]"
-[sign]
-effective_stress = "tension-positive"
-[rows]
-corners = true
-"#;
+/// All presets.
+const PRESETS: [Preset; 5] = [
+    Preset {
+        name: "ogs",
+        about: "OpenGeoSys 6",
+        text: include_str!("../presets/ogs.toml"),
+        signs: &["OGS_VERSION", "pressure_interpolated"],
+    },
+    Preset {
+        name: "kratos",
+        about: "KratosMultiphysics with its GeoMechanicsApplication",
+        text: include_str!("../presets/kratos.toml"),
+        signs: &["WATER_PRESSURE"],
+    },
+    Preset {
+        name: "porepy",
+        about: "PorePy",
+        text: include_str!("../presets/porepy.toml"),
+        signs: &["mortar_side", "subdomain_id"],
+    },
+    Preset {
+        name: "geotaichi",
+        about: "GeoTaichi's material points",
+        text: include_str!("../presets/geotaichi.toml"),
+        signs: &["t_current", "estress"],
+    },
+    Preset {
+        name: "meshio",
+        about: "meshio, scikit-fem, FEniCS and others with a pressure and a displacement",
+        text: include_str!("../presets/meshio.toml"),
+        signs: &[],
+    },
+];
 
-const KRATOS: &str = r#"sample = "nodes"
-[columns]
-x = "coordinates[0]"
-y = "coordinates[1]"
-p = "WATER_PRESSURE"
-u_x = "DISPLACEMENT[0]"
-u_y = "DISPLACEMENT[1]"
-[sign]
-p = "tension-positive"
-[rows]
-corners = true
-"#;
+impl ValueEnum for Preset {
+    fn value_variants<'a>() -> &'a [Self] {
+        &PRESETS
+    }
 
-const POREPY: &str = r#"sample = "centres"
-[columns]
-x = "coordinates[0]"
-y = "coordinates[1]"
-p = "cells:pressure"
-u_x = "cells:u[0]"
-u_y = "cells:u[1]"
-"#;
-
-const GEOTAICHI: &str = r#"sample = "points"
-[columns]
-t = "t_current"
-x = "position[0]|coordinates[0]"
-y = "position[1]|coordinates[1]"
-p = "pressure"
-effective_stress = "stress[1]"
-volume = "volume"
-[sign]
-effective_stress = "tension-positive"
-[position]
-y = "current"
-[displacement]
-from = "first-frame"
-"#;
-
-const MESHIO: &str = r#"[columns]
-t = "time|t"
-x = "coordinates[0]|x|position[0]"
-y = "coordinates[1]|y|position[1]"
-p = "pressure|p|pore_pressure|porepressure|water_pressure|pressure_interpolated"
-u_x = "displacement[0]|u[0]|disp[0]|u_x"
-u_y = "displacement[1]|u[1]|disp[1]|u_y"
-"#;
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name).help(self.about))
+    }
+}
 
 impl Preset {
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ogs => "ogs",
-            Self::Kratos => "kratos",
-            Self::Porepy => "porepy",
-            Self::Geotaichi => "geotaichi",
-            Self::Meshio => "meshio",
-        }
+    /// The preset of the program that writes the arrays of a state, if one of them shows it.
+    pub fn of_frame(frame: &Frame) -> Option<&'static Self> {
+        let is_sign = |preset: &Self, array: &Array| preset.signs.contains(&array.name.as_str());
+        PRESETS.iter().find(|preset| frame.arrays.iter().any(|array| is_sign(preset, array)))
     }
 
-    /// Its mapping, as a file.
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Ogs => OGS,
-            Self::Kratos => KRATOS,
-            Self::Porepy => POREPY,
-            Self::Geotaichi => GEOTAICHI,
-            Self::Meshio => MESHIO,
-        }
-    }
-
-    /// Its mapping with what the user's own says instead; what only the preset names, a file may lack.
-    ///
-    /// # Errors
-    /// What is wrong in the user's mapping, all at once.
-    pub fn mapping(self, own: Option<&StudySource>, is_plane: bool) -> Result<Mapping, StudyError> {
-        let base = StudySource { name: format!("the preset {}", self.name()), text: self.text().to_owned() };
+    /// Its mapping, overridden key by key by the user's own. Columns that only the preset names may be missing in a
+    /// file.
+    fn mapping(self, own: Option<&StudySource>, is_plane: bool) -> Result<Mapping, StudyError> {
+        let base = StudySource { name: format!("the preset {}", self.name), text: self.text.to_owned() };
         let mut merged = base.table()?;
-        let source = own.unwrap_or(&base);
-        let mut optional: Vec<String> = merged
-            .get("columns")
-            .and_then(toml::Value::as_table)
-            .map_or(Vec::new(), |columns| columns.keys().cloned().collect());
+        let mut optional = keys_of_columns(&merged);
         if let Some(own) = own {
-            // Unknown keys and words are told at their place in the user's text.
+            // Read as a mapping first: unknown keys and words are reported at their place in the user's text.
             let _typed: Mapping = own.read()?;
             let own = own.table()?;
-            if let Some(named) = own.get("columns").and_then(toml::Value::as_table) {
-                optional.retain(|key| !named.contains_key(key));
-            }
-            lay_over(&mut merged, own);
+            let named = keys_of_columns(&own);
+            optional.retain(|key| !named.contains(key));
+            override_by(&mut merged, own);
         }
         if let Some(columns) = merged.get_mut("columns").and_then(toml::Value::as_table_mut) {
             columns.retain(|_, name| name.as_str() != Some(""));
             if !is_plane {
-                // A column's fields do not depend on the place along it.
-                optional.retain(|key| !["x", "u_x"].contains(&key.as_str()));
-                columns.retain(|key, _| !["x", "u_x"].contains(&key));
+                // The fields of a column do not depend on `x`.
+                let is_along = |key: &str| ["x", "u_x"].contains(&key);
+                optional.retain(|key| !is_along(key));
+                columns.retain(|key, _| !is_along(key));
             }
         }
         let is_sample_open = !merged.contains_key("sample");
-        let text = merged.to_string();
-        let mapping: Mapping = StudySource { name: source.name.clone(), text }.read()?;
-        Mapping { optional, is_sample_open, is_of_preset: true, preset: self.name(), ..mapping }
+        let source = own.unwrap_or(&base);
+        let mapping: Mapping = StudySource { name: source.name.clone(), text: merged.to_string() }.read()?;
+        Mapping { optional, is_sample_open, declared_by: DeclaredBy::Preset(self.name), ..mapping }
             .checked(source)
     }
 }
 
-/// Puts a table over another, key by key.
-fn lay_over(base: &mut toml::Table, own: toml::Table) {
+fn keys_of_columns(mapping: &toml::Table) -> Vec<String> {
+    let columns = mapping.get("columns").and_then(toml::Value::as_table);
+    columns.map_or(Vec::new(), |columns| columns.keys().cloned().collect())
+}
+
+/// Replaces the values of a table by those of another, key by key.
+fn override_by(base: &mut toml::Table, own: toml::Table) {
     for (key, value) in own {
         match (base.get_mut(&key), value) {
-            (Some(toml::Value::Table(base)), toml::Value::Table(own)) => lay_over(base, own),
+            (Some(toml::Value::Table(base)), toml::Value::Table(own)) => override_by(base, own),
             (_, value) => {
                 base.insert(key, value);
             }
@@ -157,31 +123,69 @@ fn lay_over(base: &mut toml::Table, own: toml::Table) {
     }
 }
 
+impl Mapping {
+    /// The mapping of files: a preset with the user's own over it, the user's own, or else the convention.
+    ///
+    /// # Errors
+    /// All mistakes in the user's mapping, and a column `x` that is missing for a layer.
+    pub fn resolve(
+        preset: Option<Preset>,
+        own: Option<&StudySource>,
+        is_plane: bool,
+    ) -> Result<Self, StudyError> {
+        match (preset, own) {
+            (Some(preset), own) => preset.mapping(own, is_plane),
+            (None, Some(own)) => {
+                let mapping = Self::read(own)?;
+                if is_plane {
+                    mapping.check_plane(own)?;
+                }
+                Ok(mapping)
+            }
+            (None, None) => Self::convention(is_plane),
+        }
+    }
+
+    /// The mapping of a result for which nothing is declared, of a column or of a layer.
+    ///
+    /// # Errors
+    /// Never: the text is a constant.
+    pub fn convention(is_plane: bool) -> Result<Self, StudyError> {
+        let text = if is_plane { PLANE_CONVENTION } else { CONVENTION }.to_owned();
+        let mapping = Self::read(&StudySource { name: "the convention".to_owned(), text })?;
+        // A layer's result may lack the horizontal displacement.
+        Ok(Self { declared_by: DeclaredBy::Convention, optional: vec!["u_x".to_owned()], ..mapping })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::ValueEnum;
+
+    fn named(name: &str) -> Preset {
+        Preset::from_str(name, false).expect("a preset")
+    }
 
     #[test]
     fn every_preset_is_a_mapping_and_ones_own_goes_over_it() {
-        for preset in Preset::value_variants() {
+        for preset in PRESETS {
             for is_plane in [false, true] {
                 let mapping =
-                    preset.mapping(None, is_plane).unwrap_or_else(|error| panic!("{preset:?}: {error}"));
+                    preset.mapping(None, is_plane).unwrap_or_else(|error| panic!("{}: {error}", preset.name));
                 assert_eq!(mapping.columns.x.is_some(), is_plane);
             }
         }
         let text =
             "[columns]\np = \"pressure_interpolated\"\nu_y = \"\"\n[rows]\ncorners = false\n".to_owned();
         let own = StudySource { name: "map.toml".to_owned(), text };
-        let mapping = Preset::Ogs.mapping(Some(&own), false).expect("a mapping");
+        let mapping = named("ogs").mapping(Some(&own), false).expect("a mapping");
         assert_eq!(mapping.columns.p.as_deref(), Some("pressure_interpolated"));
         assert_eq!((mapping.columns.u_y, mapping.rows.corners), (None, false));
         assert_eq!(mapping.columns.y, "coordinates[1]");
         assert!(!mapping.optional.contains(&"p".to_owned()) && mapping.optional.contains(&"y".to_owned()));
         let wrong = StudySource { name: "map.toml".to_owned(), text: "[columns]\npp = \"a\"\n".to_owned() };
         assert!(
-            Preset::Ogs
+            named("ogs")
                 .mapping(Some(&wrong), false)
                 .is_err_and(|error| error.to_string().contains("map.toml:2"))
         );

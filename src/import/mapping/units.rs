@@ -135,10 +135,10 @@ impl StressUnit {
 mod tests {
     use crate::import::mapping::Mapping;
     use crate::import::mapping::preset::Preset;
-    use crate::import::raw_row::{RawRow, SampleRow, SolvedBody};
+    use crate::import::raw_row::{RawRow, SolvedBody};
     use crate::study::file::StudySource;
     use clap::ValueEnum;
-    use oedometer_formats::import_error::ImportError;
+    use oedometer_formats::ImportError;
     use std::path::Path;
 
     /// A body 5 m high and 8 m long in which `T_v` = 1 is 250 s.
@@ -166,27 +166,17 @@ mod tests {
             horizontal_displacement: Some(0.125),
             ..RawRow::default()
         };
-        let refused = |reason: String| ImportError::table(Path::new("a"), reason);
+        let refused = |reason: String| ImportError::content(Path::new("a"), reason);
         let sample =
             row.sample(mapping, BODY, &refused).unwrap_or_else(|error: ImportError| panic!("{error}"));
-        let SampleRow {
-            time,
-            initial_distance,
-            initial_height,
-            pressure,
-            effective_stress,
-            displacement,
-            ..
-        } = sample;
-        let some = |value: Option<f64>| value.expect("it was given");
         [
-            time,
-            some(initial_distance),
-            initial_height,
-            some(pressure),
-            some(effective_stress),
-            some(displacement),
-            some(sample.horizontal_displacement),
+            sample.time,
+            sample.initial_distance,
+            sample.initial_height,
+            sample.pressure,
+            sample.effective_stress,
+            sample.displacement,
+            sample.horizontal_displacement,
         ]
     }
 
@@ -263,7 +253,7 @@ mod tests {
         let some = |name: &str| Some(name.to_owned());
         for (preset, [t, x, y, p, u_x, u_y, stress, volume], said) in [
             (
-                Preset::Ogs,
+                "ogs",
                 [
                     "",
                     "coordinates[0]",
@@ -277,7 +267,7 @@ mod tests {
                 "nodes, corners, stress tension-positive",
             ),
             (
-                Preset::Kratos,
+                "kratos",
                 [
                     "",
                     "coordinates[0]",
@@ -291,7 +281,7 @@ mod tests {
                 "nodes, corners, p tension-positive",
             ),
             (
-                Preset::Porepy,
+                "porepy",
                 [
                     "",
                     "coordinates[0]",
@@ -305,7 +295,7 @@ mod tests {
                 "centres",
             ),
             (
-                Preset::Geotaichi,
+                "geotaichi",
                 [
                     "t_current",
                     "position[0]|coordinates[0]",
@@ -319,7 +309,7 @@ mod tests {
                 "points, stress tension-positive, current, first frame",
             ),
             (
-                Preset::Meshio,
+                "meshio",
                 [
                     "time|t",
                     "coordinates[0]|x|position[0]",
@@ -333,7 +323,8 @@ mod tests {
                 "points",
             ),
         ] {
-            let mapping = preset.mapping(None, true).expect("a preset");
+            let preset = Preset::from_str(preset, false).expect("a preset");
+            let mapping = Mapping::resolve(Some(preset), None, true).expect("a mapping");
             let columns = &mapping.columns;
             let found = [
                 &columns.t,
@@ -346,7 +337,7 @@ mod tests {
                 &columns.volume,
             ]
             .map(|name| name.clone().unwrap_or_default());
-            assert_eq!(found, [t, x, y, p, u_x, u_y, stress, volume], "{preset:?}");
+            assert_eq!(found, [t, x, y, p, u_x, u_y, stress, volume], "{}", preset.name);
             // What a row of 7 Pa and 11 Pa becomes says the signs, and the place the configuration.
             let [_, along, height, pressure, effective, up, right] = taken(&mapping, 4.0, 2.0);
             let words = [
@@ -357,8 +348,8 @@ mod tests {
                 (height == 3.75 && along == 1.875).then_some("current"),
                 mapping.displacement.is_some().then_some("first frame"),
             ];
-            assert_eq!(words.into_iter().flatten().collect::<Vec<_>>().join(", "), said, "{preset:?}");
-            assert_eq!((up, right), (0.25, 0.125), "{preset:?}");
+            assert_eq!(words.into_iter().flatten().collect::<Vec<_>>().join(", "), said, "{}", preset.name);
+            assert_eq!((up, right), (0.25, 0.125), "{}", preset.name);
         }
         assert_eq!(Preset::value_variants().len(), 5, "a new preset is written above, too");
     }

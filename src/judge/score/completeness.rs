@@ -1,6 +1,6 @@
 //! Whether an external result is complete: missing parts make an error small.
 
-use crate::import::table::SampledState;
+use crate::import::SampledState;
 use crate::judge::score::coverage;
 use crate::judge::score::coverage::Bare;
 use crate::judge::score::score_series::time_factors;

@@ -7,9 +7,9 @@
 mod inputs;
 
 use crate::case::Quantity;
+use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
-use crate::import::table::SampledState;
 use crate::measure::fields::ExactFields;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;

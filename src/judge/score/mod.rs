@@ -6,7 +6,7 @@ pub mod diagnosis;
 pub mod score_series;
 
 use crate::case::{Norm, Quantity, Sample};
-use crate::import::table::SampledState;
+use crate::import::SampledState;
 use crate::judge::score::completeness::{Finding, Lack};
 use crate::judge::score::score_series::{SeriesRow, time_factors};
 use crate::measure::fields::{

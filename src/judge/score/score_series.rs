@@ -2,7 +2,7 @@
 //! and no two meshes of an explicit one, stop at the same instant.
 
 use crate::case::{Norm, Quantity, Sample};
-use crate::import::table::SampledState;
+use crate::import::SampledState;
 use crate::judge::paths::grouped;
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;

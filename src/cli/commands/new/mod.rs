@@ -1,17 +1,18 @@
-//! `oedometer new`: a commented study to start from, or an adapter for somebody else's solver.
+//! `oedometer new`: writes a commented study to start from, or an adapter for another program's solver.
 
-pub mod solver;
+mod solver;
 
 use crate::cli::commands::new::solver::Language;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
+use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 use crate::study::shipped::{name_of, refused_name};
 use std::fs::OpenOptions;
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
-/// Texts of new studies by their scenes, the first where none is named; `{name}` stands for the name.
+/// Texts of new studies by their scenes, the default first; `{name}` stands for the name.
 const STARTERS: [(&str, &str); 3] = [
     ("terzaghi", include_str!("starter.toml")),
     ("xie-leo", include_str!("starter-large.toml")),
@@ -21,48 +22,22 @@ const STARTERS: [(&str, &str); 3] = [
 /// Arguments of `new`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of the study, or the file that it shall stand in; `solver` for an adapter of somebody else's solver
+    /// Name of the study, or its file; `solver` for an adapter of another program's solver
     #[arg(value_name = "NAME")]
     name: PathBuf,
     /// After `solver`: the name of the solver and of the folder for its study, adapter and mapping
     /// [default: my-solver]
     #[arg(value_name = "SOLVER")]
     solver: Option<PathBuf>,
-    /// Scene of the study: terzaghi where not given, xie-leo at large strain, cosine-layer in the plane
+    /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// What the adapter of a solver is written in
+    /// Language of the adapter
     #[arg(long, value_enum)]
     language: Option<Language>,
 }
 
-/// The text of a starter of a name.
-///
-/// # Errors
-/// A sentence with what to take where the scene has none.
-fn starter(name: &str, scene: Option<&str>) -> anyhow::Result<String> {
-    let [(usual, _), ..] = STARTERS;
-    let scene = scene.unwrap_or(usual);
-    if let Some((_, text)) = STARTERS.iter().find(|(known, _)| *known == scene) {
-        return Ok(text.replace("{name}", name));
-    }
-    let with = STARTERS.map(|(known, _)| known).join(", ");
-    let line = format!("scene = \"{scene}\"");
-    let shipped =
-        shipped_studies().into_iter().find(|study| study.text.lines().any(|one| one.starts_with(&line)));
-    Err(Ended::usage(match shipped {
-        Some(study) => format!(
-            "there is no starter of the scene `{scene}` (there is of {with}); `oedometer list --show {}` prints a shipped \
-             study of it",
-            name_of(&study.name)
-        ),
-        None => format!(
-            "no scene with a study is called `{scene}`: there are starters of {with}; `oedometer list` names all"
-        ),
-    }))
-}
-
-/// Writes the file, where there is none yet.
+/// Writes a study or an adapter, where there is none yet.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let is_solver = arguments.solver.is_some() || arguments.language.is_some();
     if is_solver && arguments.scene.is_some() {
@@ -85,16 +60,37 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(Ended::usage(format!("a study cannot be called `{name}`: {why}")));
     }
     let text = starter(name, arguments.scene.as_deref())?;
-    let folder = arguments.name.parent().map_or_else(PathBuf::new, std::path::Path::to_path_buf);
-    let path = folder.join(format!("{name}.toml"));
-    let written = OpenOptions::new().write(true).create_new(true).open(&path);
-    let written = written.and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|error| match error.kind() {
-        std::io::ErrorKind::AlreadyExists => {
-            Ended::usage(format!("{} is there already: take another name", path.display()))
-        }
-        _ => Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display())),
-    })?;
+    let path = arguments.name.with_file_name(format!("{name}.toml"));
+    let file = OpenOptions::new().write(true).create_new(true).open(&path);
+    file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| not_written(&path, &error))?;
     say!("{} is a study that runs; next: oedometer check {}", path.display(), path.display());
     Ok(Exit::Pass)
+}
+
+/// The starter of a scene with a name, or an error with what to use instead.
+fn starter(name: &str, scene: Option<&str>) -> anyhow::Result<String> {
+    let scene = scene.unwrap_or(STARTERS[0].0);
+    if let Some((_, text)) = STARTERS.iter().find(|(known, _)| *known == scene) {
+        return Ok(text.replace("{name}", name));
+    }
+    let starters = STARTERS.map(|(known, _)| known).join(", ");
+    let line = format!("scene = \"{scene}\"");
+    let has_scene = |study: &StudySource| study.text.lines().any(|one| one.starts_with(&line));
+    let help = match shipped_studies().into_iter().find(has_scene) {
+        Some(study) => {
+            format!("`oedometer list --show {}` prints a shipped study of it", name_of(&study.name))
+        }
+        None => "`oedometer list` prints all scenes".to_owned(),
+    };
+    Err(Ended::usage(format!("the scene `{scene}` has no starter (there are {starters}): {help}")))
+}
+
+/// The error of a file or folder that cannot be written.
+fn not_written(path: &Path, error: &std::io::Error) -> anyhow::Error {
+    match error.kind() {
+        ErrorKind::AlreadyExists => {
+            Ended::usage(format!("{} exists already: use another name", path.display()))
+        }
+        _ => Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", path.display())),
+    }
 }

@@ -1,6 +1,7 @@
-//! `oedometer new solver`: an adapter for somebody else's solver, with its mapping and its study, that run as they are.
+//! `oedometer new solver`: writes an adapter for another program's solver, with its mapping and study; they run as is.
 
 use crate::case::solver::{Attached, DIGEST_DIGITS};
+use crate::cli::commands::new::not_written;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::study::shipped::{name_of, refused_name};
@@ -9,7 +10,7 @@ use oedometer_mpm::method::Method;
 use std::fs;
 use std::path::Path;
 
-/// What an adapter is written in.
+/// Language of an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Language {
     /// Python 3 without packages
@@ -19,7 +20,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// The program that runs it, its file, and its text.
+    /// The program that runs the adapter, its file, and its text.
     const fn adapter(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Python => ("python3", "adapter.py", include_str!("adapter.py")),
@@ -28,27 +29,20 @@ impl Language {
     }
 }
 
-/// Writes the three files into a new folder of a name.
+/// Writes the three files into a new folder.
 pub fn write(folder: &Path, language: Language) -> anyhow::Result<Exit> {
     let given = folder.display().to_string();
     let name = name_of(&given);
-    let is_taken = Method::named(name).map(|_| "a method of this program is called so".to_owned());
+    let is_taken = Method::named(name).map(|_| "a method of this program has this name".to_owned());
     let no_solver = || Attached::new(name, &"0".repeat(DIGEST_DIGITS)).err().map(|why| why.to_string());
     if let Some(why) = refused_name(name).or(is_taken).or_else(no_solver) {
         return Err(Ended::usage(format!("a solver and its study cannot be called `{name}`: {why}")));
     }
-    let refused = |error: std::io::Error| {
-        Ended::with(Exit::CaseFailed, format!("cannot write {}: {error}", folder.display()))
-    };
+    let refused = |error: std::io::Error| not_written(folder, &error);
     if let Some(parent) = folder.parent() {
         fs::create_dir_all(parent).map_err(refused)?;
     }
-    fs::create_dir(folder).map_err(|error| match error.kind() {
-        std::io::ErrorKind::AlreadyExists => {
-            Ended::usage(format!("{} is there already: take another name", folder.display()))
-        }
-        _ => refused(error),
-    })?;
+    fs::create_dir(folder).map_err(refused)?;
     let (program, file, adapter) = language.adapter();
     let study = format!("{name}.toml");
     let texts = [

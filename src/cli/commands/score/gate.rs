@@ -1,16 +1,15 @@
-//! What a score comes to: warnings, guesses at their cause, and the verdict of a gate.
+//! The verdict on scores: warnings, guesses at their cause, and whether the results pass.
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
-use crate::cli::commands::score::results::{Read, Results};
+use crate::cli::commands::score::results::{Results, Scored};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::judge::score::completeness::Lack;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_soil::wording::typed;
 
-/// Tells what the results lack and whether they pass. In a gate, and where it is asked for, a result
-/// that is not whole fails.
+/// Prints what the results lack and whether they pass. With `--below` or `--strict`, incomplete results fail.
 pub fn judge(
     results: &Results,
     below: Option<f64>,
@@ -37,24 +36,22 @@ pub fn judge(
         for sentence in &one.score.diagnosis {
             say!("diagnosis: {name}{sentence}");
         }
-        for note in &one.notes {
+        for note in &one.run.notes {
             say!("note: {name}{note}");
         }
     }
     if is_gate && !results.are_times_known() {
-        say!(
-            "note: a time that is missing was not looked for: name those that must be there by --time-factor"
-        );
+        say!("note: missing times were not looked for: give the times that must be there by --time-factor");
     }
     let Some(bound) = below else { return Ok(exit) };
     let reference = references.first().map(|kind| kind.name());
     Ok(exit.max(errors_below(bound, &results.all, reference)?))
 }
 
-/// Whether every main error against the first reference is below a bound; NaN is not.
-fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow::Result<Exit> {
+/// Checks that every main error against the first reference is below a bound; NaN is not.
+fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Exit> {
     if !(bound.is_finite() && bound > 0.0) {
-        return Err(Ended::usage(format!("`--below {bound}` is no bound: give a positive number")));
+        return Err(Ended::usage(format!("`--below {bound}` is invalid: expected a positive number")));
     }
     let judged = results.iter().flat_map(|one| &one.score.errors).filter(|row| {
         matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
@@ -72,7 +69,7 @@ fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow
     let mut exit = Exit::Pass;
     for row in judged {
         any = true;
-        // Written so that what is no number fails.
+        // NaN fails.
         let passes = row.value.abs() < bound;
         if !passes {
             let unit = if row.quantity == Quantity::Settlement { "relative" } else { "L2" };
@@ -88,6 +85,6 @@ fn errors_below(bound: f64, results: &[Read], reference: Option<&str>) -> anyhow
     if any {
         Ok(exit)
     } else {
-        Err(Ended::with(Exit::NothingSelected, "the result has no error that could be judged"))
+        Err(Ended::with(Exit::NothingSelected, "the result has no error that can be judged"))
     }
 }

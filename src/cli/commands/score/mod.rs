@@ -1,76 +1,66 @@
-//! `oedometer score`: hold an external result against the references of a scene.
+//! `oedometer score`: compares a result of another program with the references of a scene.
 
-pub mod gate;
+mod gate;
 pub mod results;
-pub mod scored_files;
+mod scored_files;
 
 use crate::case::Case;
-use crate::cli::commands::score::results::{Held, Results};
-use crate::cli::commands::score::scored_files::Typed;
+use crate::cli::commands::score::results::{Comparison, Results};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
-use crate::cli::overrides;
-use crate::cli::overrides::StudyLines;
+use crate::cli::overrides::{Outputs, StudyLines};
 use crate::cli::stream::{print_data, say};
-use crate::import::mapping::convention::{CONVENTION, PLANE_CONVENTION};
 use crate::import::mapping::preset::Preset;
+use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
-use crate::study::check::Purpose;
 use crate::study::check::Study;
 use oedometer_mpm::scene::SceneKind;
 use std::path::PathBuf;
 
-/// Columns behind those of the errors, of results on several meshes.
+/// Columns behind those of the errors, for results on several meshes.
 const SERIES_COLUMNS: [&str; 3] = ["cells", "order", "class"];
 
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Files of a result: CSV, VTU, PVD, .series, legacy VTK, NPZ, HDF5, XDMF. CSV files are one result, with --cells
-    /// one argument a mesh; other files are grouped by their meshes. `*` and `?` stand for several
+    /// one argument per mesh; other files are grouped by their meshes. Patterns with `*` and `?` are expanded
     #[arg(required_unless_present = "show_mapping", value_name = "FILE")]
     results: Vec<PathBuf>,
     /// Scene that the result is of, like `terzaghi`
     #[arg(long, required_unless_present = "show_mapping", default_value = "")]
     scene: String,
-    /// Program that wrote the files: what its arrays mean; a --mapping goes over it
+    /// Program that wrote the files, for the meaning of its arrays; --mapping overrides it key by key
     #[arg(long, value_enum)]
     preset: Option<Preset>,
-    /// Seconds from one numbered step to the next, where file names have the number of the step
+    /// Seconds from one numbered step to the next, if file names have the number of the step
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     set_time_step: Option<f64>,
-    /// What the columns mean; see --show-mapping. Where none is given, the columns are t, y, p, `u_y`
+    /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
-    /// Print the mapping that holds where none is given, as a start for one's own; with --scene that
-    /// of the scene, with --preset that of the program
+    /// Print the default mapping as a start for one of your own; with --scene that of the scene, with
+    /// --preset that of the program
     #[arg(long)]
     show_mapping: bool,
-    /// Hold the result against this reference only
-    #[arg(long, value_name = "NAME")]
-    reference: Option<String>,
-    /// Time factors `T_v` that the result must have, comma-separated; its other times are left out
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    time_factor: Option<String>,
-    /// How far, relative, a time may lie from the one that it stands for: the requested one, or that
+    #[command(flatten)]
+    outputs: Outputs,
+    /// Largest relative distance of a time from the one that it stands for: the requested one, or that
     /// of another mesh
     #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
     time_tolerance: f64,
     /// Cells over the height of each result, comma-separated: adds orders and classes
     #[arg(long, value_name = "LIST")]
     cells: Option<String>,
-    /// Fail with exit code 1 where an error (L2, settlement relative) against the first reference is
-    /// not below this, or where the result is not whole
+    /// Fail with exit code 1 if an error (L2, settlement relative) against the first reference is not
+    /// below this, or if the result is incomplete
     #[arg(long, value_name = "ERROR")]
     below: Option<f64>,
-    /// Fail with exit code 1 where the result is not whole: volume, height, rows, times
+    /// Fail with exit code 1 if the result is incomplete: volume, height, rows, times
     #[arg(long)]
     strict: bool,
-    /// Set a dotted key of a study file, like material.porosity=0.45
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    assignments: Vec<String>,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -80,7 +70,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
         if let Some(preset) = arguments.preset {
-            print_data(preset.text())?;
+            print_data(preset.text)?;
             return Ok(Exit::Pass);
         }
         let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
@@ -90,29 +80,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let tolerance = arguments.time_tolerance;
     if !(0.0..1.0).contains(&tolerance) {
         return Err(Ended::usage(format!(
-            "`--time-tolerance {tolerance}` is no share: give a number from 0 to below 1"
+            "`--time-tolerance {tolerance}` is invalid: expected a number from 0 to below 1"
         )));
     }
-    let (study, requested) = study_of(&Asked {
-        scene: &arguments.scene,
-        reference: arguments.reference.as_deref(),
-        time_factors: arguments.time_factor.as_deref(),
-        assignments: &arguments.assignments,
-    })?;
-    let Some(planned) = study.planned.first() else {
-        return Err(Ended::usage("the assignments leave no column"));
-    };
-    let case = &planned.case;
-    let typed = Typed {
-        results: &arguments.results,
-        cells: arguments.cells.as_deref(),
-        preset: arguments.preset,
-        mapping: arguments.mapping.as_deref(),
-        time_step: arguments.set_time_step,
-    };
-    let (mapping, runs) = scored_files::of(&typed, case)?;
-    let names: Vec<PathBuf> = runs.iter().filter_map(|run| run.files.first().cloned()).collect();
-    let held = Held {
+    let (study, requested) = study_of(&arguments.scene, &arguments.outputs)?;
+    let case = &study.planned[0].case;
+    let (mapping, runs) = scored_files::read(arguments, case)?;
+    let comparison = Comparison {
         case,
         mapping: &mapping,
         references: &study.references.iter().map(|kind| kind.of_soil(&case.material)).collect::<Vec<_>>(),
@@ -120,15 +94,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         tolerance,
         are_cells_found: arguments.cells.is_none(),
     };
-    let mut results = Results::of(runs, &held)?;
-    let series = results.series(case);
+    let mut results = Results::of(runs, &comparison)?;
+    let series = results.series();
     if let Some((series, cells)) = &series {
         results.keep_series(series, cells);
     }
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
         TableFormat::Csv => {
-            print_data(&errors_csv(&results, &names, series.as_ref().map(|(series, _)| &series[..]))?)?;
+            print_data(&errors_csv(&results, series.as_ref().map(|(series, _)| &series[..]))?)?;
         }
         _ => {
             let mut tables = Vec::new();
@@ -143,66 +117,41 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     say!("{}", groups_of(case));
-    gate::judge(&results, arguments.below, arguments.strict, held.references)
+    gate::judge(&results, arguments.below, arguments.strict, comparison.references)
 }
 
-/// What a result is held against, as it was asked for.
-pub struct Asked<'a> {
-    /// The scene.
-    pub scene: &'a str,
-    /// One of its references; all where none is named.
-    pub reference: Option<&'a str>,
-    /// Time factors that the result must have, comma-separated.
-    pub time_factors: Option<&'a str>,
-    /// Dotted keys of a study file with their values.
-    pub assignments: &'a [String],
-}
-
-/// The scene with the column that the result is of, as a study with one case, and the time factors
-/// that were asked for.
+/// The scene with its column as a study of one case, and the requested time factors.
 ///
 /// # Errors
 /// What is wrong with the scene or an assignment.
-pub fn study_of(asked: &Asked) -> anyhow::Result<(Study, Vec<f64>)> {
-    let mut lines = StudyLines::of("score", asked.scene, "`--scene`")?;
-    lines.give_outputs(asked.reference, asked.time_factors)?;
-    lines.assign(asked.assignments)?;
-    lines.refuse_without_effect(&overrides::OF_RUNS)?;
+pub fn study_of(scene: &str, outputs: &Outputs) -> anyhow::Result<(Study, Vec<f64>)> {
+    let mut lines = StudyLines::of("score", scene, "`--scene`")?;
+    lines.give_outputs(outputs)?;
     let is_requested = lines.has("output.time_factors");
-    // No grid of this program has to fit the body that another one solved.
-    let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
-    let study = lines.study_for(Purpose::Theory, sweep)?;
-    let requested = match study.planned.first() {
-        Some(planned) if is_requested => planned.case.time_factors.to_vec(),
-        _ => Vec::new(),
-    };
+    let study = lines.theory_study()?;
+    let requested = if is_requested { study.planned[0].case.time_factors.to_vec() } else { Vec::new() };
     Ok((study, requested))
 }
 
-/// Which theory can hold, in one line.
+/// The size of what the reference neglects, in one line.
 fn groups_of(case: &Case) -> String {
     let soil = &case.material;
     format!(
-        "groups: storage n E_oed/K_w = {:.2e}, finite strain m_vl q = {:.2e}; an error of their size is the model's, \
-         not the solver's",
+        "groups: storage n E_oed/K_w = {:.2e}, finite strain m_vl q = {:.2e}; an error of their size is due to the \
+         model, not to the solver",
         soil.oedometric_modulus() / soil.coupling_modulus(),
         case.column.load / soil.oedometric_modulus()
     )
 }
 
-/// The errors as CSV, of several results with the name of each in front; of several meshes with their cells, and the
-/// order and class of the main norms behind.
-fn errors_csv(
-    results: &Results,
-    names: &[PathBuf],
-    series: Option<&[ScoredSeries]>,
-) -> anyhow::Result<String> {
+/// The errors as CSV. Several results have their name in front; several meshes have their cells, order and class behind.
+fn errors_csv(results: &Results, series: Option<&[ScoredSeries]>) -> anyhow::Result<String> {
     let several = results.all.len() > 1;
     let of_series = series.map_or(&[][..], |_| &SERIES_COLUMNS);
     let header =
         several.then_some("result").into_iter().chain(ERROR_COLUMNS).chain(of_series.iter().copied());
-    let rows = results.all.iter().zip(names).enumerate().flat_map(|(place, (one, name))| {
-        let name = several.then(|| name.display().to_string());
+    let rows = results.all.iter().enumerate().flat_map(|(place, one)| {
+        let name = one.run.files.first().filter(|_| several).map(|file| file.display().to_string());
         one.score.errors.iter().map(move |row| {
             let known = series.map(|series| series_fields(results.series_of_row(place, row, series)));
             name.clone().into_iter().chain(row.csv_fields()).chain(known.into_iter().flatten()).collect()
@@ -211,7 +160,7 @@ fn errors_csv(
     csv_of(header, rows)
 }
 
-/// The fields of [`SERIES_COLUMNS`]: empty where a norm has no series, the order where the class allows none.
+/// The fields of [`SERIES_COLUMNS`]: empty if a norm has no series, the order also if the class has none.
 fn series_fields(found: Option<(usize, &ScoredSeries)>) -> [String; 3] {
     let Some((cells, series)) = found else { return Default::default() };
     let class = &series.classification;

@@ -1,53 +1,39 @@
-//! What is scored: the meaning of the files, and their runs with numbers of cells.
+//! The files that are scored: their meaning, and their runs with numbers of cells.
 
 use crate::case::Case;
+use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
-use crate::import::runs::{Given, Run, are_tables, files_of, run_of_tables, runs_of_arrays};
+use crate::import::runs::{Run, are_tables, files_of, runs_of};
 use crate::study::file::StudySource;
+use clap::ValueEnum;
 use oedometer_formats::input_file;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// What a user types of files and their meaning.
-pub struct Typed<'a> {
-    /// Files and patterns.
-    pub results: &'a [PathBuf],
-    /// Numbers of cells, one a result.
-    pub cells: Option<&'a str>,
-    /// The program that wrote the files.
-    pub preset: Option<Preset>,
-    /// A mapping of one's own.
-    pub mapping: Option<&'a Path>,
-    /// Seconds from one numbered step to the next.
-    pub time_step: Option<f64>,
-}
-
-/// The meaning of the files that were named, and their runs.
-pub fn of(typed: &Typed, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
-    let column = &case.column;
-    let body = SolvedBody {
-        height: column.height,
-        length: case.scene.has_plane_fields().then_some(column.extent()),
-        seconds_per_time_factor: case.seconds_per_time_factor(),
-    };
-    let given = files_of(typed.results)?;
+/// Reads the files of the command line: their mapping, and their runs.
+pub fn read(arguments: &Arguments, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
+    let body = SolvedBody::of(case);
+    let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
-    let mut mapping = mapping_of(typed, case, is_tables)?;
-    if let Some(step) = typed.time_step {
+    let mut mapping = mapping_of(arguments, case.scene.has_plane_fields(), is_tables)?;
+    if let Some(step) = arguments.set_time_step {
         if !(step.is_finite() && step > 0.0) {
-            return Err(Ended::usage(format!("`--set-time-step {step}` is no step: give seconds above 0")));
+            return Err(Ended::usage(format!("`--set-time-step {step}` is invalid: give seconds above 0")));
         }
         mapping.time.step = Some(step);
     }
-    let mut runs = if is_tables {
-        tables(typed.cells, given, &mapping, body)?
+    let mut runs = if let Some(cells) = arguments.cells.as_ref().filter(|_| is_tables) {
+        // Each argument with tables is a mesh.
+        cells_of(cells, given.len())?;
+        let runs = given.chunks(1).map(|one| runs_of(one, &mapping, body));
+        runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect()
     } else {
-        runs_of_arrays(&given, &mapping, body)?
+        runs_of(&given, &mapping, body)?
     };
-    if let Some(cells) = typed.cells {
+    if let Some(cells) = &arguments.cells {
         let cells = cells_of(cells, runs.len())?;
         for (run, cells) in runs.iter_mut().zip(cells) {
             run.cells = Some(cells);
@@ -60,54 +46,31 @@ pub fn of(typed: &Typed, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
     }
     Ok((mapping, runs))
 }
-/// The runs of tables: one, or with numbers of cells one an argument.
-fn tables(
-    cells: Option<&str>,
-    given: Vec<Given>,
-    mapping: &Mapping,
-    body: SolvedBody,
-) -> anyhow::Result<Vec<Run>> {
-    let groups: Vec<_> = match cells {
-        None => vec![given.into_iter().flat_map(|one| one.files).collect()],
-        Some(typed) => {
-            cells_of(typed, given.len())?;
-            given.into_iter().map(|one| one.files).collect()
-        }
-    };
-    groups.into_iter().map(|files| Ok(run_of_tables(files, mapping, body)?)).collect()
-}
 
-/// The declared meaning of the columns or arrays.
-fn mapping_of(typed: &Typed, case: &Case, is_tables: bool) -> anyhow::Result<Mapping> {
-    let is_plane = case.scene.has_plane_fields();
-    let own = typed.mapping.map(source_of).transpose()?;
-    let preset = typed.preset.or_else(|| (!is_tables && own.is_none()).then_some(Preset::Meshio));
-    if let Some(preset) = preset {
-        if typed.preset.is_none() {
+/// The declared meaning of the columns or arrays; a note says what is assumed if nothing is declared.
+fn mapping_of(arguments: &Arguments, is_plane: bool, is_tables: bool) -> anyhow::Result<Mapping> {
+    let own = arguments.mapping.as_deref().map(source_of).transpose()?;
+    let mut preset = arguments.preset;
+    if preset.is_none() && own.is_none() {
+        if is_tables {
+            let along = if is_plane {
+                ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
+            } else {
+                ""
+            };
+            say!(
+                "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
+                 in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to edit"
+            );
+        } else {
+            preset = Preset::from_str("meshio", false).ok();
             say!(
                 "note: no --preset and no --mapping, so the arrays are looked for by the names of --preset meshio: \
-                 pressure, displacement and their like, in SI, pressure positive in compression"
+                 pressure, displacement and similar ones, in SI, pressure positive in compression"
             );
         }
-        return Ok(preset.mapping(own.as_ref(), is_plane)?);
     }
-    let Some(source) = own else {
-        let along = if is_plane {
-            ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
-        } else {
-            ""
-        };
-        say!(
-            "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
-             in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to change"
-        );
-        return Ok(Mapping::convention(is_plane)?);
-    };
-    let mapping = Mapping::read(&source)?;
-    if is_plane {
-        mapping.check_plane(&source)?;
-    }
-    Ok(mapping)
+    Ok(Mapping::resolve(preset, own.as_ref(), is_plane)?)
 }
 
 fn source_of(path: &Path) -> anyhow::Result<StudySource> {
@@ -116,18 +79,20 @@ fn source_of(path: &Path) -> anyhow::Result<StudySource> {
     Ok(StudySource { name: path.display().to_string(), text })
 }
 
-/// Numbers of cells, one a result.
+/// Numbers of cells, one per result.
 fn cells_of(typed: &str, results: usize) -> anyhow::Result<Vec<usize>> {
     let cells: Vec<usize> = typed
         .split(',')
         .map(|entry| entry.trim().parse().ok().filter(|cells| *cells > 0))
         .collect::<Option<_>>()
-        .ok_or_else(|| Ended::usage(format!("`--cells {typed}` is no list of numbers from 1 on")))?;
+        .ok_or_else(|| {
+            Ended::usage(format!("`--cells {typed}` is invalid: expected whole numbers from 1 up"))
+        })?;
     if cells.len() == results {
         return Ok(cells);
     }
     Err(Ended::usage(format!(
-        "`--cells {typed}` has {} numbers for {results} results: give one a result; several files of one mesh are one \
+        "`--cells {typed}` has {} numbers for {results} results: give one per result; several files of one mesh are one \
          result as a quoted pattern, like 'mesh-10/*.csv'",
         cells.len()
     )))

@@ -5,7 +5,7 @@
 
 use super::{CORRECTED, IMPROVED, INACCURATE, Mistake, Trials, samples_at};
 use crate::case::Quantity;
-use crate::import::table::SampledState;
+use crate::import::SampledState;
 use crate::measure::fields::ExactFields;
 use oedometer_exact::{Reference, ReferenceKind};
 use oedometer_soil::elementary::{exp, ln};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::import::mapping::convention::{CONVENTION, PLANE_CONVENTION};
+use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::study::file::StudySource;
 
 fn mapping(text: &str) -> Mapping {
