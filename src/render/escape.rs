@@ -100,6 +100,17 @@ pub(crate) fn markdown(text: &str) -> String {
     out
 }
 
+/// The target of a link in Markdown: pages of the report lead to their Markdown form, lists of pages to `README.md`.
+pub(crate) fn markdown_target(target: &str) -> Cow<'_, str> {
+    match target.strip_suffix(".html").filter(|_| !target.contains("://")) {
+        Some(page) => match page.strip_suffix("index") {
+            Some(folder) if folder.is_empty() || folder.ends_with('/') => format!("{folder}README.md").into(),
+            _ => format!("{page}.md").into(),
+        },
+        None => target.into(),
+    }
+}
+
 /// Text for LaTeX with real subscripts and superscripts.
 pub(crate) fn latex_text(text: &str) -> String {
     let piece = |run: ScriptRun| match run.level {
@@ -154,6 +165,21 @@ mod tests {
         assert_eq!(markdown("a|b *c* <i> T_v _x_"), "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_");
         assert_eq!(markdown("a\u{1b}[2J\u{202e}b"), "a\u{fffd}\\[2J\u{fffd}b");
         assert_eq!(markdown("# not a heading\n- nor a list"), "\\# not a heading - nor a list");
+    }
+
+    #[test]
+    fn links_between_pages_lead_to_their_markdown_form() {
+        for (html, markdown) in [
+            ("studies/a.html", "studies/a.md"),
+            ("../index.html", "../README.md"),
+            ("index.html", "README.md"),
+            ("studies/an-index.html", "studies/an-index.md"),
+            ("https://a.org/b.html", "https://a.org/b.html"),
+            ("tables/a.csv", "tables/a.csv"),
+            ("#a", "#a"),
+        ] {
+            assert_eq!(markdown_target(html), markdown);
+        }
     }
 
     #[test]

@@ -1,16 +1,14 @@
-//! Tables, charts and pages out of plain data. Nothing here computes science, and nothing here
-//! knows a solver: the same description always gives the same bytes.
+//! Tables, charts and pages made from plain data. Nothing here computes results or knows a solver, and the same
+//! description always gives the same bytes.
 
 pub mod answers;
-pub mod chart;
+mod chart;
 pub mod checks;
+mod error;
 pub mod escape;
-pub mod number;
+mod number;
 pub mod page;
-pub mod render_error;
 pub mod report;
-pub mod script;
-#[cfg(test)]
-mod showcase;
+mod script;
 pub mod table;
 pub mod tables;

@@ -1,4 +1,6 @@
-//! Numbers as every table shows them.
+//! Numbers in tables and sentences of reports.
+
+pub use oedometer_soil::wording::{order, short as number};
 
 /// An error: three digits and a power of ten, `5.62e-3`.
 pub fn error(value: f64) -> String {
@@ -18,11 +20,6 @@ pub fn told_apart(values: [f64; 2]) -> [String; 2] {
 /// A number with so many decimals, with a proper minus and no sign at zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
     finite(value, |v| minus(format!("{v:.decimals$}")))
-}
-
-/// An order: two decimals.
-pub fn order(value: f64) -> String {
-    finite(value, |v| unsigned_zero(format!("{v:.2}")))
 }
 
 /// A share as a percentage: `0.012` is `1.20 %`.
@@ -52,22 +49,6 @@ pub fn seconds(value: f64) -> String {
             _ => (1.0 / 3600.0, "h"),
         };
         format!("{} {unit}", three_digits(v * scale))
-    })
-}
-
-/// A quantity that is neither: four digits, with a power of ten where that is shorter.
-pub fn number(value: f64) -> String {
-    finite(value, |v| match v.abs() {
-        0.0 => "0".to_owned(),
-        a if (1e-3..1e5).contains(&a) => {
-            let short = format!("{v:.3e}").parse::<f64>().unwrap_or(v);
-            format!("{short}")
-        }
-        _ => {
-            let text = format!("{v:.3e}");
-            let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-            format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
-        }
     })
 }
 

@@ -8,9 +8,9 @@ use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, PhaseTime, Record, WallSample};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
-use crate::render::report::figures::error_over_work;
+use crate::render::report::cost;
 use crate::render::table::{Cell, Table};
-use crate::render::tables::{attached_run_table, critical_steps, measures, phases, spreads};
+use crate::render::tables::{measures, runs};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_mpm::run::profile::Phase;
@@ -187,7 +187,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         unknown: None,
         probes: Vec::new(),
     });
-    let table = critical_steps::table_of(&[record.clone()]);
+    let table = runs::critical_steps(&[record.clone()]);
     for (header, value) in [
         ("predicted", Cell::Error(0.011)),
         ("observed", Cell::Error(0.013)),
@@ -209,7 +209,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         relative: 7e-11,
         place: Some("its place".to_owned()),
     };
-    let table = spreads::table_of(std::slice::from_ref(&spread));
+    let table = runs::spreads(std::slice::from_ref(&spread));
     for (header, value) in [
         ("study", Cell::Text("its study".to_owned())),
         ("against", Cell::Text("its source".to_owned())),
@@ -226,7 +226,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
 
     record.counters.point_updates = 5_000_000;
     let phase = PhaseTime { phase: Phase::Outputs, seconds: 0.03, share: 0.2, entries: 17 };
-    let table = phases::phases_table(&[phase], &record);
+    let table = measures::phases_table(&[phase], &record);
     let number = |header: &str| match under(&table, 0, header) {
         Cell::Number(value) | Cell::Percent(value) => *value,
         other => panic!("{other:?}"),
@@ -308,7 +308,7 @@ fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
         meant.expect("measured").value
     };
     let (mut tables, mut figures) = (0, 0);
-    for block in error_over_work::blocks(&results) {
+    for block in cost::work_blocks(&results) {
         match block {
             Block::Table(table) => {
                 tables += 1;
@@ -363,12 +363,12 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));
     }
-    let notes = attached_run_table::notes_of(&record).join("\n");
+    let notes = runs::attached_notes(&record).join("\n");
     for said in [
-        "wall time 2 s at least, 3 s as the median of 3 runs",
+        "wall time at least 2 s, median 3 s of 3 runs",
         "processor 2.5 s",
-        "memory 7.5 MB at most",
-        "of its own account 6.5 s",
+        "memory at most 7.5 MB",
+        "6.5 s by its own account",
     ] {
         assert!(notes.contains(said), "{said}: {notes}");
     }

@@ -229,7 +229,7 @@ fn the_matrix_shows_the_worst_study_in_whatever_order_they_come() {
         end,
     };
     let links = |study: &str| format!("{study}.html");
-    let cells = |ends: &[Ended<'_>]| format!("{:?}", matrix::answer(ends, &links, "all.html"));
+    let cells = |ends: &[Ended<'_>]| format!("{:?}", matrix::answer(ends, &links));
     for worst in [
         End::Error(0.7),
         End::Locked,

@@ -146,7 +146,7 @@ fn a_check_that_fails_stands_at_the_head_of_the_report() {
     records[0].balance[0].water_imbalance = 0.3;
     let told = page(&records);
     assert!(told.contains("1 checks of its runs fail"), "{told}");
-    assert!(told.contains("the first of GC-SRI-patch implicit"), "{told}");
+    assert!(told.contains("fail, first GC-SRI-patch implicit"), "{told}");
 }
 
 #[test]

@@ -73,19 +73,9 @@ fn page_of(all: &[&(Study, Vec<Record>)]) -> (Page, Page) {
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
     let ends: Vec<Ended<'_>> =
         all.iter().flat_map(|(study, records)| ends_of(study, records).expect("sound")).collect();
-    let links = |study: &str| format!("studies/{study}.html");
-    let (making, index) = (Making::default(), "studies/index.html");
-    let situations = "situations.html";
-    let answers = Answers {
-        results: &results,
-        changes: Some(&[]),
-        making: &making,
-        links: &links,
-        index,
-        ends: &ends,
-        situations,
-    };
-    (answer_page(&answers).expect("a page"), situations_page(&ends, "html"))
+    let making = Making::default();
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, ends: &ends };
+    (answer_page(&answers).expect("a page"), situations_page(&ends))
 }
 
 fn tables(page: &Page) -> Vec<&Table> {
@@ -105,7 +95,7 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_na
         "What does accuracy cost?",
         "Where does it lock, where does it break?",
         "Are the published equations right?",
-        "One layer of material points, or two?",
+        "One set of material points, or two?",
         "What changed since the golden values?",
     ] {
         assert!(markdown.contains(question), "{question}\n{markdown}");
@@ -127,7 +117,7 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_na
     let matrix = page.sections.iter().find(|section| section.id == "breaks").expect("the matrix");
     let Some(Block::Table(matrix)) = matrix.blocks.get(1) else { panic!("{matrix:?}") };
     assert_eq!(matrix.rows.len(), 3, "lattice, off the lattice, large strain");
-    assert!(markdown.contains("(situations.html)"), "{markdown}");
+    assert!(markdown.contains("(situations.md)"), "{markdown}");
     assert_eq!(detail.sections.len(), 3);
     assert!(
         render_html(&page).expect("a page").contains("href=\"studies/many.html\">"),
@@ -144,7 +134,10 @@ fn the_audit_shows_several_times_and_meshes_and_names_what_the_paper_prints() {
     else {
         panic!("{audit:?}")
     };
-    assert!(mapping_back.contains("needs a condition that the paper does not name"), "{mapping_back}");
+    assert!(
+        mapping_back.contains("needs a boundary condition that the paper does not name"),
+        "{mapping_back}"
+    );
     assert!(sentence.contains("`log-linear, conservative`"), "{sentence}");
     assert!(
         sentence.contains("`porosity-dependent, constant-porosity-gradient (as printed)` (+"),

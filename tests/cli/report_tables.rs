@@ -91,7 +91,7 @@ fn html_and_markdown_come_from_the_same_page_with_all_figures() {
     let html = render_html(&page).expect("a page");
     let drawn = figures(&page).expect("figures");
     assert!(drawn.len() >= 5, "{} figures", drawn.len());
-    assert_eq!(html.matches("<svg").count(), drawn.len(), "every figure is in the page itself");
+    assert_eq!(html.matches("<svg xmlns").count(), drawn.len(), "every figure is in the page itself");
     assert!(!html.contains("http://") || !html.contains("<link"), "nothing is fetched from elsewhere");
     let markdown = render_markdown(&page).expect("a page");
     for (name, svg) in drawn {
@@ -115,21 +115,13 @@ fn making() -> Making {
 fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
-    let (making, links) = (making(), |study: &str| format!("studies/{study}.html"));
+    let making = making();
     let ends = ends_of(&study, &records).expect("sound");
-    let answers = Answers {
-        results: &results,
-        changes: Some(&[]),
-        making: &making,
-        links: &links,
-        index: "studies/index.html",
-        ends: &ends,
-        situations: "situations.html",
-    };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, ends: &ends };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
     assert_eq!(open_questions(&page), 4, "{markdown}");
-    assert!(markdown.contains("[`small`](studies/small.html)"), "{markdown}");
+    assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");
     assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">small</a>"));
     assert_snapshot("answers_markdown", &markdown);
     // Without records of several methods nothing is recommended.
@@ -179,5 +171,5 @@ fn a_check_tells_what_is_not_met_and_what_moved() {
         &verdicts::markdown_of(std::slice::from_ref(&untouched), |_| Some("small.toml".to_owned()))
             .expect("a text"),
     );
-    assert_snapshot("check_junit", &junit::report_of(&[untouched]).expect("a document"));
+    assert_snapshot("check_junit", &junit(&[untouched]).expect("a document"));
 }

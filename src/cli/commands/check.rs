@@ -18,8 +18,7 @@ use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
-use crate::render::checks::annotations::annotations_of;
-use crate::render::checks::{junit, verdicts};
+use crate::render::checks::{annotations_of, junit, verdicts};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
@@ -75,7 +74,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let mut refused = Vec::new();
     refused.extend(print(&checks, arguments).err());
     if let Some(path) = &arguments.junit {
-        refused.extend(write_document(path, &junit::report_of(&checks)?).err());
+        refused.extend(write_document(path, &junit(&checks)?).err());
     }
     if let Some(path) = arguments.summary.clone().or_else(|| path_in("GITHUB_STEP_SUMMARY")) {
         refused.extend(append(&path, &verdicts::markdown_of(&checks, files)?).err());

@@ -15,7 +15,7 @@ use crate::golden::{GoldenFile, values_of};
 use crate::judge::scatter::{ValueScatter, spread_of};
 use crate::record::Record;
 use crate::record::store::RecordStore;
-use crate::render::tables::spreads;
+use crate::render::tables::runs;
 use crate::study::check::Study;
 use crate::study::perturbed::LastDigit;
 use oedometer_mpm::run::Kernel;
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&spreads)?)?,
-        format => print_tables(&[spreads::table_of(&spreads)], format)?,
+        format => print_tables(&[runs::spreads(&spreads)], format)?,
     }
     Ok(Exit::Pass)
 }

@@ -9,7 +9,7 @@ use crate::cli::output::{csv_of, json_of};
 use crate::cli::overrides::{Assignments, StudyLines, TIMING, toml_of};
 use crate::cli::stream::print_data;
 use crate::record::{Probe, Record, Status};
-use crate::render::tables::critical_steps;
+use crate::render::tables::runs;
 use crate::study::check::Purpose;
 use oedometer_mpm::critical_step::observed::CriticalStep;
 
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(error.into());
     }
     match arguments.format {
-        SolveFormat::Table => print_data(&(critical_steps::table_of(&report.records).to_text()? + "\n"))?,
+        SolveFormat::Table => print_data(&(runs::critical_steps(&report.records).to_text()? + "\n"))?,
         SolveFormat::Csv => print_data(&csv_of(COLUMNS, report.records.iter().flat_map(rows_of))?)?,
         SolveFormat::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();

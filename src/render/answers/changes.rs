@@ -1,21 +1,21 @@
-//! What changed since the golden values? Nothing, or the worst first.
+//! What changed since the golden values? The worst first.
 
 use crate::golden::compare::{Change, Difference};
-use crate::render::answers::question::{Answer, Question, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, columns};
 
-/// The question.
-pub const QUESTION: Question = Question { heading: "What changed since the golden values?", id: "changes" };
+const QUESTION: Question = Question { heading: "What changed since the golden values?", id: "changes" };
 
-/// The worst of all differences, of every study together.
+/// The worst differences of all studies together.
 pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
     let Some(changes) = changes else {
-        return QUESTION.open("golden values of these studies, which `oedometer accept` takes");
+        return QUESTION.open("golden values of these studies, which `oedometer accept` writes");
     };
     if changes.is_empty() {
-        let text = "Nothing: every value of these studies that has a golden one agrees with it within its tolerance.";
+        let text =
+            "Nothing: every value of these studies with a golden value agrees with it within its tolerance.";
         return QUESTION.told(text, Vec::new());
     }
     let mut ranked: Vec<&(String, Difference)> = changes.iter().collect();
@@ -45,14 +45,11 @@ pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
         columns("change | study | value | > golden | > now | > relative change"),
         rows,
     );
-    let sentence = format!(
-        "Values that differ from the accepted ones: {}; the table has the worst first.",
-        counted.join(", ")
-    );
+    let sentence = format!("Values that differ from the golden ones: {}.", counted.join(", "));
     QUESTION.told(sentence, vec![Block::Table(short(table, "listed by oedometer check"))])
 }
 
-/// The golden value and the present one, with digits that tell them apart.
+/// The golden and the present value, with digits that tell them apart.
 fn values_of(one: &Difference) -> [Cell; 2] {
     if let (Some(golden), Some(found)) = (one.golden, one.found) {
         return number::told_apart([golden, found]).map(Cell::Text);

@@ -1,36 +1,33 @@
-//! Which method should one take? One row a situation, chosen from the records by a rule that is stated.
+//! Which method should I take? One row per situation, chosen from the records by a stated rule.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::locking::{Standing, standings};
 use crate::judge::comparison::work_precision::WorkPrecision;
 use crate::judge::paths::Path;
-use crate::render::answers::question::{Answer, Links, Question, link_cell, short};
 use crate::render::answers::regime::{MethodPath, Regime};
+use crate::render::answers::{Answer, Links, Question, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
-use crate::render::report::labels::first_measure;
+use crate::render::report::labels::{first_measure, is_settled, order_or_class};
+use crate::render::report::layer::keeps_errors;
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
 use oedometer_exact::exact_error::ExactError;
 
-/// The question.
-pub const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
+const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
-/// Errors of a stiff skeleton may be this many times those of the usual one.
-const KEEPS: f64 = 2.0;
-
-/// Situations of columns, as a row and as the end of a sentence.
-const SMALL: (&str, &str) = ("Small strain: nothing moves far", "while nothing moves far");
+/// Situations of columns, as the head of a row and as the end of a sentence.
+const SMALL: (&str, &str) = ("Small strain", "at small strain");
 const CROSSING: (&str, &str) =
     ("Large strain: points cross cells", "at large strain where points cross cells");
 const TOTAL: (&str, &str) = (
-    "Large strain: shape functions of the initial configuration (total Lagrangian) will do",
-    "at large strain where shape functions of the initial configuration will do",
+    "Large strain: total Lagrangian (shape functions of the initial configuration)",
+    "at large strain where shape functions of the initial configuration suffice",
 );
 
-/// A situation with the method to take: what is measured of it, and the study that carries it.
+/// A situation with the method to take, the reason, and the study that shows it.
 struct Advice {
     situation: &'static str,
     place: &'static str,
@@ -39,7 +36,7 @@ struct Advice {
     study: String,
 }
 
-/// One row a situation.
+/// One row per situation.
 pub fn answer(
     results: &[StudyResults<'_>],
     small: Option<&Regime<'_>>,
@@ -64,20 +61,21 @@ pub fn answer(
             advice.situation.into(),
             Cell::Code(advice.take.clone()),
             advice.evidence.as_str().into(),
-            link_cell(links, &advice.study),
+            Cell::Link { words: advice.study.clone(), target: links(&advice.study) },
         ]
     });
     let table = Table::of("", columns("situation | take | because | study"), rows).note(
-        "The rule: of the methods tried on the same column, the one whose largest error (pressure, effective stress, \
-         settlement) on the finest common mesh is smallest. The study has the others.",
+        "The rule: of the methods tried on the same column, the one with the smallest largest error of pressure, effective \
+         stress and settlement on the finest common mesh. Words beside an order mean that it is not settled. The study has \
+         the other methods.",
     );
     let taken: Vec<String> = all.iter().map(|advice| format!("`{}` {}", advice.take, advice.place)).collect();
     let sentence = format!("Take {}.", taken.join("; "));
     Ok(QUESTION.told(sentence, vec![Block::Table(short(table, "in the studies"))]))
 }
 
-/// The method whose largest error of pressure, effective stress and settlement on the finest common mesh is the
-/// smallest, with its orders.
+/// The method with the smallest largest error of pressure, effective stress and settlement on the finest common mesh, with
+/// its orders.
 fn of_regime(
     results: &[StudyResults<'_>],
     regime: &Regime<'_>,
@@ -91,17 +89,15 @@ fn of_regime(
         .filter_map(|one| Some((one, regime.largest_error(one)?)))
         .collect();
     let (one, error) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let order = |name: &str, quantity, sample| {
-        let class = regime.summary(one, quantity, sample).classification;
-        class
-            .order
-            .map_or(format!("{name} {}", class.class), |order| format!("{name} {}", number::order(order)))
+    let order = |(name, quantity, sample)| {
+        format!("{name} {}", order_or_class(&regime.summary(one, quantity, sample).classification))
     };
     let orders = [
-        order("p", Quantity::Pressure, Sample::Points),
-        order("σ′", Quantity::EffectiveStress, Sample::Points),
-        order("s", Quantity::Settlement, Sample::Surface),
-    ];
+        ("p", Quantity::Pressure, Sample::Points),
+        ("σ′", Quantity::EffectiveStress, Sample::Points),
+        ("s", Quantity::Settlement, Sample::Surface),
+    ]
+    .map(order);
     let cheapest = cheapest_words(results, &one.method);
     Some(Advice {
         situation,
@@ -118,7 +114,7 @@ fn of_regime(
     })
 }
 
-/// What a tenth of a percent costs with a method, where runs were timed.
+/// The cost of an error of 0.1 % with a method, if runs were timed.
 fn cheapest_words(results: &[StudyResults<'_>], method: &str) -> String {
     let timed = results.iter().filter(|one| one.study.timing_repeats > 1);
     let run = timed.filter_map(|one| {
@@ -133,16 +129,9 @@ fn cheapest_words(results: &[StudyResults<'_>], method: &str) -> String {
         .map_or(String::new(), |(seconds, name)| format!("; 0.1 % in {}, {name}", number::seconds(seconds)))
 }
 
-/// The method that keeps its errors where the skeleton hardly compresses, and who locks.
+/// The method with the smallest pressure error that keeps its errors where the skeleton is nearly incompressible.
 fn of_stiff_skeleton(study: &str, standings: &[Standing]) -> Option<Advice> {
-    let keeps = |stiff: Option<f64>, plain: Option<f64>| {
-        stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < KEEPS * plain)
-    };
-    let holds = |one: &&Standing| {
-        one.class != Some(Class::Locked)
-            && keeps(one.stiff_skeleton, one.displacement)
-            && keeps(one.stiff_skeleton_pressure, one.pressure)
-    };
+    let holds = |one: &&Standing| one.class != Some(Class::Locked) && keeps_errors(one);
     let tried = standings.iter().filter(|one| one.stiff_skeleton_pressure.is_some()).count();
     let holding: Vec<&Standing> = standings.iter().filter(holds).collect();
     let best = holding.iter().min_by(|a, b| {
@@ -151,11 +140,11 @@ fn of_stiff_skeleton(study: &str, standings: &[Standing]) -> Option<Advice> {
     })?;
     Some(Advice {
         situation: "Skeleton nearly incompressible",
-        place: "where the skeleton hardly compresses",
+        place: "where the skeleton is nearly incompressible",
         take: best.method.to_string(),
         evidence: format!(
-            "errors of the undrained start at the largest Poisson's ratio: displacement {}, pressure {}; {} of {tried} methods keep both \
-             within twice those of the usual soil",
+            "errors of the undrained start at the largest Poisson's ratio: displacement {}, pressure {}; {} of {tried} methods \
+             keep both below twice their errors in the usual soil",
             best.stiff_skeleton.map_or_else(String::new, number::error),
             best.stiff_skeleton_pressure.map_or_else(String::new, number::error),
             holding.len()
@@ -164,7 +153,7 @@ fn of_stiff_skeleton(study: &str, standings: &[Standing]) -> Option<Advice> {
     })
 }
 
-/// The integrator whose errors fall with the highest settled order in the step, for the same wave.
+/// The integrator with the highest settled order in the time step, for the same wave.
 fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
     let mut best: Option<(f64, f64, String, &str)> = None;
     let mut tried = 0;
@@ -193,7 +182,7 @@ fn of_waves(results: &[StudyResults<'_>]) -> Option<Advice> {
     })
 }
 
-/// The method of a path and how it steps: what one takes over, and not the mesh that it was tried on.
+/// The method of a path and how it steps, without the mesh on which it was tried.
 fn scheme_of(path: &Path<'_>) -> String {
     let case = &path.records[0].case;
     let parts = [case.method.to_string(), case.integrator.name().to_owned(), case.variant()];
@@ -204,7 +193,7 @@ fn scheme_of(path: &Path<'_>) -> String {
 fn step_order(path: &Path<'_>) -> Option<(f64, f64)> {
     let time = *path.records[0].case.time_factors.last()?;
     let summary = path.summary(&first_measure(Quantity::Pressure, Sample::Points, NEXT_FINER, time));
-    let is_settled = matches!(summary.classification.class, Class::Asymptotic | Class::Superconvergent);
+    let found = &summary.classification;
     let coarsest = summary.series.levels().first()?.error?;
-    Some((summary.classification.order.filter(|_| is_settled)?, coarsest))
+    Some((found.order.filter(|_| is_settled(found.class))?, coarsest))
 }

@@ -1,26 +1,19 @@
-//! Does the method converge, and to what? One row a method, small strain and large strain side by side.
+//! Does the method converge, and to what? One row per method, small strain and large strain side by side.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::SeriesSummary;
-use crate::render::answers::question::{Answer, Links, Question, links_to, short};
-use crate::render::answers::regime::{MethodPath, PAPERS, QUOTED_CELLS, Regime, distinct};
+use crate::render::answers::regime::{MethodPath, PAPERS, Regime};
+use crate::render::answers::{Answer, Links, Question, links_to, short};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
+use crate::render::report::labels::{CONVERGENCE, QUOTED_CELLS, distinct, is_settled, order_or_class};
 use crate::render::report::{StudyResults, labels, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use oedometer_convergence::Class;
 
-/// The question.
-pub const QUESTION: Question =
-    Question { heading: "Does the method converge, and to what?", id: "converges" };
+const QUESTION: Question = Question { heading: "Does the method converge, and to what?", id: "converges" };
 
-/// What is quoted of a method at small strain.
-const SMALL: [(Quantity, Sample, &str); 4] = [
-    (Quantity::Pressure, Sample::Points, "p, points"),
-    (Quantity::Pressure, Sample::Centres, "p, centres"),
-    (Quantity::EffectiveStress, Sample::Points, "σ′, points"),
-    (Quantity::Settlement, Sample::Surface, "settlement"),
-];
+/// Headings of the measures of [`CONVERGENCE`].
+const HEADINGS: [&str; 4] = ["p, points", "p, centres", "σ′, points", "settlement"];
 
 /// Sentence, table and figure.
 pub fn answer(
@@ -44,40 +37,41 @@ pub fn answer(
     QUESTION.told(sentence, blocks)
 }
 
-/// What the paper's method, or the first of the methods, converges to and how fast.
+/// What the paper's method, or the first of the methods, converges to and how fast; where an order is not settled, the
+/// class instead.
 fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
     let one = regime.method(PAPERS).or(regime.methods.first())?;
-    let order = |quantity, sample| order_words(&regime.summary(one, quantity, sample));
+    let of = [
+        ("in the pressure at the points", Quantity::Pressure, Sample::Points),
+        ("in the effective stress", Quantity::EffectiveStress, Sample::Points),
+        ("in the settlement", Quantity::Settlement, Sample::Surface),
+    ];
+    let found = of.map(|(words, quantity, sample)| {
+        let class = regime.summary(one, quantity, sample).classification;
+        let order = if class.order.is_some() { "order " } else { "" };
+        (is_settled(class.class), format!("{order}{} {words}", order_or_class(&class)))
+    });
+    let converges = found.iter().all(|(is_settled, _)| *is_settled);
+    let orders = found.map(|(_, words)| words).join(", ");
     let whose = if one.method == PAPERS { ", the paper's method," } else { "" };
     let strain = match regime.strain() {
         Some(strain) if name == "large strain" => {
-            format!("At large strain, {} in the end,", number::percent(strain))
+            format!("At a final strain of {},", number::percent(strain))
         }
         _ => format!("At {name}"),
     };
-    let error =
-        regime.error(one, Quantity::Pressure, Sample::Points, QUOTED_CELLS).map_or(String::new(), |error| {
-            format!("; on {QUOTED_CELLS} cells its pressure is off by {}", number::percent(error))
-        });
-    Some(format!(
-        "{strain} `{}`{whose} converges to {} with order {} in the pressure at the points, {} in the effective stress and {} \
-         in the settlement{error}.",
-        one.method,
-        labels::solution(regime.reference),
-        order(Quantity::Pressure, Sample::Points),
-        order(Quantity::EffectiveStress, Sample::Points),
-        order(Quantity::Settlement, Sample::Surface),
-    ))
-}
-
-/// The order on the finest three meshes, with the class where that is not a settled order.
-fn order_words(summary: &SeriesSummary<'_>) -> String {
-    let class = &summary.classification;
-    match (class.order, class.class) {
-        (Some(order), Class::Asymptotic | Class::Superconvergent) => number::order(order),
-        (Some(order), other) => format!("{} ({other})", number::order(order)),
-        (None, other) => format!("none ({other})"),
-    }
+    let error = regime.error(one, Quantity::Pressure, Sample::Points, QUOTED_CELLS);
+    let error = error.map_or(String::new(), |error| {
+        format!("; on {QUOTED_CELLS} cells the error of its pressure is {}", number::percent(error))
+    });
+    let (method, solution) = (&one.method, labels::solution(regime.reference));
+    Some(if converges {
+        format!("{strain} `{method}`{whose} converges to {solution}: {orders}{error}.")
+    } else {
+        format!(
+            "{strain} `{method}`{whose} does not have a settled order against {solution} everywhere: {orders}{error}."
+        )
+    })
 }
 
 fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
@@ -96,13 +90,13 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
     });
     let mut columns = columns("method");
     for (name, _) in regimes {
-        columns.extend(SMALL.iter().map(|(_, _, what)| TableColumn::text(format!("{name}: {what}"))));
+        columns.extend(HEADINGS.map(|what| TableColumn::text(format!("{name}: {what}"))));
     }
     let rows = ranked.iter().map(|name| {
         let mut row = vec![method_cell(name)];
         for (_, regime) in regimes {
-            row.extend(SMALL.iter().map(|(quantity, sample, _)| match regime.method(name) {
-                Some(one) => quote(regime, one, *quantity, *sample),
+            row.extend(CONVERGENCE.map(|(quantity, sample)| match regime.method(name) {
+                Some(one) => quote(regime, one, quantity, sample),
                 None => Cell::missing("not tried on this column with at least three meshes"),
             }));
         }
@@ -123,8 +117,8 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
     )
 }
 
-/// A method's name; the paper's own marked.
-pub fn method_cell(name: &str) -> Cell {
+/// A method's name, with a mark at the paper's.
+fn method_cell(name: &str) -> Cell {
     if name == PAPERS {
         Cell::Verdict(Mood::Note, format!("{name}, the paper's"))
     } else {
@@ -134,18 +128,12 @@ pub fn method_cell(name: &str) -> Cell {
 
 /// Order and error in a few characters.
 fn quote(regime: &Regime<'_>, one: &MethodPath<'_>, quantity: Quantity, sample: Sample) -> Cell {
-    let summary = regime.summary(one, quantity, sample);
-    let class = summary.classification.class;
-    let error = regime.error(one, quantity, sample, QUOTED_CELLS);
-    let error =
-        error.map_or(String::new(), |error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
-    let text = |head: &str| format!("{head}{error}");
-    match (summary.classification.order, class) {
-        (Some(order), Class::Asymptotic | Class::Superconvergent) => Cell::Text(text(&number::order(order))),
-        (Some(order), other) => Cell::Text(text(&format!("{} ({other})", number::order(order)))),
-        (None, Class::Locked) => Cell::Verdict(Mood::Fail, text("locked")),
-        (None, Class::NotEvaluable) => Cell::missing("fewer than three meshes have this error"),
-        (None, other) => Cell::Text(text(other.name())),
+    let found = regime.summary(one, quantity, sample).classification;
+    let words = labels::order_and_error(&found, regime.error(one, quantity, sample, QUOTED_CELLS));
+    match found.class {
+        Class::Locked => Cell::Verdict(Mood::Fail, words),
+        Class::NotEvaluable => Cell::missing("fewer than three meshes have this error"),
+        _ => words.into(),
     }
 }
 

@@ -1,22 +1,23 @@
-//! Where does it lock, where does it break? One row a situation, one column a method, the worst of all studies
-//! in each, in words and colour.
+//! Where does it lock, where does it break? One row per situation, one column per method, the worst of all studies in
+//! each, in words and colour.
 
 use crate::judge::comparison::situation::{End, Ended, Situation, situations_of};
-use crate::render::answers::question::{Answer, Links, Question, link, short};
-use crate::render::answers::regime::{PAPERS, distinct};
+use crate::render::answers::regime::PAPERS;
+use crate::render::answers::{Answer, Links, Question, link, short};
 use crate::render::number;
 use crate::render::page::Block;
+use crate::render::report::labels::distinct;
 use crate::render::report::situations;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use oedometer_soil::wording::count_of;
 
-/// The question.
-pub const QUESTION: Question = Question { heading: "Where does it lock, where does it break?", id: "breaks" };
+const QUESTION: Question = Question { heading: "Where does it lock, where does it break?", id: "breaks" };
 
-/// Methods that the matrix has.
+/// Methods in the matrix.
 const MOST_METHODS: usize = 8;
 
-/// The matrix. `detail` is where every study of every situation stands.
-pub fn answer(ends: &[Ended<'_>], links: Links<'_>, detail: &str) -> Answer {
+/// The matrix, with a link to the page of all situations.
+pub(crate) fn answer(ends: &[Ended<'_>], links: Links<'_>) -> Answer {
     let methods = methods_shown(ends);
     if methods.len() < 2 {
         return QUESTION.open("several methods in the same situation, as in the `hard-…` studies");
@@ -37,7 +38,7 @@ pub fn answer(ends: &[Ended<'_>], links: Links<'_>, detail: &str) -> Answer {
         .note(format!("the worst of all studies of a situation; {}", situations::legend()));
     let table = short(table, "on the page of all situations");
     QUESTION.told(
-        format!("{} [Every study of every situation]({detail}).", sentence(ends, links)),
+        format!("{} [Every study of every situation](situations.html).", sentence(ends, links)),
         vec![Block::Table(table)],
     )
 }
@@ -48,7 +49,7 @@ fn evidence(one: &Ended<'_>, links: Links<'_>) -> Cell {
     Cell::Evidence { mood, words, target: links(&one.study.name) }
 }
 
-/// How the paper's method, or else the first method, stands: where it holds, its largest error, where it fails.
+/// The results of the paper's method, or else of the first: where it holds, its largest error, where it fails.
 fn sentence(ends: &[Ended<'_>], links: Links<'_>) -> String {
     let papers = ends.iter().map(|one| one.method.as_str()).find(|method| *method == PAPERS);
     let Some(method) = papers.or_else(|| ends.first().map(|one| one.method.as_str())) else {
@@ -57,18 +58,17 @@ fn sentence(ends: &[Ended<'_>], links: Links<'_>) -> String {
     let own: Vec<&Ended<'_>> =
         situations_of(ends).into_iter().filter_map(|situation| worst(ends, situation, method)).collect();
     let holds = own.iter().filter(|one| situations::words_of(&one.end).0 == Mood::Pass).count();
-    let place =
-        |one: &Ended<'_>| format!("{} ({})", lower(one.situation.name()), link(links, &one.study.name));
+    let place = |one: &Ended<'_>| format!("“{}” ({})", one.situation.name(), link(links, &one.study.name));
     let mut parts = vec![format!(
-        "`{method}`{} was tried in {} situations; in {holds} its worst error is below {}",
+        "`{method}`{} was tried in {}; its worst error is below {} in {holds}",
         if papers.is_some() { ", the paper's method," } else { "" },
-        own.len(),
+        count_of(own.len(), "situation", "situations"),
         number::percent(situations::TICK_BELOW)
     )];
     let errors = own.iter().filter(|one| matches!(one.end, End::Error(_)));
     let largest = errors.reduce(|a, b| if b.end.is_worse_than(&a.end) { b } else { a });
     if let Some(one) = largest.filter(|one| situations::words_of(&one.end).0 != Mood::Pass) {
-        parts.push(format!("its largest is {} in {}", situations::words_of(&one.end).1, place(one)));
+        parts.push(format!("the largest is {} in {}", situations::words_of(&one.end).1, place(one)));
     }
     let failing: Vec<String> = own
         .iter()
@@ -76,15 +76,10 @@ fn sentence(ends: &[Ended<'_>], links: Links<'_>) -> String {
         .map(|one| format!("{}: **{}**", place(one), situations::words_of(&one.end).1))
         .collect();
     parts.push(match failing.as_slice() {
-        [] => "it gives an answer in all of them".to_owned(),
-        all => format!("it gives no answer in {}", all.join(", ")),
+        [] => "it gives a result in all of them".to_owned(),
+        all => format!("it gives no usable result in {}", all.join(", ")),
     });
     parts.join("; ") + "."
-}
-
-fn lower(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_lowercase(), letters.as_str()))
 }
 
 /// The worst end of a method in a situation, over all studies.
@@ -94,14 +89,11 @@ fn worst<'b, 'a>(ends: &'b [Ended<'a>], situation: Situation, method: &str) -> O
 }
 
 fn studies_of(ends: &[Ended<'_>], situation: Situation) -> usize {
-    let mut names: Vec<&str> =
-        ends.iter().filter(|one| one.situation == situation).map(|one| one.study.name.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
-    names.len()
+    let own = ends.iter().filter(|one| one.situation == situation);
+    distinct(own.map(|one| one.study.name.as_str())).len()
 }
 
-/// The paper's method, those that come out of some situation best, and those that most situations tried.
+/// The paper's method, those that are best in some situation, and those that most situations tried.
 fn methods_shown<'b>(ends: &'b [Ended<'_>]) -> Vec<&'b str> {
     let situations = situations_of(ends);
     let all = distinct(ends.iter().map(|one| one.method.as_str()));

@@ -1,48 +1,148 @@
-//! The answer page: what a reader asks of the records of all studies, each question with a sentence,
-//! a short table or a figure, and the study that carries it.
+//! The answer page: what a reader asks of the records of all studies. Each question has a sentence, a short table or a
+//! figure, and a link to the study that shows it.
 //!
-//! Every sentence is made from records. A question whose studies are not among them says so.
+//! Every sentence is made from records. A question that the records do not answer says what would.
 
-pub mod audit;
-pub mod changes;
-pub mod choice;
-pub mod converges;
-pub mod cost;
-pub mod making;
-pub mod matrix;
-pub mod one_layer_or_two;
-pub mod paper;
-pub mod question;
-pub mod regime;
+mod audit;
+mod changes;
+mod choice;
+mod converges;
+mod cost;
+mod double_point;
+pub(crate) mod matrix;
+pub(crate) mod paper;
+mod regime;
 
 use crate::golden::compare::Difference;
 use crate::judge::comparison::situation::Ended;
-use crate::render::answers::making::Making;
-use crate::render::answers::question::{Answer, Links};
-use crate::render::page::{Block, Callout, Page, Section};
+use crate::record::provenance::{Origins, Provenance};
+use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::StudyResults;
-use crate::render::table::Mood;
-use crate::render::tables::golden_changes::count_of;
+use crate::render::report::labels::distinct;
+use crate::render::table::{Mood, Table};
 use oedometer_exact::exact_error::ExactError;
+use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
 /// What the answer page is made of.
 pub struct Answers<'a> {
     /// The studies with their records and judgements.
     pub results: &'a [StudyResults<'a>],
-    /// Differences from the golden values with the name of their study; none where there were no golden
-    /// values to hold against.
+    /// Differences from the golden values with the name of their study; `None` without golden values.
     pub changes: Option<&'a [(String, Difference)]>,
     /// When, where and by which command.
     pub making: &'a Making,
-    /// Where the page of a study is.
-    pub links: Links<'a>,
-    /// Where the list of all studies is.
-    pub index: &'a str,
-    /// How every method came out of every situation.
+    /// The result of every method in every situation.
     pub ends: &'a [Ended<'a>],
-    /// Where every study of every situation stands.
-    pub situations: &'a str,
+}
+
+/// When, where and by which command a report was made.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Making {
+    /// Day, as 2026-11-22.
+    pub date: String,
+    /// The processor, with the number of its threads.
+    pub processor: String,
+    /// The command, as it was typed.
+    pub command: String,
+    /// Seconds it took.
+    pub seconds: f64,
+    /// Cases that were run for this report; the others had their records.
+    pub cases_run: usize,
+    /// Cases of the studies that have no record: those of a larger tier.
+    pub left_out: usize,
+}
+
+impl Making {
+    /// The line of provenance: program, commit, day, processor, time, command.
+    fn words(&self, results: &[StudyResults<'_>]) -> String {
+        let mut origins = Origins::default();
+        let records: Vec<_> = results.iter().flat_map(|one| one.records).collect();
+        records.iter().for_each(|record| origins.add(&record.provenance));
+        let program = origins.main().map_or_else(String::new, program_of);
+        let several = origins.several_programs().map_or_else(String::new, |programs| {
+            format!(" The records are of more than one program: {programs}.")
+        });
+        let run = match self.cases_run {
+            0 => format!("rendered in {:.1} s from {} records", self.seconds, records.len()),
+            run => format!("{:.1} s with {run} of {} cases run", self.seconds, records.len()),
+        };
+        let left_out = match self.left_out {
+            0 => String::new(),
+            cases => format!(
+                " {} of the full tier not run; `oedometer report --tier full` runs {}.",
+                count_of(cases, "case", "cases"),
+                if cases == 1 { "it" } else { "them" }
+            ),
+        };
+        let Self { date, processor, command, .. } = self;
+        format!("{program} · {date} · {processor} · {run} · `{command}`{several}{left_out}")
+    }
+}
+
+/// Version, commit or sources, compiler and profile.
+fn program_of(origin: &Provenance) -> String {
+    let commit = match (origin.commit.is_empty(), origin.dirty) {
+        (true, _) => String::new(),
+        (false, false) => format!("commit `{}`, ", origin.commit),
+        (false, true) => format!("commit `{}` with changes, ", origin.commit),
+    };
+    format!(
+        "oedometer {} · {commit}sources `{}` · {}, {} profile",
+        origin.version, origin.sources, origin.compiler, origin.profile
+    )
+}
+
+/// From the name of a study to its page.
+type Links<'a> = &'a dyn Fn(&str) -> String;
+
+/// A question of the reader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Question {
+    heading: &'static str,
+    /// Anchor of its section.
+    id: &'static str,
+}
+
+/// The answer of the records to a question.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Answer {
+    /// A section: a sentence first, then a short table or figures.
+    Told(Section),
+    /// No answer: the question, and what the records lack, lightly marked.
+    Open(String),
+}
+
+impl Question {
+    fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Answer {
+        shown.insert(0, Block::Paragraph(sentence.into()));
+        let (heading, id) = (self.heading.to_owned(), self.id.to_owned());
+        Answer::Told(Section { heading, id, mood: None, blocks: shown })
+    }
+
+    fn open(self, needed: &str) -> Answer {
+        Answer::Open(format!("**{}** {needed}.", self.heading))
+    }
+}
+
+/// Rows of a table on the answer page.
+const MOST_ROWS: usize = 10;
+
+/// The first rows of a table, with a line on where the others are.
+fn short(mut table: Table, elsewhere: &str) -> Table {
+    let more = table.rows.len().saturating_sub(MOST_ROWS);
+    table.rows.truncate(MOST_ROWS);
+    if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
+}
+
+/// A link to the page of a study, in running text.
+fn link(links: Links<'_>, study: &str) -> String {
+    format!("[`{study}`]({})", links(study))
+}
+
+/// Links to the pages of studies, each once, in running text.
+fn links_to<'a>(links: Links<'_>, studies: impl IntoIterator<Item = &'a str>) -> String {
+    distinct(studies).into_iter().map(|study| link(links, study)).collect::<Vec<_>>().join(", ")
 }
 
 /// The answer page.
@@ -50,17 +150,17 @@ pub struct Answers<'a> {
 /// # Errors
 /// When a reference refuses a case.
 pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
-    let (results, links) = (answers.results, answers.links);
-    let small = regime::small_strain(results);
-    let large = regime::large_strain(results);
-    let all = vec![
-        choice::answer(results, small.as_ref(), large.as_ref(), links)?,
-        converges::answer(results, small.as_ref(), large.as_ref(), links),
-        paper::answer(results, links)?,
-        cost::answer(results, links),
-        matrix::answer(answers.ends, links, answers.situations),
-        audit::answer(results, links),
-        one_layer_or_two::answer(results, links),
+    let results = answers.results;
+    let links = |study: &str| format!("studies/{}.html", slug(study));
+    let (small, large) = (regime::small_strain(results), regime::large_strain(results));
+    let all = [
+        choice::answer(results, small.as_ref(), large.as_ref(), &links)?,
+        converges::answer(results, small.as_ref(), large.as_ref(), &links),
+        paper::answer(results, &links)?,
+        cost::answer(results, &links),
+        matrix::answer(answers.ends, &links),
+        audit::answer(results, &links),
+        double_point::answer(results, &links),
         changes::answer(answers.changes),
     ];
     let mut sections = Vec::new();
@@ -68,17 +168,30 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     for answer in all {
         match answer {
             Answer::Told(section) => sections.push(section),
-            Answer::Open { question, needed } => open.push(format!("**{}** {needed}.", question.heading)),
+            Answer::Open(needed) => open.push(needed),
         }
     }
-    sections.extend(open_questions(open));
+    if !open.is_empty() {
+        let lead = "These questions need other studies than those of this report:";
+        sections.push(Section {
+            heading: "Not in these records".to_owned(),
+            id: "open".to_owned(),
+            mood: None,
+            blocks: vec![Block::Paragraph(lead.to_owned()), Block::List(open)],
+        });
+    }
+    // A small report names its studies, as perhaps no answer links to them.
+    let few = match results.len() {
+        1..=FEW_STUDIES => {
+            format!(": {}", links_to(&links, results.iter().map(|one| one.study.name.as_str())))
+        }
+        _ => String::new(),
+    };
+    let made = answers.making.words(results);
     Ok(Page {
         title: "Convergence report".to_owned(),
         lead: format!(
-            "**{MADE}** {}\n\n[All studies, with every table and figure]({}){}",
-            answers.making.words(results),
-            answers.index,
-            names_of_few(results, links)
+            "**How was it made?** {made}\n\n[All studies, with every table and figure](studies/index.html){few}"
         ),
         callout: Some(verdict(results)),
         sections,
@@ -90,46 +203,54 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
 /// Studies up to which the head of the page names each.
 const FEW_STUDIES: usize = 6;
 
-/// The studies of a small report by name, as no question may lead to them.
-fn names_of_few(results: &[StudyResults<'_>], links: &dyn Fn(&str) -> String) -> String {
-    let link = |one: &StudyResults<'_>| format!("[`{}`]({})", one.study.name, links(&one.study.name));
-    match results.len() {
-        1..=FEW_STUDIES => format!(": {}", results.iter().map(link).collect::<Vec<_>>().join(", ")),
-        _ => String::new(),
-    }
-}
-
-/// The question that the first lines of the page answer.
-const MADE: &str = "How was it made?";
-
-/// What these records do not answer, and what would.
-fn open_questions(open: Vec<String>) -> Option<Section> {
-    let lead = "What the studies of this report do not have, and would answer:";
-    (!open.is_empty()).then(|| Section {
-        heading: "Not in these records".to_owned(),
-        id: "open".to_owned(),
-        mood: None,
-        blocks: vec![Block::Paragraph(lead.to_owned()), Block::List(open)],
-    })
-}
-
-/// Whether everything is as expected, in one sentence; what is not is named.
+/// Whether everything is as expected, in one sentence that names what is not.
 fn verdict(results: &[StudyResults<'_>]) -> Callout {
-    let judged: usize = results.iter().map(|one| one.judgements.len()).sum();
-    let met: usize = results.iter().map(StudyResults::met).sum();
-    let runs: usize = results.iter().map(|one| one.records.len()).sum();
-    let unsound: usize = results.iter().map(|one| one.unsound.len()).sum();
+    let sum = |of: fn(&StudyResults<'_>) -> usize| results.iter().map(of).sum::<usize>();
+    let judged = sum(|one| one.judgements.len());
+    let unsound = sum(|one| one.unsound.len());
     let failing: Vec<&str> =
         results.iter().filter(|one| !one.passes()).map(|one| one.study.name.as_str()).collect();
-    let mut text = format!(
-        "**{met} of {judged} expectations met** in {} of {runs} runs.",
-        count_of(results.len(), "study", "studies")
-    );
+    let met = match judged {
+        0 => "No expectations".to_owned(),
+        _ => format!("{} of {judged} expectations met", sum(|one| one.met())),
+    };
+    let (studies, runs) = (count_of(results.len(), "study", "studies"), sum(|one| one.records.len()));
+    let mut text = format!("**{met}** in {studies} of {runs} runs.");
     if unsound > 0 {
         let _ = write!(text, " {unsound} checks of runs fail.");
     }
     if !failing.is_empty() {
         let _ = write!(text, " Not as expected: `{}`.", failing.join("`, `"));
     }
-    (Mood::of(failing.is_empty()), text)
+    let mood = if judged == 0 && failing.is_empty() { Mood::Note } else { Mood::of(failing.is_empty()) };
+    (mood, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::table::{Cell, columns};
+
+    #[test]
+    fn a_report_from_records_alone_says_so() {
+        let making = Making { seconds: 1.25, command: "oedometer report".to_owned(), ..Making::default() };
+        assert!(making.words(&[]).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&[]));
+        let run = Making { cases_run: 3, ..making };
+        assert!(run.words(&[]).contains("with 3 of 0 cases run"));
+    }
+
+    #[test]
+    fn nothing_expected_is_neither_met_nor_failed() {
+        let (mood, text) = verdict(&[]);
+        assert_eq!((mood, text.as_str()), (Mood::Note, "**No expectations** in 0 studies of 0 runs."));
+    }
+
+    #[test]
+    fn a_table_of_the_answers_ends_after_ten_rows_and_says_where_the_others_are() {
+        let table =
+            |rows: usize| Table::of("", columns("a"), (0..rows).map(|row| vec![Cell::Count(row as u64)]));
+        let cut = short(table(12), "in the studies");
+        assert_eq!((cut.rows.len(), cut.notes.as_slice()), (10, &["2 more: in the studies".to_owned()][..]));
+        assert_eq!(short(table(10), "in the studies"), table(10));
+    }
 }

@@ -2,18 +2,17 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};
-use crate::render::answers::question::{Answer, Links, Question, links_to};
-use crate::render::answers::regime::{PAPERS, QUOTED_CELLS};
-use crate::render::chart::describe::{Size, Style};
+use crate::render::answers::regime::PAPERS;
+use crate::render::answers::{Answer, Links, Question, links_to};
+use crate::render::chart::{Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
-use crate::render::report::figures::theory_lines;
-use crate::render::report::labels::{self, first_measure};
+use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
+use crate::render::report::theory_lines;
 use oedometer_exact::exact_error::ExactError;
 
-/// The question.
-pub const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
+const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
 
 /// Methods of a figure of consolidation, the paper's first.
 const MOST_METHODS: usize = 3;
@@ -34,7 +33,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
         .collect();
     if runs.is_empty() {
-        return Ok(QUESTION.open(format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column")));
+        return Ok(QUESTION.open(&format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column")));
     }
     let mut figures = Vec::new();
     let mut sentences = Vec::new();

@@ -6,14 +6,13 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::{Path, SeriesSummary};
 use crate::measure::statistics::largest;
 use crate::render::report::StudyResults;
-use crate::render::report::labels::first_measure;
+use crate::render::report::labels::{
+    CONVERGENCE, QUOTED_CELLS, distinct, first_measure, grouped, is_settled,
+};
 use crate::study::expectation::Axis;
-use oedometer_convergence::{Class, WINDOW};
+use oedometer_convergence::WINDOW;
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
-
-/// The mesh of the paper, on which errors are quoted.
-pub const QUOTED_CELLS: usize = 10;
 
 /// The paper's method.
 pub const PAPERS: &str = "GC-SRI-patch";
@@ -73,7 +72,8 @@ fn regime<'a>(results: &'a [StudyResults<'a>], fits: &dyn Fn(&Case) -> bool) -> 
             group.1.push(MethodPath { method, study: &one.study.name, path: path.clone() });
         }
     }
-    let (reference, all) = groups.into_values().max_by_key(|(_, all)| count_of_methods(all))?;
+    let (reference, all) =
+        groups.into_values().max_by_key(|(_, all)| distinct(all.iter().map(|one| &one.method)).len())?;
     let time_factor = time_of_most(&all)?;
     let methods = best_of_each(all, reference, time_factor);
     let finest_cells = mesh_of_most(&methods)?;
@@ -86,33 +86,11 @@ fn is_plain(case: &Case) -> bool {
     variant.is_empty() || variant.split(", ").all(|part| part.ends_with(" drag"))
 }
 
-fn count_of_methods(all: &[MethodPath<'_>]) -> usize {
-    distinct(all.iter().map(|one| one.method.as_str())).len()
-}
-
-/// Names, each once, in the order of their first appearance.
-pub fn distinct<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
-    let mut seen: Vec<&str> = Vec::new();
-    for name in names {
-        if !seen.contains(&name) {
-            seen.push(name);
-        }
-    }
-    seen
-}
-
 /// Of several values the one that most methods have; of those the largest.
 fn value_of_most(all: &[MethodPath<'_>], values_of: &dyn Fn(&MethodPath<'_>) -> Vec<f64>) -> Option<f64> {
-    let mut known: Vec<(f64, Vec<&str>)> = Vec::new();
-    for one in all {
-        for value in values_of(one) {
-            match known.iter_mut().find(|(other, _)| *other == value) {
-                Some((_, methods)) if methods.contains(&one.method.as_str()) => {}
-                Some((_, methods)) => methods.push(&one.method),
-                None => known.push((value, vec![&one.method])),
-            }
-        }
-    }
+    let values = all.iter().flat_map(|one| values_of(one).into_iter().map(|value| (value, &one.method)));
+    let known = grouped(values).into_iter().map(|(value, methods)| (value, distinct(methods)));
+    let known: Vec<(f64, Vec<&String>)> = known.collect();
     let most = known.iter().map(|(_, methods)| methods.len()).max()?;
     known.iter().filter(|(_, methods)| methods.len() == most).map(|(value, _)| *value).reduce(f64::max)
 }
@@ -138,41 +116,25 @@ fn mesh_of_most(all: &[MethodPath<'_>]) -> Option<usize> {
         .find(|cells| *cells as f64 == finest)
 }
 
-/// What a path must converge in to stand for its method.
-const CONVERGES: [(Quantity, Sample); 4] = [
-    (Quantity::Pressure, Sample::Points),
-    (Quantity::Pressure, Sample::Centres),
-    (Quantity::EffectiveStress, Sample::Points),
-    (Quantity::Settlement, Sample::Surface),
-];
-
 /// What speaks for a path: three levels, the quoted mesh, how many of its series have a settled order, levels.
 type Worth = (bool, bool, usize, usize);
 
 /// One path a method, that for which most speaks.
 fn best_of_each<'a>(all: Vec<MethodPath<'a>>, reference: &str, time_factor: f64) -> Vec<MethodPath<'a>> {
     let worth = |one: &MethodPath<'_>| {
-        let series = CONVERGES.map(|(quantity, sample)| {
+        let series = CONVERGENCE.map(|(quantity, sample)| {
             one.path.summary(&first_measure(quantity, sample, reference, time_factor))
         });
-        let is_settled = |summary: &&SeriesSummary<'_>| {
-            matches!(summary.classification.class, Class::Asymptotic | Class::Superconvergent)
-        };
-        let settled = series.iter().filter(is_settled).count();
+        let settled = series.iter().filter(|summary| is_settled(summary.classification.class)).count();
         let levels = series[0].series.levels().iter().filter(|level| level.error.is_some()).count();
         let has_quoted = one.path.records.iter().any(|record| record.case.cells == QUOTED_CELLS);
         (levels >= WINDOW, has_quoted, settled, levels)
     };
-    let mut best: Vec<(Worth, MethodPath<'a>)> = Vec::new();
-    for one in all {
-        let own = worth(&one);
-        match best.iter_mut().find(|(_, other)| other.method == one.method) {
-            Some(place) if place.0 < own => *place = (own, one),
-            Some(_) => {}
-            None => best.push((own, one)),
-        }
-    }
-    best.into_iter().map(|(_, one)| one).collect()
+    let by_method = grouped(all.into_iter().map(|one| (one.method.clone(), (worth(&one), one))));
+    // The first of those with the most.
+    let best =
+        |own: Vec<(Worth, MethodPath<'a>)>| own.into_iter().reduce(|a, b| if b.0 > a.0 { b } else { a });
+    by_method.into_iter().filter_map(|(_, own)| best(own)).map(|(_, one)| one).collect()
 }
 
 impl Regime<'_> {

@@ -1,8 +1,10 @@
 //! What a figure shows, as plain data.
-use crate::render::chart::field::ColourField;
-use crate::render::chart::layout::scale::{Range, Scale};
+use crate::render::chart::axis::{Scale, drawable};
+use crate::render::escape::csv_field;
+use crate::render::number;
+use std::fmt::Write;
 
-/// A figure: axes, what is drawn between them, and what is said about it.
+/// A figure: its axes and what is drawn between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// One line above the figure.
@@ -13,22 +15,22 @@ pub struct Chart {
     pub x: ChartAxis,
     /// Vertical axis.
     pub y: ChartAxis,
-    /// Cells of colour beneath everything else.
+    /// Cells of colour below everything else.
     pub field: Option<ColourField>,
     /// Lines and markers.
     pub series: Vec<Series>,
-    /// Level lines at one value.
+    /// Horizontal lines at single values.
     pub rules: Vec<Rule>,
-    /// Triangles that show what an order looks like.
+    /// Triangles that show the slope of an order.
     pub triangles: Vec<SlopeTriangle>,
-    /// Words beside single points.
+    /// Names written beside single points.
     pub names: Vec<PointName>,
-    /// Outer width and height of the plotting area.
+    /// Width of the figure and height of the plot.
     pub size: Size,
 }
 
 impl Chart {
-    /// An empty figure with the usual size.
+    /// An empty figure of the default size.
     pub fn new(title: impl Into<String>, x: ChartAxis, y: ChartAxis) -> Self {
         Self {
             title: title.into(),
@@ -50,21 +52,52 @@ impl Chart {
         self.series.push(series);
         self
     }
+
+    /// The data as CSV with all digits: one row per point of a series, and one per cell of a field, at its middle.
+    pub fn data_csv(&self) -> String {
+        let quoted = |text: &str| format!("\"{}\"", csv_field(text).replace('"', "\"\""));
+        let mut out = format!("series,{},{}", quoted(&self.x.label), quoted(&self.y.label));
+        if let Some(field) = &self.field {
+            let _ = write!(out, ",{}", quoted(&field.label));
+        }
+        out.push('\n');
+        let end = if self.field.is_some() { "," } else { "" };
+        for series in &self.series {
+            let name = quoted(&series.name);
+            for (x, y) in &series.points {
+                let _ = writeln!(out, "{name},{},{}{end}", number::exact(*x), number::exact(*y));
+            }
+        }
+        if let Some((field, (columns, rows))) = self.drawn_field() {
+            let middle = |edges: &[f64], at: usize| number::exact(f64::midpoint(edges[at], edges[at + 1]));
+            for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+                let value = number::exact(field.values[row * columns + column]);
+                let (x, y) = (middle(&field.x_edges, column), middle(&field.y_edges, row));
+                let _ = writeln!(out, "{},{x},{y},{value}", quoted(&self.title));
+            }
+        }
+        out
+    }
+
+    /// The field with its numbers of columns and rows, where its edges and values fit each other.
+    pub(super) fn drawn_field(&self) -> Option<(&ColourField, (usize, usize))> {
+        self.field.as_ref().and_then(|field| Some((field, field.shape()?)))
+    }
 }
 
 /// Pixels at the size at which the figure is meant to be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
-    /// The whole width, legend included.
+    /// The whole width.
     pub width: f64,
-    /// The height between the axes; titles, legend and notes come on top of it.
+    /// The height between the axes, without titles, legend and notes.
     pub plot_height: f64,
-    /// One unit of x as long as one unit of y, as maps of a body want it.
+    /// Draw one unit of x as long as one unit of y, as maps of a body need.
     pub equal_units: bool,
 }
 
 impl Size {
-    /// That of a figure with a neighbour.
+    /// A figure with a neighbour.
     pub const PANEL: Self = Self { width: 560.0, plot_height: 360.0, equal_units: false };
 }
 
@@ -79,20 +112,20 @@ impl Default for Size {
 pub struct ChartAxis {
     /// Quantity and unit.
     pub label: String,
-    /// How values are spread.
+    /// Linear or logarithmic.
     pub scale: Scale,
-    /// What is shown.
-    pub range: Range,
-    /// Small values at the top or at the right: depth, or refinement from left to right.
+    /// Lowest and highest value shown; all of the data if `None`.
+    pub range: Option<(f64, f64)>,
+    /// Whether values grow downwards or to the left, as a depth does.
     pub inverted: bool,
-    /// Where to put the ticks, if not anywhere: mesh sizes, say.
+    /// Places of the ticks, such as mesh sizes; round numbers if `None`.
     pub ticks: Option<Vec<f64>>,
 }
 
 impl ChartAxis {
     /// A linear axis that shows all of the data.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: Range::Auto, inverted: false, ticks: None }
+        Self { label: label.into(), scale: Scale::Linear, range: None, inverted: false, ticks: None }
     }
 
     /// A logarithmic axis that shows all of the positive data.
@@ -100,21 +133,21 @@ impl ChartAxis {
         Self { scale: Scale::Log10, ..Self::linear(label) }
     }
 
-    /// The same axis, the other way round.
+    /// Turns the axis round.
     #[must_use]
     pub fn inverted(mut self) -> Self {
         self.inverted = true;
         self
     }
 
-    /// The same axis over a fixed range.
+    /// Sets the lowest and highest value shown.
     #[must_use]
     pub fn between(mut self, low: f64, high: f64) -> Self {
-        self.range = Range::Fixed(low, high);
+        self.range = Some((low, high));
         self
     }
 
-    /// The same axis with ticks at these values.
+    /// Puts the ticks at these values.
     #[must_use]
     pub fn with_ticks(mut self, ticks: Vec<f64>) -> Self {
         self.ticks = Some(ticks);
@@ -125,14 +158,13 @@ impl ChartAxis {
 /// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name in the legend. Series that look alike and share a name share its entry; an empty name
-    /// has none.
+    /// Name in the legend. Series with the same look and name share an entry; an empty name has none.
     pub name: String,
     /// The points in the order in which a line joins them.
     pub points: Vec<(f64, f64)>,
     /// What is drawn.
     pub style: Style,
-    /// Colour, marker and dash pattern by number; by place in the chart if not given.
+    /// Number of its colour, marker and dashes; the place of its name in the chart if `None`.
     pub slot: Option<usize>,
 }
 
@@ -142,19 +174,19 @@ impl Series {
         Self { name: name.into(), points, style: Style::LineAndMarkers, slot: None }
     }
 
-    /// The curve that the others are held against.
+    /// The curve that the others are compared with.
     pub fn theory(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { style: Style::Theory, ..Self::new(name, points) }
     }
 
-    /// The same series in another style.
+    /// Sets what is drawn.
     #[must_use]
     pub fn style(mut self, style: Style) -> Self {
         self.style = style;
         self
     }
 
-    /// The same series with colour, marker and dash of one number.
+    /// Sets the number of colour, marker and dashes.
     #[must_use]
     pub fn slot(mut self, slot: usize) -> Self {
         self.slot = Some(slot);
@@ -171,12 +203,12 @@ pub enum Style {
     Markers,
     /// Markers joined by a line.
     LineAndMarkers,
-    /// The reference: always dark, above other lines and beneath all markers. Several references
-    /// differ by their dashes.
+    /// The reference: a dark line above other lines and below all markers. Several references differ in their
+    /// dashes.
     Theory,
 }
 
-/// A level line across the figure: a floor, a limit, a tolerance.
+/// A horizontal line across the figure: a floor, a limit, a tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
     /// The value on the vertical axis.
@@ -194,11 +226,68 @@ pub struct PointName {
     pub name: String,
 }
 
-/// A triangle on doubly logarithmic axes whose upper side has a given slope.
+/// A triangle of a given slope on doubly logarithmic axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopeTriangle {
     /// The slope; negative where the error falls to the right.
     pub slope: f64,
-    /// Name of the series that it stands beside, where there is room.
+    /// Name of the series beside which it stands.
     pub beside: String,
+}
+
+/// One value per cell on a rectangular grid. Its colours are near-white at zero and safe for the colour-blind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColourField {
+    /// Quantity and unit, written at the colour bar.
+    pub label: String,
+    /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
+    /// `None`.
+    pub reach: Option<f64>,
+    /// The lines between the columns of cells, one more than columns.
+    pub x_edges: Vec<f64>,
+    /// The lines between the rows of cells, one more than rows.
+    pub y_edges: Vec<f64>,
+    /// The values, row after row, each row from the first column on. A cell that is not finite is grey.
+    pub values: Vec<f64>,
+}
+
+impl ColourField {
+    /// Columns and rows; `None` where edges and values do not fit each other.
+    pub(super) fn shape(&self) -> Option<(usize, usize)> {
+        let columns = self.x_edges.len().checked_sub(1)?;
+        let rows = self.y_edges.len().checked_sub(1)?;
+        (columns > 0 && rows > 0 && self.values.len() == columns * rows).then_some((columns, rows))
+    }
+
+    /// The values that can be drawn.
+    pub(super) fn drawn(&self) -> impl Iterator<Item = f64> {
+        self.values.iter().copied().filter(|value| drawable(*value, Scale::Linear).is_ok())
+    }
+
+    /// The value of the last colour.
+    pub(super) fn extent(&self) -> f64 {
+        let own = self.drawn().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let reach = self.reach.unwrap_or(own);
+        if reach > 0.0 && reach.is_finite() { reach } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_and_every_cell_has_a_row() {
+        let mut chart = Chart::new("f", ChartAxis::linear("x, m"), ChartAxis::linear("y"))
+            .with(Series::new("a \"b\"", vec![(0.1, 2.0), (0.3, 4.0)]));
+        assert_eq!(
+            chart.data_csv(),
+            "series,\"x, m\",\"y\"\n\"a \"\"b\"\"\",0.1,2.0\n\"a \"\"b\"\"\",0.3,4.0\n"
+        );
+        let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0], vec![0.0, 2.0]);
+        let field =
+            ColourField { label: "p".to_owned(), reach: None, x_edges, y_edges, values: vec![5.0, 6.0] };
+        chart.field = Some(field);
+        assert!(chart.data_csv().ends_with("\"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n"), "{}", chart.data_csv());
+    }
 }

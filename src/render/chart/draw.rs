@@ -1,139 +1,438 @@
-//! Puts a figure together, from the back to the front.
-use crate::render::chart::canvas::{Canvas, Hold, Px, Type};
-use crate::render::chart::describe::{Chart, Style};
-use crate::render::chart::field::colour_of;
-use crate::render::chart::layout::clip::pieces;
-use crate::render::chart::layout::missing::place;
-use crate::render::chart::layout::space::Space;
-use crate::render::chart::layout::{ChartLayout, LegendSide, lay_out};
-use crate::render::chart::palette::{QUIET, WHITE, marker};
-use crate::render::chart::parts::axes::{draw_axes, draw_bar, draw_grid};
-use crate::render::chart::parts::legend::{Legend, Look, looks, stroke};
-use crate::render::chart::parts::triangle::draw_triangles;
-use crate::render::chart::parts::words::{draw_names, draw_rules};
-use crate::render::render_error::RenderError;
+//! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
+use crate::render::chart::axis::{Ends, PlacedAxis, PlotAxis, Reason, Scale, TICK_FONT, drawable};
+use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
+use crate::render::chart::svg::{
+    Area, Drawn, Font, Px, document, group, layer, scripted, stroke, units, write,
+};
+use crate::render::chart::words::{Frame, Space, names, rules, triangles};
+use crate::render::chart::{Chart, ChartAxis, Series, Style};
+use crate::render::error::RenderError;
+use crate::render::script::{width, wrap};
+use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::element::Rectangle;
+use plotters::prelude::{Color, RGBColor, SVGBackend};
+use plotters::series::LineSeries;
+use plotters::style::colors::WHITE;
+use plotters::style::text_anchor::HPos;
+use std::collections::BTreeMap;
 
-/// Radius of markers. Later ones are smaller, so that points that coincide are seen to be several,
-/// above all where no line tells of it.
-fn radius(place: usize, joined: bool) -> f64 {
-    let step = place.min(3) as f64;
-    if joined { 4.6 - 0.25 * step } else { 5.4 - 0.85 * step }
+const TITLE: Font = Font { size: 15.0, colour: TEXT, is_bold: true };
+const SUBTITLE: Font = Font { size: 12.0, colour: QUIET, is_bold: false };
+const LABEL: Font = Font { size: 13.0, colour: TEXT, is_bold: false };
+const TICK: Font = Font { size: TICK_FONT, colour: TEXT, is_bold: false };
+const NOTE: Font = Font { size: 11.0, colour: QUIET, is_bold: false };
+const FRAME: RGBColor = RGBColor(0x8A, 0x8A, 0x8A);
+const MAJOR: RGBColor = RGBColor(0xDC, 0xDC, 0xDC);
+const MINOR: RGBColor = RGBColor(0xF0, 0xF0, 0xF0);
+/// Margin around the figure, px.
+const PAD: f64 = 14.0;
+/// Height of a line in sizes of its font.
+const LINE: f64 = 1.3;
+/// Height of the ticks, labels and words of the horizontal axis, px.
+const BELOW: f64 = 42.0;
+/// Gap before the colour bar and its width, px.
+const BAR: (f64, f64) = (18.0, 16.0);
+/// Tick, gap to its label, and room for the words of an upright axis, px.
+const BESIDE: f64 = 10.0 + 1.4 * LABEL.size;
+
+/// A figure laid out, in pixels.
+pub(super) struct Layout {
+    pub size: Px,
+    pub plot: Frame,
+    pub x: PlacedAxis,
+    pub y: PlacedAxis,
+    /// The axis of the colour bar.
+    bar: Option<PlacedAxis>,
+    title: Vec<String>,
+    subtitle: Vec<String>,
+    notes: Vec<String>,
+    legend: Legend,
+    looks: Vec<Look>,
+    /// The places of the points of each series, if they can be drawn.
+    pub points: Vec<Vec<Option<Px>>>,
 }
+
+impl Layout {
+    /// Gives every part of a figure its room.
+    pub fn of(chart: &Chart) -> Self {
+        let within = |value: f64, low: f64, other: f64| {
+            if value.is_finite() { value.clamp(low, 4000.0) } else { other }
+        };
+        let (wide, tall) =
+            (within(chart.size.width, 240.0, 760.0), within(chart.size.plot_height, 80.0, 360.0));
+        let (x_ends, y_ends) = ends(chart);
+        let inner = wide - 2.0 * PAD;
+        let title = wrap(&chart.title, inner / (TITLE.size * 1.05));
+        let subtitle = wrap(chart.subtitle.as_deref().unwrap_or_default(), inner / SUBTITLE.size);
+        let head = LINE * (title.len() as f64 * TITLE.size + subtitle.len() as f64 * SUBTITLE.size);
+        let top = PAD + head + 8.0;
+
+        let y_axis = |height: f64| PlacedAxis::new(&chart.y, y_ends, (top + height, top), true);
+        let left = PAD + y_axis(tall).label_width() + BESIDE;
+        let bar_axis = |height: f64| {
+            let reach = chart.drawn_field()?.0.extent();
+            let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
+            Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
+        };
+        let right = bar_axis(tall).map_or(PAD + 14.0, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
+        let room = (wide - left - right).max(60.0);
+        let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
+        let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
+        let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
+        let y = y_axis(plot_height);
+
+        let place = |point: &(f64, f64)| x.px(point.0).zip(y.px(point.1));
+        let points: Vec<Vec<_>> =
+            chart.series.iter().map(|series| series.points.iter().map(place).collect()).collect();
+        let looks = looks(chart);
+        let is_drawn = |series: usize| points[series].iter().flatten().next().is_some();
+        let legend = Legend::of(chart, &looks, is_drawn, inner);
+        let notes: Vec<String> =
+            notes(chart, &x_ends, &y_ends).iter().flat_map(|note| wrap(note, inner / NOTE.size)).collect();
+        let height =
+            plot.bottom + BELOW + 8.0 + legend.height() + notes.len() as f64 * NOTE.size * LINE + PAD * 0.8;
+        // A slender body leaves room that nobody needs.
+        let lines = [(TITLE.size * 1.05, &title), (SUBTITLE.size, &subtitle), (NOTE.size, &notes)];
+        let words =
+            lines.into_iter().flat_map(|(font, lines)| lines.iter().map(move |line| font * width(line)));
+        let needed = words.fold(plot.right + right - PAD, |most, width| most.max(PAD + width)) + PAD;
+        let is_slender = chart.size.equal_units && legend.height() == 0.0;
+        let width = if is_slender { needed.min(wide).ceil() } else { wide };
+        let size = (width, height.ceil());
+        Self { size, plot, x, y, bar: bar_axis(plot_height), title, subtitle, notes, legend, looks, points }
+    }
+}
+
+/// The ends of both axes.
+fn ends(chart: &Chart) -> (Ends, Ends) {
+    let points = || chart.series.iter().flat_map(|series| &series.points);
+    let edges = |x: bool| {
+        let field = chart.field.as_ref();
+        field.map_or(&[][..], |field| if x { &field.x_edges } else { &field.y_edges }).iter().copied()
+    };
+    // A field fills its axes.
+    let margin = if chart.field.is_some() { 0.0 } else { 0.04 };
+    (
+        Ends::of(&chart.x, points().map(|point| point.0).chain(edges(true)), margin),
+        Ends::of(&chart.y, points().map(|point| point.1).chain(edges(false)), margin),
+    )
+}
+
+/// Width and height of the plot; with equal units the direction with less room decides.
+fn shape(chart: &Chart, (x, y): (Ends, Ends), room: f64, tall: f64) -> (f64, f64) {
+    let (dx, dy) = (x.high - x.low, y.high - y.low);
+    let unit = (room / dx).min(tall / dy);
+    if !chart.size.equal_units || !unit.is_finite() || unit <= 0.0 {
+        return (room, tall);
+    }
+    ((unit * dx).max(30.0), (unit * dy).max(30.0))
+}
+
+fn has_markers(series: &Series) -> bool {
+    matches!(series.style, Style::Markers | Style::LineAndMarkers)
+}
+
+/// Sentences on what the figure cannot show.
+fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
+    let mut lost: BTreeMap<Reason, (usize, Vec<&str>)> = BTreeMap::new();
+    for series in &chart.series {
+        for &(a, b) in &series.points {
+            let reason = match (x.visible(a), y.visible(b)) {
+                (Ok(_), Ok(_)) => continue,
+                // The first reason that hides the point altogether; lines are cut at the frame without a word.
+                (Err(Reason::Outside), Err(other)) | (Err(other), _) | (Ok(_), Err(other)) => other,
+            };
+            if reason == Reason::Outside && !has_markers(series) {
+                continue;
+            }
+            let (count, names) = lost.entry(reason).or_default();
+            *count += 1;
+            if !series.name.is_empty() && !names.contains(&series.name.as_str()) {
+                names.push(&series.name);
+            }
+        }
+    }
+    let total: usize = lost.values().map(|(count, _)| count).sum();
+    let reasons = lost.iter().map(|(reason, (count, names))| {
+        let who = names.iter().take(3).copied().collect::<Vec<_>>().join(", ");
+        let more = if names.len() > 3 { ", …" } else { "" };
+        let who = if who.is_empty() { who } else { format!(" ({who}{more})") };
+        format!("{count} {}{who}", reason.words())
+    });
+    let reasons = reasons.collect::<Vec<_>>().join("; ");
+    let values = if total == 1 { "value" } else { "values" };
+    let mut notes: Vec<String> = Vec::new();
+    notes.extend((total > 0).then(|| format!("{total} {values} not drawn: {reasons}.")));
+    notes.extend(without_data(chart));
+    if let Some(field) = &chart.field {
+        let missing = field.values.len() - field.drawn().count();
+        match (field.shape(), missing) {
+            (None, _) => notes.push("The edges and values of the field do not fit each other.".to_owned()),
+            (_, 0) => {}
+            (_, 1) => notes.push("1 cell without a value is grey.".to_owned()),
+            _ => notes.push(format!("{missing} cells without a value are grey.")),
+        }
+    }
+    notes
+}
+
+/// Names the series without points, where others have some.
+fn without_data(chart: &Chart) -> Option<String> {
+    let with_points: Vec<&str> =
+        chart.series.iter().filter(|one| !one.points.is_empty()).map(|one| one.name.as_str()).collect();
+    let mut names: Vec<&str> = chart.series.iter().map(|one| one.name.as_str()).collect();
+    names.retain(|name| !name.is_empty() && !with_points.contains(name));
+    names.dedup();
+    let is_told = !with_points.is_empty() && !names.is_empty();
+    is_told.then(|| format!("Without data here: {}.", names.join(", ")))
+}
+
+type Plot<'s> = ChartContext<'s, SVGBackend<'s>, Cartesian2d<PlotAxis, PlotAxis>>;
 
 impl Chart {
     /// The figure as a self-contained SVG document.
     ///
     /// # Errors
-    /// If the drawing library refuses; it has no reason to.
+    /// If plotters fails to draw it.
     pub fn svg(&self) -> Result<String, RenderError> {
-        let looks = looks(self);
-        // A first layout tells what is missing, which the second has to find room for.
-        let drawn_of = |places: &[Vec<Option<Px>>]| -> Vec<usize> {
-            places.iter().map(|p| p.iter().flatten().count()).collect()
+        let draw = || -> Result<String, String> {
+            let layout = Layout::of(self);
+            let mut space = Space::within(layout.plot.grown(-2.0));
+            let back = self.axes(&layout)? + &self.lines(&layout, &mut space)?;
+            let markers = self.markers(&layout, &mut space)?;
+            let words = triangles(&mut space, self, &layout)?
+                + &rules(&mut space, self, &layout)?
+                + &names(&mut space, self, &layout)?;
+            let below = (PAD, layout.plot.bottom + BELOW + 8.0);
+            let around = layout.legend.elements(layout.size, below)? + &self.texts(&layout)?;
+            let elements = [back, markers, words, around].concat();
+            Ok(document(layout.size, &self.title, &self.description(), &elements))
         };
-        let draft = lay_out(self, &Legend::of(self, &looks, &vec![1; looks.len()]), &[]);
-        let first = place(self, &draft.x.ruler, &draft.y.ruler, &draft.plot);
-        let legend = Legend::of(self, &looks, &drawn_of(&first.points));
-        let layout = lay_out(self, &legend, &first.notes);
-        let places = place(self, &layout.x.ruler, &layout.y.ruler, &layout.plot).points;
-
-        let mut canvas = Canvas::new(layout.width, layout.height);
-        canvas.rect((0.0, 0.0), (layout.width, layout.height), WHITE);
-        self.draw_data(&mut canvas, &layout, &looks, &places);
-        draw_axes(&mut canvas, &layout);
-        self.draw_front(&mut canvas, &layout, &looks, &places);
-        match layout.side {
-            LegendSide::None => {}
-            LegendSide::Right => legend.draw_column(&mut canvas, layout.legend),
-            LegendSide::Below => {
-                legend.draw_rows(&mut canvas, layout.legend, layout.width - layout.plot.left - layout.left);
-            }
-        }
-        canvas.finish(&self.title, &self.description())
+        draw().map_err(|reason| RenderError::Draw { title: self.title.clone(), reason })
     }
 
-    /// Field, grid and lines.
-    fn draw_data(
-        &self,
-        canvas: &mut Canvas,
-        layout: &ChartLayout,
-        looks: &[Look],
-        places: &[Vec<Option<Px>>],
-    ) {
-        if let Some(field) = self.field.as_ref().filter(|f| f.shape().is_some()) {
-            let span = field.span();
-            field.draw_cells(canvas, &layout.x.ruler, &layout.y.ruler);
-            draw_bar(canvas, layout, |share| colour_of(span.low + share * (span.high - span.low), &span));
-        } else {
-            draw_grid(canvas, layout);
+    /// The chart of plotters whose axes are those of the layout.
+    fn plot<'s>(&self, area: &Area<'s>, layout: &Layout) -> Drawn<Plot<'s>> {
+        let Layout { plot, size, .. } = layout;
+        ChartBuilder::on(area)
+            .margin_left(units(PAD))
+            .margin_top(units(plot.top))
+            .margin_right(units(size.0 - plot.right))
+            .margin_bottom(units(size.1 - plot.bottom - BELOW))
+            .set_label_area_size(LabelAreaPosition::Left, units(plot.left - PAD))
+            .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW))
+            .build_cartesian_2d(
+                layout.x.for_plotters(self.x.inverted),
+                layout.y.for_plotters(self.y.inverted),
+            )
+    }
+
+    /// White ground, grid and axes, or a field with its colour bar.
+    fn axes(&self, layout: &Layout) -> Result<String, String> {
+        let plot = layout.plot;
+        let mut out = layer(layout.size, |area| {
+            area.fill(&WHITE)?;
+            let mut chart = self.plot(area, layout)?;
+            let longest = width(&self.x.label).max(1.0);
+            let label = Font { size: LABEL.size.min((layout.size.0 - 2.0 * PAD) / longest), ..LABEL };
+            let upright = fitted(&self.y.label, plot);
+            let (x_label, y_label) =
+                (|x: &f64| scripted(&layout.x.label_of(*x)), |y: &f64| scripted(&layout.y.label_of(*y)));
+            let mut mesh = chart.configure_mesh();
+            mesh.bold_line_style(stroke(MAJOR, 1.0))
+                .light_line_style(stroke(MINOR, 1.0))
+                .axis_style(stroke(FRAME, 1.0))
+                .set_all_tick_mark_size(units(4.0))
+                .label_style(TICK.style(HPos::Center))
+                .x_label_formatter(&x_label)
+                .y_label_formatter(&y_label)
+                .axis_desc_style(upright.style(HPos::Center))
+                .y_desc(scripted(&self.y.label));
+            if self.drawn_field().is_some() {
+                mesh.disable_mesh();
+            }
+            mesh.draw()?;
+            let at = (f64::midpoint(plot.left, plot.right), plot.bottom + BELOW - 8.0);
+            write(area, &self.x.label, at, label, HPos::Center)
+        })?;
+        if self.drawn_field().is_some() {
+            let cells = layer(layout.size, |area| self.cells(area, layout))?;
+            out += &group(" shape-rendering=\"crispEdges\"", "", &cells);
         }
-        for theory in [false, true] {
-            for ((series, look), places) in self.series.iter().zip(looks).zip(places) {
-                if look.line && (series.style == Style::Theory) == theory {
-                    let pieces = pieces(places, &layout.plot);
-                    if self.field.is_some() {
-                        // No colour of a line shows on all colours of a field.
-                        stroke(
-                            canvas,
-                            &pieces,
-                            Look { colour: WHITE, dash: None, width: look.width + 20, ..*look },
-                        );
+        Ok(out)
+    }
+
+    /// The cells of a field, and its colour bar.
+    fn cells(&self, area: &Area<'_>, layout: &Layout) -> Drawn {
+        let (Some((field, (columns, _))), Some(bar)) = (self.drawn_field(), &layout.bar) else {
+            return Ok(());
+        };
+        let extent = field.extent();
+        let mut chart = self.plot(area, layout)?;
+        let cells = field.values.chunks(columns).enumerate().flat_map(|(row, values)| {
+            let colours: Vec<RGBColor> = values.iter().map(|value| field_colour(value / extent)).collect();
+            // Equal neighbours of a row are one rectangle.
+            let mut runs: Vec<(usize, usize, RGBColor)> = Vec::new();
+            for (column, colour) in colours.into_iter().enumerate() {
+                match runs.last_mut() {
+                    Some((_, end, last)) if *last == colour => *end = column + 1,
+                    _ => runs.push((column, column + 1, colour)),
+                }
+            }
+            let (low, high) = (field.y_edges[row], field.y_edges[row + 1]);
+            runs.into_iter().map(move |(start, end, colour)| {
+                let corners = [(field.x_edges[start], low), (field.x_edges[end], high)];
+                Rectangle::new(corners, colour.filled())
+            })
+        });
+        chart.draw_series(cells)?;
+        let (plot, size) = (layout.plot, layout.size);
+        let left = plot.right + BAR.0;
+        let label_room = bar.label_width() + BESIDE;
+        let mut chart = ChartBuilder::on(area)
+            .margin_left(units(left))
+            .margin_top(units(plot.top))
+            .margin_right(units(size.0 - left - BAR.1 - label_room))
+            .margin_bottom(units(size.1 - plot.bottom))
+            .set_label_area_size(LabelAreaPosition::Right, units(label_room))
+            .build_cartesian_2d(0.0..1.0, bar.for_plotters(false))?;
+        const STEPS: i32 = 120;
+        chart.draw_series((0..STEPS).map(|step| {
+            let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
+            let (low, high) = (share(step), share(step + 1));
+            let corners = [(0.0, low * extent), (1.0, high * extent)];
+            Rectangle::new(corners, field_colour(f64::midpoint(low, high)).filled())
+        }))?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .disable_x_axis()
+            .axis_style(stroke(FRAME, 1.0))
+            .set_all_tick_mark_size(units(4.0))
+            .label_style(TICK.style(HPos::Left))
+            .y_label_formatter(&|y| scripted(&bar.label_of(*y)))
+            .axis_desc_style(fitted(&field.label, plot).style(HPos::Center))
+            .y_desc(scripted(&field.label))
+            .draw()
+    }
+
+    /// The lines of all series, theory last, cut at the frame.
+    fn lines(&self, layout: &Layout, space: &mut Space) -> Result<String, String> {
+        let mut out = String::new();
+        for is_theory in [false, true] {
+            let lines = self.series.iter().zip(&layout.looks).zip(&layout.points);
+            for ((series, look), places) in
+                lines.filter(|((_, look), _)| look.has_line && look.is_theory == is_theory)
+            {
+                for pair in places.windows(2) {
+                    if let (Some(a), Some(b)) = (pair[0], pair[1]) {
+                        space.add_line(a, b);
                     }
-                    stroke(canvas, &pieces, *look);
+                }
+                // No colour of a line shows on all colours of a field: there it has a white edge.
+                let edge = self.field.is_some().then_some((WHITE, look.width() + 2.0));
+                for (colour, width) in edge.into_iter().chain([(look.colour, look.width())]) {
+                    let drawn =
+                        layer(layout.size, |area| self.curve(area, layout, series, stroke(colour, width)))?;
+                    let attributes = if colour == WHITE {
+                        " stroke-linejoin=\"round\"".to_owned()
+                    } else {
+                        look.line_attributes()
+                    };
+                    out += &group(&attributes, &series.name, &drawn);
                 }
             }
         }
+        // A document within the document cuts what lies outside of it.
+        let Frame { left, top, right, bottom } = layout.plot.grown(0.5);
+        let [x, y, w, h] = [left, top, right - left, bottom - top].map(units);
+        let frame = format!("x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" viewBox=\"{x} {y} {w} {h}\"");
+        Ok(if out.is_empty() { out } else { format!("<svg {frame}>\n{out}</svg>\n") })
     }
 
-    /// Everything above the frame: markers, triangles, words.
-    fn draw_front(
+    /// The line of a series, broken at values that cannot be drawn.
+    fn curve(
         &self,
-        canvas: &mut Canvas,
-        layout: &ChartLayout,
-        looks: &[Look],
-        places: &[Vec<Option<Px>>],
-    ) {
+        area: &Area<'_>,
+        layout: &Layout,
+        series: &Series,
+        style: plotters::style::ShapeStyle,
+    ) -> Drawn {
+        let (x, y) = (layout.x.ends, layout.y.ends);
+        let is_drawable =
+            |(a, b): &(f64, f64)| drawable(*a, x.scale).is_ok() && drawable(*b, y.scale).is_ok();
+        let mut chart = self.plot(area, layout)?;
+        for piece in series.points.split(|point| !is_drawable(point)).filter(|piece| piece.len() > 1) {
+            let points = piece.iter().map(|(a, b)| (x.near(*a), y.near(*b)));
+            chart.draw_series(LineSeries::new(points, style))?;
+        }
+        Ok(())
+    }
+
+    /// The markers of all series. Those of later series are smaller, so that points that coincide are seen to be
+    /// several, above all where no line shows it.
+    fn markers(&self, layout: &Layout, space: &mut Space) -> Result<String, String> {
         let inside = layout.plot.grown(0.5);
-        let mut space = Space::within(layout.plot.grown(-2.0));
         let mut kinds: Vec<Look> = Vec::new();
-        for (look, places) in looks.iter().zip(places) {
-            if look.line {
-                for piece in pieces(places, &layout.plot) {
-                    space.add_line(&piece);
-                }
-            }
-            if let Some(slot) = look.marker {
-                let place = kinds.iter().position(|k| k == look).unwrap_or_else(|| {
-                    kinds.push(*look);
-                    kinds.len() - 1
-                });
-                let size = radius(place, look.line);
-                for at in places.iter().flatten().copied().filter(|&p| inside.holds(p)) {
-                    marker(canvas, at, slot, size, look.colour);
+        let mut out = String::new();
+        for ((series, look), places) in self.series.iter().zip(&layout.looks).zip(&layout.points) {
+            let Some(slot) = look.marker else { continue };
+            let place = kinds.iter().position(|kind| kind == look).unwrap_or_else(|| {
+                kinds.push(*look);
+                kinds.len() - 1
+            });
+            let step = place.min(3) as f64;
+            let radius = if look.has_line { 4.6 - 0.25 * step } else { 5.4 - 0.85 * step };
+            let drawn = layer(layout.size, |area| {
+                for at in places.iter().flatten().copied().filter(|at| inside.holds(*at)) {
+                    draw_marker(area, at, slot, radius, look.colour)?;
                     space.add_marker(at);
                 }
+                Ok(())
+            })?;
+            out += &group("", &series.name, &drawn);
+        }
+        Ok(out)
+    }
+
+    /// Title, subtitle and notes, and words instead of data where there is none.
+    fn texts(&self, layout: &Layout) -> Result<String, String> {
+        layer(layout.size, |area| {
+            let mut top = PAD - 2.0;
+            for (lines, font) in [(&layout.title, TITLE), (&layout.subtitle, SUBTITLE)] {
+                for words in lines {
+                    write(area, words, (PAD, top + 0.5 * font.size), font, HPos::Left)?;
+                    top += font.size * LINE;
+                }
             }
-        }
-        if places.iter().flatten().flatten().next().is_none()
-            && self.field.as_ref().is_none_or(|f| f.shape().is_none())
-        {
-            let look = Type { size: 22.0, ink: QUIET, bold: false, hold: Hold::Middle, upright: false };
-            let f = layout.plot;
-            let centre = (f64::midpoint(f.left, f.right), f64::midpoint(f.top, f.bottom) + 7.0);
-            canvas.text("no data", centre, look);
-        }
-        draw_triangles(canvas, &mut space, self, layout, places);
-        draw_rules(canvas, &mut space, self, layout);
-        draw_names(canvas, &mut space, self, layout);
+            let mut bottom = layout.size.1 - PAD * 0.8 - layout.notes.len() as f64 * NOTE.size * LINE;
+            for words in &layout.notes {
+                write(area, words, (PAD, bottom + 0.5 * NOTE.size), NOTE, HPos::Left)?;
+                bottom += NOTE.size * LINE;
+            }
+            if layout.points.iter().flatten().flatten().next().is_none() && self.drawn_field().is_none() {
+                let Frame { left, top, right, bottom } = layout.plot;
+                let centre = (f64::midpoint(left, right), f64::midpoint(top, bottom));
+                write(area, "no data", centre, Font { size: 22.0, ..NOTE }, HPos::Center)?;
+            }
+            Ok(())
+        })
     }
 
     /// What the figure shows, for those who cannot see it.
     fn description(&self) -> String {
         let mut names: Vec<&str> =
-            self.series.iter().map(|s| s.name.as_str()).filter(|n| !n.is_empty()).collect();
+            self.series.iter().map(|series| series.name.as_str()).filter(|name| !name.is_empty()).collect();
         names.dedup();
-        let field = self.field.as_ref().map(|f| format!("{} in colour. ", f.label)).unwrap_or_default();
+        let field =
+            self.field.as_ref().map(|field| format!("{} in colour. ", field.label)).unwrap_or_default();
         let what = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
         format!("{field}{} against {}{what}.", self.y.label, self.x.label)
     }
+}
+
+/// The font of the words of an upright axis, smaller where they are longer than the plot.
+fn fitted(words: &str, plot: Frame) -> Font {
+    Font { size: LABEL.size.min((plot.bottom - plot.top + 30.0) / width(words).max(1.0)), ..LABEL }
 }

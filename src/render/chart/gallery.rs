@@ -1,6 +1,6 @@
 //! Figures of every kind from made-up data.
-use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
-use crate::render::chart::field::ColourField;
+use crate::render::chart::ColourField;
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
 use std::f64::consts::PI;
 
 /// Terzaghi's series, good enough for a picture.
@@ -175,7 +175,7 @@ fn column() -> Chart {
     chart
 }
 
-pub(in crate::render) fn gallery() -> Vec<(&'static str, Chart)> {
+pub(crate) fn gallery() -> Vec<(&'static str, Chart)> {
     vec![
         ("crowd", crowd()),
         ("column", column()),

@@ -1,21 +1,19 @@
-//! Figures: a plain description ([`Chart`]) and its SVG ([`Chart::svg`]).
+//! Figures: a plain description ([`Chart`]), drawn as SVG by plotters ([`Chart::svg`]).
 //!
 //! One type serves every picture of a report: convergence, isochrones, work and precision, maps.
-//! Nothing is hidden silently: what cannot be drawn is counted below the figure.
+//! Values that cannot be drawn are counted below the figure.
 
-pub mod axis_numbers;
-pub mod canvas;
-pub mod data;
-pub mod describe;
-pub mod draw;
-pub mod field;
-pub mod layout;
-pub mod palette;
-pub mod parts;
-pub mod svg_backend;
+mod axis;
+mod describe;
+mod draw;
+mod looks;
+mod svg;
+mod words;
+
+pub use describe::{Chart, ChartAxis, ColourField, PointName, Rule, Series, Size, SlopeTriangle, Style};
 
 #[cfg(test)]
-pub mod gallery;
+mod gallery;
 
 #[cfg(test)]
 mod tests;

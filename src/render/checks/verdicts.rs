@@ -1,20 +1,23 @@
-//! What `check` says: verdicts and golden values of studies, as text and as Markdown.
+//! Verdicts and golden values of studies, as text in lines that fit a terminal and as Markdown.
 
-use crate::golden::compare::Change;
+use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::judgement::Judgement;
-use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::VerdictOutcome;
-use crate::render::checks::failures;
-use crate::render::checks::items::{items_of, wrapped};
-use crate::render::render_error::RenderError;
+use crate::render::checks::{TITLES, failures_of};
+use crate::render::error::RenderError;
+use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::render::tables::{golden_changes, uncertainties};
+use crate::render::tables::golden_changes::{self, judgement_of, summary};
+use crate::render::tables::uncertainties;
+use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
 pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     let mut text = wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
-    text += &failures::text_of(check);
+    text += &text_of_failures(check);
+    text += &text_of_changes(check);
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
     }
@@ -56,25 +59,23 @@ pub fn markdown_of(
     Ok(text)
 }
 
-/// What stands against taking the values of a study as golden: expectations that fail, cases that fail,
-/// records that cannot be right; `None` where nothing does.
+/// Why the values of a study cannot be golden: unmet expectations, failed cases, records that cannot be right. `None`
+/// where there is no reason.
 pub fn objections_of(check: &StudyCheck) -> Option<String> {
-    let unmet = check.judgements.iter().any(|judgement| !judgement.verdict.pass);
-    let stands = unmet || !check.failed_cases.is_empty() || !check.unsound.is_empty();
-    stands.then(|| format!("{}\n{}", check.study, failures::text_of_failures(check)))
+    let text = text_of_failures(check);
+    (!text.is_empty()).then(|| format!("{}\n{text}", check.study))
 }
 
-/// What to type next where something failed: what explains the worst of it.
+/// The command that explains the worst failure, if anything failed.
 pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
     let file = file?;
     let explain = |what: &str| Some(format!("oedometer explain \"{what}\" {file}"));
-    let failed = check.failed_cases.first().or(check.unsound.first());
-    let unmet = check.judgements.iter().any(|judgement| !judgement.verdict.pass);
-    match check.groups.first() {
-        Some(group) if group.change == Change::Moved => explain(&group.worst.name),
-        _ if failed.is_some() => explain(&failed?.case),
-        _ if unmet => Some(format!("oedometer report {file}")),
-        None if check.golden.is_ok() => None,
+    let [unmet, failed, unsound] = failures_of(check);
+    match (check.groups.first(), failed.first().or(unsound.first())) {
+        (Some(group), _) if group.change == Change::Moved => explain(&group.worst.name),
+        (_, Some(failure)) => explain(failure.subject),
+        _ if !unmet.is_empty() => Some(format!("oedometer report {file}")),
+        (None, _) if check.golden.is_ok() => None,
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
     }
 }
@@ -103,7 +104,11 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
 }
 
 fn headline(check: &StudyCheck) -> String {
-    let passed = check.judgements.iter().filter(|judgement| judgement.verdict.pass).count();
+    let [unmet, failed, unsound] = failures_of(check).map(|failures| failures.len());
+    let expectations = match check.judgements.len() {
+        0 => "no expectations".to_owned(),
+        all => format!("{} of {all} expectations met", all - unmet),
+    };
     let golden = match &check.golden {
         Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
         Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
@@ -111,28 +116,21 @@ fn headline(check: &StudyCheck) -> String {
     };
     let count = |count: usize, one: &str, several: &str| match count {
         0 => String::new(),
-        count => format!(", {}", golden_changes::count_of(count, one, several)),
+        count => format!(", {}", count_of(count, one, several)),
     };
-    let failed = count(check.failed_cases.len(), "case failed", "cases failed");
-    let unsound = count(check.unsound.len(), "complaint about records", "complaints about records");
-    format!("{passed} of {} expectations met{failed}{unsound}, {golden}", check.judgements.len())
+    let failed = count(failed, "case failed", "cases failed");
+    let unsound = count(unsound, "complaint about records", "complaints about records");
+    format!("{expectations}{failed}{unsound}, {golden}")
 }
 
 fn tables_of(check: &StudyCheck) -> Vec<Table> {
-    let mut tables = Vec::new();
-    let unmet: Vec<_> = check.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect();
-    if !unmet.is_empty() {
-        tables.push(judgements_table("expectations not met", &unmet));
+    let mut tables: Vec<Table> = Vec::new();
+    for (title, failures) in TITLES.into_iter().zip(failures_of(check)).filter(|(_, all)| !all.is_empty()) {
+        let rows =
+            failures.into_iter().map(|one| vec![Cell::Code(one.subject.to_owned()), one.sentence.into()]);
+        tables.push(Table::of(title, columns("subject | how"), rows));
     }
     tables.extend(uncertainties::table_of(&check.judgements));
-    for (title, notes) in
-        [("failed cases", &check.failed_cases), ("records that cannot be right", &check.unsound)]
-    {
-        if !notes.is_empty() {
-            let row = |note: &CaseNote| vec![Cell::Code(note.case.clone()), note.sentence.as_str().into()];
-            tables.push(Table::of(title, columns("case | how"), notes.iter().map(row)));
-        }
-    }
     if !check.differences().is_empty() {
         tables.push(golden_changes::differences_table(check.differences()));
         tables.push(golden_changes::changes_table(&check.changes));
@@ -163,4 +161,202 @@ pub fn judgements_table(title: &str, judgements: &[&Judgement]) -> Table {
         ]
     });
     Table::of(title, columns("verdict | series | class | reason"), rows)
+}
+
+/// Columns of a terminal.
+const WIDTH: usize = 80;
+/// Items of a list before the rest is only counted.
+const MOST: usize = 10;
+
+/// A text in lines that fit a terminal; a longer word stays whole.
+fn wrapped(text: &str, first: &str, others: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = first.to_owned();
+    let mut is_empty = true;
+    for word in text.split_whitespace() {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(std::mem::replace(&mut line, others.to_owned()));
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.extend(word.chars().filter(|c| !c.is_control()));
+        is_empty = false;
+    }
+    lines.push(line);
+    lines.join("\n") + "\n"
+}
+
+/// A subject, and the words on it below.
+fn item(subject: &str, words: &str) -> String {
+    wrapped(subject, "  ", "    ") + &wrapped(words, "    ", "    ")
+}
+
+/// A list under its title; empty without items.
+fn section(title: &str, items: Vec<String>) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let rest = items.len().saturating_sub(MOST);
+    let mut text = format!("\n{title}\n");
+    text.extend(items.into_iter().take(MOST));
+    if rest > 0 {
+        let _ = writeln!(text, "  and {rest} more");
+    }
+    text
+}
+
+/// A table that is wider than a terminal as a list: the first cell of a row, and below it the others with their headings.
+fn items_of(table: &Table) -> String {
+    let mut text = format!("\n{}\n", table.title);
+    for row in &table.rows {
+        let Some((subject, others)) = row.split_first() else { continue };
+        let others = table.columns.iter().skip(1).zip(others).map(|(column, cell)| match cell {
+            Cell::Missing(why) => format!("no {}: {why}", column.heading()),
+            cell => format!("{} {}", column.heading(), cell.show()),
+        });
+        text += &item(&subject.show(), &others.collect::<Vec<_>>().join("; "));
+    }
+    for note in &table.notes {
+        text += &wrapped(&format!("({note})"), "  ", "  ");
+    }
+    text
+}
+
+/// Unmet expectations, failed cases and records that cannot be right.
+fn text_of_failures(check: &StudyCheck) -> String {
+    let sections = TITLES.iter().zip(failures_of(check)).map(|(title, failures)| {
+        let items = failures.iter().map(|one| item(&format!("✗ {}", one.subject), &one.sentence)).collect();
+        section(title, items)
+    });
+    sections.collect()
+}
+
+/// Golden values that differ: kinds, the worst values, and cases.
+fn text_of_changes(check: &StudyCheck) -> String {
+    if check.groups.is_empty() {
+        return String::new();
+    }
+    let groups: String = check.groups.iter().map(|group| wrapped(&summary(group), "  ", "    ")).collect();
+    let (differences, cases) = worth_naming(check.differences(), &check.changes);
+    [
+        format!("\ngolden values that differ\n{groups}"),
+        section("the worst of them", differences.into_iter().map(difference).collect()),
+        section("accuracy and cost together", cases.into_iter().map(case_change).collect()),
+    ]
+    .concat()
+}
+
+/// Values and cases that are named one by one. Many values without a partner come from an input that changed, which
+/// their kind has told already: then only what moved is named.
+fn worth_naming<'a>(
+    differences: &'a [Difference],
+    cases: &'a [CaseChange],
+) -> (Vec<&'a Difference>, Vec<&'a CaseChange>) {
+    let has_partner = |one: &&Difference| one.golden.is_some() && one.found.is_some();
+    if differences.len() <= MOST + differences.iter().filter(has_partner).count() {
+        return (differences.iter().collect(), cases.iter().collect());
+    }
+    let moved = cases.iter().filter(|case| case.worse + case.better > 0).collect();
+    (differences.iter().filter(has_partner).collect(), moved)
+}
+
+fn difference(one: &Difference) -> String {
+    let how = match (one.golden, one.found, one.relative_change()) {
+        (Some(golden), Some(found), Some(change)) => format!(
+            "{} was {}, a relative change of {}, {} times its tolerance",
+            number::exact(found),
+            number::exact(golden),
+            number::error(change),
+            number::number((found - golden).abs() / one.tolerance)
+        ),
+        (Some(golden), None, _) => format!("was {}", number::exact(golden)),
+        (_, found, _) => found.map_or(String::new(), number::exact),
+    };
+    item(&one.name, &format!("{}: {how}", one.change.name()))
+}
+
+fn case_change(one: &CaseChange) -> String {
+    let (mood, word) = judgement_of(one);
+    let counts = format!(
+        "{word}: cost {} of golden, {}, {} fell, {} without a partner",
+        number::number(one.cost_ratio),
+        count_of(one.worse, "value grew", "values grew"),
+        one.better,
+        one.unpaired
+    );
+    item(&format!("{} {}", mood.mark(), one.case), &counts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::golden::compare::Change;
+    use crate::render::table::columns;
+    use oedometer_convergence::ParetoChange;
+
+    #[test]
+    fn values_of_an_input_that_changed_are_told_by_their_kind_and_hide_nothing_that_moved() {
+        let difference = |golden: Option<f64>, found: Option<f64>| Difference {
+            name: "MPM | pressure".to_owned(),
+            change: if golden.is_some() && found.is_some() { Change::Moved } else { Change::Missing },
+            golden,
+            found,
+            tolerance: 1e-9,
+        };
+        let case = |worse: usize| CaseChange {
+            case: "MPM".to_owned(),
+            change: ParetoChange::NotComparable,
+            cost_ratio: 1.0,
+            worse,
+            better: 0,
+            unpaired: 1,
+        };
+        let named = |missing: usize| {
+            let mut differences = vec![difference(Some(1.0), None); missing];
+            differences.insert(missing / 2, difference(Some(1.0), Some(2.0)));
+            let cases = [case(0), case(1)];
+            let (values, cases) = worth_naming(&differences, &cases);
+            assert!(values.contains(&&differences[missing / 2]), "what moved is always named");
+            (values.len(), cases.len())
+        };
+        assert_eq!(named(MOST), (MOST + 1, 2));
+        assert_eq!(named(MOST + 1), (1, 1));
+    }
+
+    #[test]
+    fn a_long_list_is_cut_and_counted() {
+        let items = |count: usize| (0..count).map(|number| format!("  {number}\n")).collect::<Vec<_>>();
+        assert_eq!(section("title", items(0)), "");
+        assert!(section("title", items(MOST)).ends_with("  9\n"));
+        assert!(section("title", items(MOST + 3)).ends_with("  9\n  and 3 more\n"));
+    }
+
+    #[test]
+    fn lines_fit_a_terminal_and_lose_no_word() {
+        let text = "order 1.01 outside 1.90 … 2.10, ".repeat(20);
+        let lines = wrapped(&text, "  ", "    ");
+        assert!(lines.lines().count() > 5 && lines.lines().all(|line| line.chars().count() <= WIDTH));
+        assert!(lines.starts_with("  order") && lines.lines().skip(1).all(|line| line.starts_with("    ")));
+        let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(words(&lines), words(&text));
+        let long = "x".repeat(100);
+        assert_eq!(wrapped(&long, "", "  "), format!("{long}\n"), "a name stays whole");
+        assert_eq!(wrapped("a\u{1b}[31m", "", ""), "a[31m\n", "nothing steers the terminal");
+    }
+
+    #[test]
+    fn a_wide_table_becomes_items_that_lose_nothing() {
+        let rows = [vec!["a value".into(), Cell::Count(5), Cell::missing("fewer than four levels")]];
+        let table =
+            Table::of("values", columns("value | > levels | > least squares"), rows).note("of a study");
+        let text = items_of(&table);
+        for part in
+            ["values", "a value", "levels 5", "no least squares: fewer than four levels", "(of a study)"]
+        {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+    }
 }

@@ -1,15 +1,5 @@
-//! Lightly marked text.
-use crate::render::escape::{html, markdown, plain_html};
-
-/// A piece of running text.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Inline {
-    Text(String),
-    Code(String),
-    Strong(Vec<Inline>),
-    Stressed(Vec<Inline>),
-    Link(Vec<Inline>, String),
-}
+//! Lightly marked text, taken apart and written as HTML and Markdown.
+use crate::render::escape::{html, markdown, markdown_target, plain_html};
 
 /// The paragraphs of a text, each on one line.
 pub(crate) fn paragraphs(text: &str) -> Vec<String> {
@@ -29,113 +19,91 @@ pub(crate) fn paragraphs(text: &str) -> Vec<String> {
     out
 }
 
-/// Takes the marks of a text apart. A mark without its partner is text.
-pub(crate) fn parse(text: &str) -> Vec<Inline> {
-    let mut out = Vec::new();
+/// How a format writes the pieces of a text.
+struct Format {
+    text: fn(&str) -> String,
+    code: fn(&str) -> String,
+    strong: [&'static str; 2],
+    stressed: [&'static str; 2],
+    /// From the words, written already, and the target.
+    link: fn(&str, &str) -> String,
+}
+
+const HTML: Format = Format {
+    text: html,
+    code: |code| format!("<code>{}</code>", plain_html(code)),
+    strong: ["<strong>", "</strong>"],
+    stressed: ["<em>", "</em>"],
+    link: |words, target| format!("<a href=\"{}\">{words}</a>", plain_html(target)),
+};
+
+const MARKDOWN: Format = Format {
+    text: markdown,
+    code: |code| format!("`{code}`"),
+    strong: ["**"; 2],
+    stressed: ["*"; 2],
+    link: |words, target| {
+        format!("[{words}]({})", markdown_target(target).replace('<', "%3C").replace('>', "%3E"))
+    },
+};
+
+/// Marked text as HTML.
+pub(crate) fn to_html(text: &str) -> String {
+    write(text, &HTML)
+}
+
+/// Marked text as Markdown, with everything escaped that is not a mark.
+pub(crate) fn to_markdown(text: &str) -> String {
+    write(text, &MARKDOWN)
+}
+
+/// The text in a format. A mark without its partner is text.
+fn write(text: &str, format: &Format) -> String {
+    let mut out = String::new();
     let mut plain = String::new();
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
-        let before = plain.chars().next_back();
-        if let Some((piece, after)) = marked(rest, before) {
-            if !plain.is_empty() {
-                out.push(Inline::Text(std::mem::take(&mut plain)));
-            }
-            out.push(piece);
+        if let Some((piece, after)) = marked(rest, plain.chars().next_back(), format) {
+            out += &(format.text)(&std::mem::take(&mut plain));
+            out += &piece;
             rest = after;
         } else {
             plain.push(c);
             rest = &rest[c.len_utf8()..];
         }
     }
-    if !plain.is_empty() {
-        out.push(Inline::Text(plain));
-    }
-    out
+    out + &(format.text)(&plain)
 }
 
-/// A marked piece at the start of `text`, and what follows it.
-fn marked(text: &str, before: Option<char>) -> Option<(Inline, &str)> {
+/// The marked piece at the start of `text` in a format, and what follows it.
+fn marked<'t>(text: &'t str, before: Option<char>, format: &Format) -> Option<(String, &'t str)> {
     if let Some(inside) = text.strip_prefix('`') {
         let (code, after) = inside.split_once('`')?;
-        return (!code.is_empty()).then(|| (Inline::Code(code.to_owned()), after));
+        return (!code.is_empty()).then(|| ((format.code)(code), after));
     }
     if let Some(inside) = text.strip_prefix('[') {
         let (words, after) = inside.split_once("](")?;
         let (target, after) = after.split_once(')')?;
-        // Only what can do no harm is a link.
-        let safe = ["https://", "http://", "#"].iter().any(|s| target.starts_with(s))
+        // Only targets that can do no harm are links.
+        let is_safe = ["https://", "http://", "#"].iter().any(|start| target.starts_with(start))
             || !(target.is_empty() || target.contains(':') || target.starts_with('/'));
-        let clean = !words.contains(['[', ']']) && !target.contains(char::is_whitespace);
-        return (safe && clean).then(|| (Inline::Link(parse(words), target.to_owned()), after));
+        let is_clean = !words.contains(['[', ']']) && !target.contains(char::is_whitespace);
+        return (is_safe && is_clean).then(|| ((format.link)(&write(words, format), target), after));
     }
     // A star inside a word, or with space on its inner side, is a star.
     if before.is_some_and(char::is_alphanumeric) {
         return None;
     }
-    for mark in ["**", "*"] {
-        let Some(inside) = text.strip_prefix(mark) else {
-            continue;
-        };
-        let end = closing(inside, mark)?;
-        let (words, after) = (&inside[..end], &inside[end + mark.len()..]);
-        let pieces = parse(words);
-        let piece = if mark == "**" { Inline::Strong(pieces) } else { Inline::Stressed(pieces) };
-        return Some((piece, after));
-    }
-    None
-}
-
-/// Where the mark that ends a stressed piece stands.
-fn closing(inside: &str, mark: &str) -> Option<usize> {
-    if inside.starts_with([' ', '*']) {
-        return None;
-    }
-    inside.match_indices(mark).map(|(i, _)| i).find(|&i| {
-        let before = inside[..i].chars().next_back();
-        let after = inside[i + mark.len()..].chars().next();
-        before.is_some_and(|c| c != ' ' && c != '*')
+    let (mark, [start, end]) =
+        if text.starts_with("**") { ("**", format.strong) } else { ("*", format.stressed) };
+    let inside = text.strip_prefix(mark).filter(|inside| !inside.starts_with([' ', '*']))?;
+    let close = inside.match_indices(mark).map(|(at, _)| at).find(|&at| {
+        let after = inside[at + mark.len()..].chars().next();
+        inside[..at].ends_with(|c| c != ' ' && c != '*')
             && !after.is_some_and(|c| c.is_alphanumeric() || c == '*')
-    })
-}
-
-/// Marked text as HTML.
-pub(crate) fn to_html(text: &str) -> String {
-    write_html(&parse(text))
-}
-
-fn write_html(pieces: &[Inline]) -> String {
-    pieces
-        .iter()
-        .map(|piece| match piece {
-            Inline::Text(text) => html(text),
-            Inline::Code(code) => format!("<code>{}</code>", plain_html(code)),
-            Inline::Strong(inside) => format!("<strong>{}</strong>", write_html(inside)),
-            Inline::Stressed(inside) => format!("<em>{}</em>", write_html(inside)),
-            Inline::Link(words, target) => {
-                format!("<a href=\"{}\">{}</a>", plain_html(target), write_html(words))
-            }
-        })
-        .collect()
-}
-
-/// Marked text as Markdown, with everything escaped that is not a mark.
-pub(crate) fn to_markdown(text: &str) -> String {
-    write_markdown(&parse(text))
-}
-
-fn write_markdown(pieces: &[Inline]) -> String {
-    pieces
-        .iter()
-        .map(|piece| match piece {
-            Inline::Text(text) => markdown(text),
-            Inline::Code(code) => format!("`{code}`"),
-            Inline::Strong(inside) => format!("**{}**", write_markdown(inside)),
-            Inline::Stressed(inside) => format!("*{}*", write_markdown(inside)),
-            Inline::Link(words, target) => {
-                format!("[{}]({})", write_markdown(words), target.replace('<', "%3C").replace('>', "%3E"))
-            }
-        })
-        .collect()
+    })?;
+    let words = write(&inside[..close], format);
+    Some((format!("{start}{words}{end}"), &inside[close + mark.len()..]))
 }
 
 #[cfg(test)]
@@ -153,7 +121,7 @@ mod tests {
     #[test]
     fn marks_without_partner_are_text() {
         for text in ["2*3*4", "a * b", "`open", "[a]", "**", "* *", "*", "[a](b", "``"] {
-            assert_eq!(parse(text), vec![Inline::Text(text.to_owned())], "{text}");
+            assert_eq!(to_html(text), html(text), "{text}");
         }
         assert_eq!(to_html("2*3 < 4"), "2*3 &lt; 4");
     }

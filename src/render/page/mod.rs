@@ -4,14 +4,14 @@
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
-pub mod html_page;
-pub mod links;
-pub mod markdown_page;
-pub mod marked_text;
+mod marked_text;
+mod writers;
 
-use crate::render::chart::describe::Chart;
+pub use writers::{render_html, render_markdown};
+
+use crate::render::chart::Chart;
+use crate::render::error::RenderError;
 use crate::render::number;
-use crate::render::render_error::RenderError;
 use crate::render::table::{Mood, Table};
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -21,23 +21,23 @@ use std::sync::OnceLock;
 pub struct Page {
     /// Heading of the whole.
     pub title: String,
-    /// What the reader should know first.
+    /// Text before the sections.
     pub lead: String,
-    /// What must not be overlooked, below the lead.
+    /// The main result, below the lead.
     pub callout: Option<Callout>,
     /// The sections, in order.
     pub sections: Vec<Section>,
-    /// Small print at the end: what made the page, out of what.
+    /// Small print at the end.
     pub footer: String,
-    /// Whether it takes the width of a screen, without a list of its sections beside it.
+    /// Whether it takes the whole width of a screen, without a list of its sections beside it.
     pub is_wide: bool,
-    /// Words of a box that hides the rows of tables which do not have what is typed; none for no box.
+    /// Hint in the box that filters the rows of tables; no box if `None`.
     pub filter: Option<String>,
-    /// Name of its files: its tables and figures are then to be had as files, and the page links to them.
+    /// Name of its files. If set, the page links to its tables and figures as files.
     pub files: Option<String>,
 }
 
-/// A sentence that must not be overlooked, lightly marked.
+/// A highlighted sentence, lightly marked.
 pub type Callout = (Mood, String);
 
 /// A section with a heading and an anchor.
@@ -47,9 +47,9 @@ pub struct Section {
     pub heading: String,
     /// The anchor: lower-case letters, digits, `-`, `_` and `.`.
     pub id: String,
-    /// A mark at the heading and in the table of contents: how the section ended.
+    /// A mark at the heading and in the table of contents.
     pub mood: Option<Mood>,
-    /// What stands in it.
+    /// Its content.
     pub blocks: Vec<Block>,
 }
 
@@ -68,13 +68,13 @@ pub enum Block {
     Figure(Figure),
     /// Figures side by side, where there is room.
     Figures(Vec<Figure>),
-    /// A sentence that must not be overlooked, lightly marked.
+    /// A highlighted sentence, lightly marked.
     Callout(Mood, String),
-    /// What only some readers want to see.
+    /// Blocks that the reader opens.
     Details {
-        /// The line that is always seen.
+        /// The visible line.
         summary: String,
-        /// What it opens.
+        /// The hidden blocks.
         blocks: Vec<Block>,
     },
 }
@@ -84,11 +84,11 @@ pub enum Block {
 pub struct Figure {
     /// Name of its file, without an ending: lower-case letters, digits, `-`, `_` and `.`.
     pub name: String,
-    /// What it shows, drawn when the page is written.
+    /// The chart, drawn when the page is written.
     pub chart: Box<Chart>,
-    /// What is said below it, lightly marked.
+    /// The caption, lightly marked.
     pub caption: String,
-    /// The chart as drawn, once it is.
+    /// The SVG, once drawn.
     drawn: OnceLock<String>,
 }
 
@@ -99,7 +99,7 @@ impl Figure {
         Self { name, chart: Box::new(chart), caption, drawn: OnceLock::new() }
     }
 
-    /// The chart as SVG: drawn once, for the page and for the file beside it.
+    /// The chart as SVG, drawn once for the page and its file.
     ///
     /// # Errors
     /// If it cannot be drawn.
@@ -111,7 +111,7 @@ impl Figure {
         Ok(self.drawn.get_or_init(|| drawn))
     }
 
-    /// The same figure of another chart.
+    /// Changes the chart.
     #[must_use]
     pub fn with_chart(mut self, change: impl FnOnce(&mut Chart)) -> Self {
         change(&mut self.chart);
@@ -132,52 +132,54 @@ pub fn figures(page: &Page) -> Result<Vec<(String, String)>, RenderError> {
         .collect()
 }
 
-/// Every figure of a page, in order.
-pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
-    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Figure>) {
+/// Every block of a page in order, with those inside of others.
+fn all_blocks(page: &Page) -> Vec<&Block> {
+    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Block>) {
         for block in blocks {
-            match block {
-                Block::Figure(figure) => out.push(figure),
-                Block::Figures(figures) => out.extend(figures),
-                Block::Details { blocks, .. } => collect(blocks, out),
-                _ => {}
-            }
-        }
-    }
-    let mut out = Vec::new();
-    page.sections.iter().for_each(|s| collect(&s.blocks, &mut out));
-    out
-}
-
-/// The tables of a page with the names of their files, without an ending, in order.
-pub fn tables(page: &Page) -> Vec<(String, &Table)> {
-    fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Table>) {
-        for block in blocks {
-            match block {
-                Block::Table(table) => out.push(table),
-                Block::Details { blocks, .. } => collect(blocks, out),
-                _ => {}
+            out.push(block);
+            if let Block::Details { blocks, .. } = block {
+                collect(blocks, out);
             }
         }
     }
     let mut out = Vec::new();
     page.sections.iter().for_each(|section| collect(&section.blocks, &mut out));
-    let name = page.files.as_deref().unwrap_or("page");
-    out.into_iter().enumerate().map(|(place, table)| (table_file(name, place + 1), table)).collect()
+    out
 }
 
-/// Rows of a table that a page shows where the table is to be had as a file too: more of them nobody reads, and a study
-/// of ten thousand cases must not make a page that no browser opens.
+/// Every figure of a page, in order.
+pub(crate) fn all_figures(page: &Page) -> Vec<&Figure> {
+    let figures = all_blocks(page).into_iter().flat_map(|block| match block {
+        Block::Figure(figure) => std::slice::from_ref(figure),
+        Block::Figures(figures) => figures.as_slice(),
+        _ => &[],
+    });
+    figures.collect()
+}
+
+/// The tables of a page with the names of their files, without an ending, in order.
+pub fn tables(page: &Page) -> Vec<(String, &Table)> {
+    let name = page.files.as_deref().unwrap_or("page");
+    let tables = all_blocks(page).into_iter().filter_map(|block| match block {
+        Block::Table(table) => Some(table),
+        _ => None,
+    });
+    tables.enumerate().map(|(place, table)| (table_file(name, place + 1), table)).collect()
+}
+
+/// Rows that a page shows of a table that also has a file, so that a study of ten thousand cases makes a page that
+/// browsers open.
 const MOST_ROWS: usize = 200;
 
-/// What a page shows of a table whose file has the given name, and what it says of the rest.
+/// The part of a table that a page shows if the table has a file, and a sentence on the rest.
 pub(crate) fn shown_rows<'a>(table: &'a Table, file: Option<&str>) -> (Cow<'a, Table>, Option<String>) {
     let Some(file) = file.filter(|_| table.rows.len() > MOST_ROWS) else {
         return (Cow::Borrowed(table), None);
     };
     let all = number::count(table.rows.len() as u64);
     let rest = format!("The first {MOST_ROWS} of {all} rows: [the whole table](tables/{file}.csv).");
-    (table.first_rows(MOST_ROWS), Some(rest))
+    let shown = Table { rows: table.rows[..MOST_ROWS].to_vec(), ..table.clone() };
+    (Cow::Owned(shown), Some(rest))
 }
 
 /// The name of the file of a page's table, counted from one.
@@ -185,7 +187,7 @@ pub(crate) fn table_file(page: &str, number: usize) -> String {
     format!("{page}-table-{number}")
 }
 
-/// Names become files and anchors: they must be safe, and each its own.
+/// Names become files and anchors: they must be safe and unique.
 pub(crate) fn check(page: &Page) -> Result<(), RenderError> {
     let ids: Vec<&str> = page.sections.iter().map(|s| s.id.as_str()).collect();
     let names: Vec<&str> = all_figures(page).iter().map(|f| f.name.as_str()).collect();

@@ -1,7 +1,5 @@
 use super::*;
-use crate::render::chart::describe::{ChartAxis, Series};
-use crate::render::page::html_page::render_html;
-use crate::render::page::markdown_page::render_markdown;
+use crate::render::chart::{ChartAxis, Series};
 use crate::render::table::{Cell, TableColumn};
 
 fn chart() -> Chart {

@@ -1,17 +1,88 @@
-//! Words for quantities, samples and axes, the same in every figure and table.
+//! Words for quantities, samples, axes and orders, shared by all figures and tables.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::record::Record;
+use crate::render::number;
 use crate::render::table::Cell;
 use crate::study::expectation::{Axis, Measure};
+use oedometer_convergence::{Class, Classification};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the words beside an order, or instead of one, say.
+/// The meaning of the words beside an order, or instead of one.
 pub const CLASSES: &str = "Words beside an order say that it is not settled: pre-asymptotic, it still changes from mesh to \
                            mesh; contaminated, a term of lower order takes over on fine meshes; superconvergent, higher \
                            than promised. Words instead of one: oscillatory, the error goes up and down; divergent, it \
                            grows; floor-limited, something else than the mesh limits it; locked, the body hardly moves";
+
+/// Cells of the mesh on which errors are quoted: the paper's.
+pub const QUOTED_CELLS: usize = 10;
+
+/// The measures that show what a method converges to.
+pub const CONVERGENCE: [(Quantity, Sample); 4] = [
+    (Quantity::Pressure, Sample::Points),
+    (Quantity::Pressure, Sample::Centres),
+    (Quantity::EffectiveStress, Sample::Points),
+    (Quantity::Settlement, Sample::Surface),
+];
+
+/// Items in the order of their first appearance, each once.
+pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for item in items {
+        if !seen.contains(&item) {
+            seen.push(item);
+        }
+    }
+    seen
+}
+
+/// Items by their keys, both in the order of their first appearance.
+pub fn grouped<K: PartialEq, V>(items: impl IntoIterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
+    let mut groups: Vec<(K, Vec<V>)> = Vec::new();
+    for (key, item) in items {
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, own)) => own.push(item),
+            None => groups.push((key, vec![item])),
+        }
+    }
+    groups
+}
+
+/// The words with a capital first letter.
+pub fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
+/// Whether a series has an order that no longer changes from mesh to mesh.
+pub fn is_settled(class: Class) -> bool {
+    matches!(class, Class::Asymptotic | Class::Superconvergent)
+}
+
+/// The order, with the class where it is not settled; the class alone where there is no order.
+pub fn order_or_class(found: &Classification) -> String {
+    match found.order {
+        Some(order) if is_settled(found.class) => number::order(order),
+        Some(order) => format!("{} ({})", number::order(order), found.class),
+        None => found.class.name().to_owned(),
+    }
+}
+
+/// The order or class of a series with its error on some mesh, for a cell of a table.
+pub fn order_and_error(found: &Classification, error: Option<f64>) -> String {
+    // A hyphen that does not break the line.
+    let error = error.map(|error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
+    order_or_class(found) + &error.unwrap_or_default()
+}
+
+/// Sorted ticks for the sizes of levels.
+pub fn ticks(sizes: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut ticks: Vec<f64> = sizes.collect();
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
+    ticks
+}
 
 /// A reference in words, for running text and legends.
 pub fn solution(reference: &str) -> String {
@@ -44,7 +115,7 @@ pub fn sample(sample: Sample) -> &'static str {
     }
 }
 
-/// Work of a case, which nobody counts for an attached solver.
+/// Work of a case, which is not counted for an attached solver.
 pub fn counted(record: &Record, work: u64) -> Cell {
     if record.case.is_attached() { Cell::missing("of an attached solver") } else { Cell::Count(work) }
 }
@@ -54,7 +125,7 @@ pub fn measure(measure: &Measure) -> String {
     format!("{} {}", quantity(measure.quantity), sample(measure.sample))
 }
 
-/// A measure in the norm in which its quantity is reported first.
+/// A measure in the main norm of its quantity.
 pub fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
     let norm = first_norm(quantity);
     Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
@@ -78,8 +149,7 @@ pub fn error_axis(measure: &Measure) -> String {
     }
 }
 
-/// Labels of paths that share a figure or a table: what tells them apart, and, once for all, what
-/// does not.
+/// Labels of paths that share a figure or a table: what differs, and what all share.
 pub struct PathLabels {
     /// One label a path.
     pub each: Vec<String>,
@@ -124,4 +194,74 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
         .first()
         .map_or(Vec::new(), |own| own[1..].iter().filter(|part| is_shared(part)).cloned().collect());
     PathLabels { each: each.collect(), shared: shared.join(", ") }
+}
+
+/// Most series of a figure with several soils.
+const MOST_SERIES: usize = 14;
+/// Most series of a figure with one soil.
+const MOST_OF_A_SOIL: usize = 60;
+
+/// The paths of a figure.
+pub struct DrawnPaths<'a> {
+    /// The paths that are shown.
+    pub paths: Vec<Path<'a>>,
+    /// Which of all they are, as a sentence; `None` if they are all.
+    pub note: Option<String>,
+}
+
+/// All paths; if they are too many, those of the undisturbed soil, or else of the first soil.
+pub fn drawn<'a>(all: &[Path<'a>]) -> DrawnPaths<'a> {
+    if all.len() <= MOST_SERIES {
+        return DrawnPaths { paths: all.to_vec(), note: None };
+    }
+    let variant = |path: &Path<'_>| path.records[0].case.variant();
+    let of_variant = |wanted: &str| -> Vec<Path<'a>> {
+        all.iter().filter(|path| variant(path) == wanted).cloned().collect()
+    };
+    let plain = of_variant("");
+    let (mut paths, what) = if plain.is_empty() {
+        let first = variant(&all[0]);
+        (of_variant(&first), format!("those with {first}"))
+    } else {
+        (plain, "the plain soil only".to_owned())
+    };
+    let first = if paths.len() > MOST_OF_A_SOIL { "the first of " } else { "" };
+    paths.truncate(MOST_OF_A_SOIL);
+    let note = (paths.len() < all.len()).then(|| {
+        format!(
+            "The figures show {} of {} series, {first}{what}; the tables have every one.",
+            paths.len(),
+            all.len()
+        )
+    });
+    DrawnPaths { paths, note }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::judge::paths::paths;
+    use crate::study::expectation::Axis;
+
+    fn series_of(sweep: &str) -> (usize, usize, Option<String>) {
+        let records = records_of(&format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\ncells = [2, 4]\n\
+             integrator = ['implicit']\ntime_step = [{{ growth = 0.5 }}]\n{sweep}"
+        ));
+        let all = paths(&records, Axis::Cells);
+        let shown = drawn(&all);
+        (shown.paths.len(), all.len(), shown.note)
+    }
+
+    #[test]
+    fn a_figure_shows_all_paths_or_those_of_one_soil_and_says_so() {
+        let (shown, all, note) = series_of("method = ['MPM', 'GIMP']\nporosity = [0.3, 0.4]\n");
+        assert_eq!((shown, all, note), (4, 4, None));
+        let soils = "porosity = [0.3, 0.32, 0.34, 0.36, 0.38, 0.4, 0.42, 0.44]\n";
+        let (shown, all, note) = series_of(&format!("method = ['MPM', 'GIMP']\n{soils}"));
+        assert_eq!((shown, all), (2, 16));
+        let note = note.expect("not all are shown");
+        assert!(note.contains("show 2 of 16 series, those with porosity=0.3"), "{note}");
+    }
 }

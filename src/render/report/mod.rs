@@ -1,24 +1,23 @@
 //! The pages behind the answers: one a study over its records, and the list of all.
 
-pub mod appendix;
-pub mod figures;
-pub mod findings;
-pub mod labels;
-pub mod other_measures;
+mod checks;
+pub(crate) mod cost;
+mod findings;
+pub(crate) mod labels;
+pub(crate) mod layer;
+mod maps;
 pub mod pages;
-pub mod refinement;
+pub(crate) mod refinement;
 pub mod situations;
-pub mod stiffness_sweeps;
 pub mod study_page;
-pub mod survival;
-pub mod worst_checks;
+pub(crate) mod theory_lines;
 
 use crate::case::tier::Tier;
 use crate::judge::judgement::{Judgement, judge_paths};
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::record::{Record, Status};
-use crate::render::chart::describe::Chart;
+use crate::render::chart::Chart;
 use crate::render::page::{Figure, slug};
 use crate::study::check::Study;
 
@@ -32,7 +31,7 @@ pub struct StudyResults<'a> {
     pub paths: StudyPaths<'a>,
     /// Its expectations, judged.
     pub judgements: Vec<Judgement>,
-    /// What no record may be, of those that are: the case and a sentence.
+    /// Records that cannot be right: the case and a sentence.
     pub unsound: Vec<(String, String)>,
     /// The file of the study, as it was given.
     pub file: String,
@@ -57,7 +56,7 @@ impl<'a> StudyResults<'a> {
         }
     }
 
-    /// The same of a study that came from another file.
+    /// Sets the file of the study.
     #[must_use]
     pub fn from_file(mut self, file: String) -> Self {
         self.file = file;
@@ -69,7 +68,7 @@ impl<'a> StudyResults<'a> {
         self.study.planned.len().saturating_sub(self.records.len())
     }
 
-    /// Whether an expectation of the study is about a reference.
+    /// Whether the study has an expectation against a reference.
     pub(crate) fn asks_for(&self, reference: &str) -> bool {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
     }
@@ -84,7 +83,7 @@ impl<'a> StudyResults<'a> {
         Figure::new(slug(&format!("{}-{name}", self.study.name)), chart, caption)
     }
 
-    /// What runs the study again.
+    /// The command that runs the study again.
     pub(crate) fn run_command(&self) -> String {
         if self.file.contains(char::is_whitespace) {
             format!("oedometer run \"{}\"", self.file)

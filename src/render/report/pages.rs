@@ -1,11 +1,14 @@
-//! The list of all studies, in groups, before their pages.
+//! The page that lists all studies, and how their numbers were made.
 
+use crate::case::norm::Norm;
 use crate::render::page::{Block, Page, Section, slug};
-use crate::render::report::{StudyResults, appendix};
+use crate::render::report::StudyResults;
+use crate::render::report::labels::{capitalised, grouped};
 use crate::render::table::{Cell, Mood, Table, columns};
+use std::collections::BTreeMap;
 
-/// The list of studies, and how their numbers were made. `ending` is that of their pages.
-pub fn index_page(results: &[StudyResults<'_>], ending: &str) -> Page {
+/// The list of studies, and how their numbers were made.
+pub fn index_page(results: &[StudyResults<'_>]) -> Page {
     let groups = groups(results);
     let mut sections: Vec<Section> = groups
         .iter()
@@ -13,56 +16,95 @@ pub fn index_page(results: &[StudyResults<'_>], ending: &str) -> Page {
             heading: capitalised(name),
             id: slug(name),
             mood: Some(Mood::of(studies.iter().all(|one| one.passes()))),
-            blocks: vec![Block::Table(studies_table(studies, ending))],
+            blocks: vec![Block::Table(studies_table(studies))],
         })
         .collect();
-    sections.push(appendix::section(results));
-    let up = if ending == "html" { "../index.html" } else { "../README.md" };
+    sections.push(numbers_section(results));
     Page {
         title: "All studies".to_owned(),
-        lead: format!("{} studies in {} groups. [The answers]({up}).", results.len(), groups.len()),
+        lead: format!("{} studies in {} groups. [The answers](../index.html).", results.len(), groups.len()),
         sections,
-        footer: appendix::footer(results),
+        footer: footer(results),
         filter: Some("Words that a study has".to_owned()),
         files: Some("studies".to_owned()),
         ..Page::default()
     }
 }
 
-/// Studies by the first word of their names where several share it; the others together.
-fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(String, Vec<&'b StudyResults<'a>>)> {
-    let first_word = |one: &StudyResults<'_>| one.study.name.split('-').next().unwrap_or_default().to_owned();
-    let mut groups: Vec<(String, Vec<&StudyResults<'a>>)> = Vec::new();
-    for one in results {
+/// Studies by the first word of their names where several share it; the others together, last.
+fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(&'b str, Vec<&'b StudyResults<'a>>)> {
+    let first_word = |one: &'b StudyResults<'_>| one.study.name.split('-').next().unwrap_or_default();
+    let mut groups = grouped(results.iter().map(|one| {
         let word = first_word(one);
-        let shared = results.iter().filter(|other| first_word(other) == word).count() > 1;
-        let name = if shared { word } else { "other".to_owned() };
-        match groups.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, studies)) => studies.push(one),
-            None => groups.push((name, vec![one])),
-        }
-    }
-    groups.sort_by_key(|(name, _)| name == "other");
+        let is_shared = results.iter().filter(|other| first_word(other) == word).count() > 1;
+        (if is_shared { word } else { "other" }, one)
+    }));
+    groups.sort_by_key(|(name, _)| *name == "other");
     groups
 }
 
-fn capitalised(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
-}
-
 /// One row per study: how many of its expectations are met, and what runs it.
-fn studies_table(studies: &[&StudyResults<'_>], ending: &str) -> Table {
+fn studies_table(studies: &[&StudyResults<'_>]) -> Table {
     let rows = studies.iter().map(|one| {
         vec![
-            Cell::Link {
-                words: one.study.title.clone(),
-                target: format!("{}.{ending}", slug(&one.study.name)),
-            },
+            Cell::Link { words: one.study.title.clone(), target: format!("{}.html", slug(&one.study.name)) },
             Cell::Count(one.records.len() as u64),
-            Cell::Verdict(Mood::of(one.passes()), format!("{} of {}", one.met(), one.judgements.len())),
+            met_cell(one),
             Cell::Code(one.run_command()),
         ]
     });
     Table::of("", columns("study | > runs | expectations met | run it again"), rows)
+}
+
+/// How many expectations are met; without a mark where there are none.
+fn met_cell(one: &StudyResults<'_>) -> Cell {
+    let mood = if one.judgements.is_empty() && one.passes() { Mood::Note } else { Mood::of(one.passes()) };
+    let words = match one.judgements.len() {
+        0 => "no expectations".to_owned(),
+        all => format!("{} of {all}", one.met()),
+    };
+    Cell::Verdict(mood, words)
+}
+
+/// Norms and references of all records.
+fn numbers_section(results: &[StudyResults<'_>]) -> Section {
+    let norms = Norm::ALL.iter().map(|norm| vec![Cell::Code(norm.name().to_owned()), norm.formula().into()]);
+    let mut used: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+    for reference in results.iter().flat_map(|one| one.records).flat_map(|record| &record.references) {
+        let entry = used.entry(reference.name.as_str()).or_default();
+        entry.0 = entry.0.max(reference.terms);
+        entry.1 = entry.1.max(reference.tail_bound);
+    }
+    let references = used.iter().map(|(name, (terms, tail))| {
+        vec![Cell::Code((*name).to_owned()), Cell::Count(*terms as u64), Cell::Error(*tail)]
+    });
+    let blocks = vec![
+        Block::Table(
+            Table::of("Norms", columns("norm | formula: x computed, x̂ exact, V volume of a sample"), norms)
+                .note("the exact field is evaluated at the Lagrangian place of the sample"),
+        ),
+        Block::Table(
+            Table::of(
+                "References",
+                columns("reference | > terms at most | > tail bound, over the load"),
+                references,
+            )
+            .note(
+                "terzaghi: with the water's compressibility; terzaghi-incompressible: the textbook's; \
+                 single-mode: slowest mode, with the water's compressibility",
+            ),
+        ),
+    ];
+    Section { heading: "How the numbers were made".to_owned(), id: "how".to_owned(), mood: None, blocks }
+}
+
+/// The program that made the records.
+fn footer(results: &[StudyResults<'_>]) -> String {
+    let provenance = results.iter().flat_map(|one| one.records).map(|record| &record.provenance).next();
+    provenance.map_or(String::new(), |origin| {
+        format!(
+            "oedometer {}, sources {}, {}, {}, {} profile",
+            origin.version, origin.sources, origin.compiler, origin.target, origin.profile
+        )
+    })
 }

@@ -3,10 +3,9 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::step_label;
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
-use crate::render::chart::describe::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
+use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
-use crate::render::report::figures::drawn_paths::{DrawnPaths, drawn};
-use crate::render::report::labels::first_measure;
+use crate::render::report::labels::{DrawnPaths, drawn, first_measure, grouped};
 use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
@@ -28,7 +27,7 @@ fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
     ]
 }
 
-/// Floors that are told below a table before the rest is only counted.
+/// Floors that are listed below a table before the rest is only counted.
 const MOST_NOTES: usize = 20;
 
 /// Figures and tables of a study along an axis; none where nothing was refined on it.
@@ -83,14 +82,14 @@ pub fn mesh_figure(
     if few.is_empty() { None } else { figure(results, &few, Axis::Cells, quantity, sample, own, time_factor) }
 }
 
-/// Paths of at least three levels; in a study of variants with two levels there is no order.
+/// Paths of at least three levels: two levels have no order.
 fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
     let mut all = results.paths.along(axis).to_vec();
     all.retain(|path| path.records.len() >= WINDOW);
     all
 }
 
-/// Whether the study expects to run into the difference of two models.
+/// Whether the study has expectations against another model than its own.
 fn floors_of_model(results: &StudyResults<'_>) -> bool {
     let own = results.study.references.first().copied();
     results.study.expectations.iter().any(|one| one.reference.is_some() && one.reference != own)
@@ -126,13 +125,10 @@ fn figure(
     if summaries.iter().all(|summary| summary.series.levels().iter().all(|level| level.error.is_none())) {
         return None;
     }
-    let title = format!("Error of the {}", labels::measure(&measure));
     let sizes = summaries.iter().flat_map(|summary| summary.series.levels()).map(|level| level.size);
-    let mut ticks: Vec<f64> = sizes.collect();
-    ticks.sort_by(f64::total_cmp);
-    ticks.dedup();
+    let ticks = labels::ticks(sizes);
     let mut chart = Chart::new(
-        title,
+        format!("Error of the {}", labels::measure(&measure)),
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
         ChartAxis::log10(labels::error_axis(&measure)),
     );
@@ -158,11 +154,10 @@ fn figure(
         chart.rules.push(Rule { at, label: format!("floor of {whose}{cause}") });
     }
     let name = format!("{}-{}-{}-{reference}", axis.name(), quantity.name(), sample.name());
-    let caption = match axis {
-        Axis::Cells | Axis::TimeStep | Axis::WaterBulkModulus => captions(&summaries, &labels.each),
-        Axis::PointsPerCell => {
-            "More points refine the quadrature, not the mesh: the error tends to the mesh's own.".to_owned()
-        }
+    let caption = if axis == Axis::PointsPerCell {
+        "More points refine the quadrature, not the mesh: the error tends to that of the mesh.".to_owned()
+    } else {
+        captions(&summaries, &labels.each)
     };
     Some(results.figure(&name, chart, caption))
 }
@@ -177,14 +172,13 @@ fn measured<'a>(all: &[Path<'a>], measure: &Measure) -> Vec<Path<'a>> {
     all.iter().filter(has).cloned().collect()
 }
 
-/// Whether a series along the axis is expected to fall with an order, and not to end in the mesh's
-/// error.
+/// Whether errors along the axis fall with an order instead of ending in the error of the mesh.
 fn shows_orders(axis: Axis, reference: &str) -> bool {
     axis == Axis::Cells || axis == Axis::TimeStep && reference == NEXT_FINER
 }
 
-/// The floor that a figure can show as one line, and whose it is: that of its only limited series, or of
-/// all its series where they end within a tenth of each other. Others are told in the table alone.
+/// The floor that a figure shows as one line, and its owner: the only limited series, or all series where they end
+/// within a tenth of each other. Other floors are in the table.
 fn shared_floor(summaries: &[SeriesSummary<'_>], labels: &[String]) -> Option<(f64, String)> {
     let floor = |summary: &SeriesSummary<'_>| Some(summary.classification.floor.as_ref()?.value);
     let floors: Vec<(f64, &String)> =
@@ -217,25 +211,16 @@ fn add_triangles(chart: &mut Chart, summaries: &[SeriesSummary<'_>], labels: &[S
     }
 }
 
-/// The class of every series of a figure, those that share a class together.
+/// The series of a figure by their class.
 fn captions(summaries: &[SeriesSummary<'_>], labels: &[String]) -> String {
-    let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for (summary, label) in summaries.iter().zip(labels) {
-        let class = summary.classification.class.name().to_owned();
-        let order = match (&summary.classification.order, summary.path.axis) {
-            (Some(order), axis) if shows_orders(axis, &summary.measure.reference) => {
-                format!("{label} (order {order:.2})")
-            }
-            _ => label.clone(),
-        };
-        match said.iter_mut().find(|(known, _)| *known == class) {
-            Some((_, labels)) => labels.push(order),
-            None => said.push((class, vec![order])),
-        }
-    }
-    let parts: Vec<String> =
-        said.iter().map(|(class, labels)| format!("*{class}*: {}", labels.join("; "))).collect();
-    parts.join(". ") + "."
+    let said = summaries.iter().zip(labels).map(|(summary, label)| {
+        let class = &summary.classification;
+        let order = class.order.filter(|_| shows_orders(summary.path.axis, &summary.measure.reference));
+        let order = order.map_or(String::new(), |order| format!(" (order {order:.2})"));
+        (class.class.name(), format!("{label}{order}"))
+    });
+    let parts = grouped(said).into_iter().map(|(class, series)| format!("*{class}*: {}", series.join("; ")));
+    parts.collect::<Vec<_>>().join(". ") + "."
 }
 
 /// Errors at every level with pairwise orders, fit, finest window and class.
@@ -302,7 +287,7 @@ fn orders_row(
     levels: usize,
     axis: Axis,
 ) -> Vec<Cell> {
-    let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).as_str().into()];
+    let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).into()];
     let levels_run = summary.series.levels().iter();
     row.extend(levels_run.map(|level| Cell::of(level.error, Cell::Error, "no error was measured")));
     row.resize(2 + levels, Cell::missing("not run"));
@@ -312,17 +297,13 @@ fn orders_row(
             .iter()
             .map(|order| order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
             .collect();
-        row.push(pairs.join(", ").as_str().into());
-        row.push(match &summary.slope {
-            Ok(fit) => {
-                fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half))
-            }
-            Err(undefined) => Cell::Missing(undefined.to_string()),
-        });
-        row.push(match &summary.finest {
-            Ok(order) => Cell::Order(*order),
-            Err(undefined) => Cell::Missing(undefined.to_string()),
-        });
+        row.push(pairs.join(", ").into());
+        row.push(summary.slope.as_ref().map_or_else(
+            |undefined| Cell::Missing(undefined.to_string()),
+            |fit| fit.half_width.map_or(Cell::Order(fit.order), |half| Cell::OrderWithin(fit.order, half)),
+        ));
+        let finest = summary.finest.as_ref();
+        row.push(finest.map_or_else(|why| Cell::Missing(why.to_string()), |order| Cell::Order(*order)));
     }
     if axis != Axis::PointsPerCell {
         row.push(summary.classification.class.name().into());

@@ -1,11 +1,12 @@
-//! The page of all situations: every study and every method of each, behind the short matrix of the answers.
+//! The page of all situations: every study and every method of each.
 
 use crate::judge::comparison::situation::{End, Ended, situations_of};
 use crate::render::number;
 use crate::render::page::{Block, Page, Section, slug};
+use crate::render::report::labels::{capitalised, distinct};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 
-/// A tick stands at errors below this only.
+/// Errors below this have a tick.
 pub const TICK_BELOW: f64 = 0.01;
 
 /// The judgement of an end, and its words.
@@ -21,7 +22,7 @@ pub fn words_of(end: &End) -> (Mood, String) {
     }
 }
 
-/// How the cells are to be read.
+/// The legend of the cells.
 pub fn legend() -> String {
     format!(
         "{} error below {}; {} a larger error; {} no answer: the failure by its name, a body that locks (moves less than \
@@ -35,8 +36,8 @@ pub fn legend() -> String {
     )
 }
 
-/// The page. `ending` is that of the pages of the studies, in the folder `studies`.
-pub fn situations_page(ends: &[Ended<'_>], ending: &str) -> Page {
+/// The page of all situations.
+pub fn situations_page(ends: &[Ended<'_>]) -> Page {
     let sections = situations_of(ends).into_iter().map(|situation| {
         let own: Vec<&Ended<'_>> = ends.iter().filter(|one| one.situation == situation).collect();
         Section {
@@ -45,16 +46,15 @@ pub fn situations_page(ends: &[Ended<'_>], ending: &str) -> Page {
             mood: None,
             blocks: vec![
                 Block::Paragraph(format!("{}.", capitalised(situation.meaning()))),
-                Block::Table(table_of(&own, ending)),
+                Block::Table(table_of(&own)),
             ],
         }
     });
-    let up = if ending == "html" { "index.html" } else { "README.md" };
     Page {
         title: "All situations".to_owned(),
         lead: format!(
-            "How each method came out of each study, by what the study puts it through: {}. [The answers]({up}).\n\nA study \
-             may mean a run to fail: what it expects stands on its page.",
+            "The result of each method in each study, by situation: {}. [The answers](index.html).\n\nA study may expect a \
+             run to fail: its page has the expectations.",
             legend()
         ),
         sections: sections.collect(),
@@ -66,24 +66,16 @@ pub fn situations_page(ends: &[Ended<'_>], ending: &str) -> Page {
 }
 
 /// One row a study, one column a method that some study of the situation tried.
-fn table_of(own: &[&Ended<'_>], ending: &str) -> Table {
-    let mut methods: Vec<&str> = Vec::new();
-    let mut studies: Vec<&str> = Vec::new();
-    for one in own {
-        if !methods.contains(&one.method.as_str()) {
-            methods.push(&one.method);
-        }
-        if !studies.contains(&one.study.name.as_str()) {
-            studies.push(&one.study.name);
-        }
-    }
+fn table_of(own: &[&Ended<'_>]) -> Table {
+    let methods = distinct(own.iter().map(|one| one.method.as_str()));
+    let studies = distinct(own.iter().map(|one| one.study.name.as_str()));
     let mut columns = columns("study");
     columns.extend(methods.iter().map(|method| TableColumn::text(*method)));
     let rows = studies.into_iter().map(|study| {
         let of_study: Vec<&&Ended<'_>> = own.iter().filter(|one| one.study.name == study).collect();
         let title = of_study.first().map_or("", |one| one.study.title.as_str());
         let mut row =
-            vec![Cell::Link { words: title.to_owned(), target: format!("studies/{}.{ending}", slug(study)) }];
+            vec![Cell::Link { words: title.to_owned(), target: format!("studies/{}.html", slug(study)) }];
         row.extend(methods.iter().map(|method| {
             let end = of_study.iter().find(|one| one.method == *method).map(|one| words_of(&one.end));
             end.map_or(Cell::Text("not tried".to_owned()), |(mood, words)| Cell::Verdict(mood, words))
@@ -91,11 +83,6 @@ fn table_of(own: &[&Ended<'_>], ending: &str) -> Table {
         row
     });
     Table::of("", columns, rows)
-}
-
-fn capitalised(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
 #[cfg(test)]

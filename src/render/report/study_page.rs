@@ -1,19 +1,16 @@
-//! The page of one study: what it asks, what was expected, figures, tables, checks.
+//! The page of one study: its question, expectations, figures, tables and checks.
 
 use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::figures::{
-    cheapest_method_map, critical_step_maps, error_over_time, error_over_work, plane_fields, theory_lines,
-};
-use crate::render::report::{StudyResults, findings, other_measures, refinement, survival, worst_checks};
+use crate::render::report::{StudyResults, checks, cost, findings, layer, maps, refinement, theory_lines};
 use crate::render::table::Mood;
-use crate::render::tables::{attached_runs, uncertainties};
+use crate::render::tables::{runs, uncertainties};
 use crate::study::expectation::Axis;
 use oedometer_exact::exact_error::ExactError;
 use std::fmt::Write;
 
-/// Reasons that the red box names before the rest is only counted.
+/// Reasons in the red box before the rest is only counted.
 const MOST_REASONS: usize = 5;
 
 /// The page of a study.
@@ -23,26 +20,25 @@ const MOST_REASONS: usize = 5;
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
     let mut blocks = expectations(results);
-    blocks.extend(survival::block(results));
-    blocks.extend(findings::blocks(results));
-    blocks.extend(cheapest_method_map::blocks(results));
-    blocks.extend(plane_fields::blocks(results)?);
+    blocks.extend(findings::survival(results));
+    blocks.extend(findings::findings(results));
+    blocks.extend(maps::cheapest_methods(results));
+    blocks.extend(layer::blocks(results)?);
     blocks.extend(theory_lines::blocks(results)?);
     for axis in Axis::REFINEMENTS {
         blocks.extend(refinement::blocks(results, axis));
     }
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
-    let is_solved = results.records.iter().any(|record| record.stability.is_none());
-    blocks.extend(other_measures::blocks(results));
-    blocks.extend(critical_step_maps::blocks(results));
-    if let Some(table) = attached_runs::table_of(results.records) {
+    blocks.extend(checks::measures(results));
+    blocks.extend(maps::critical_steps(results));
+    if let Some(table) = runs::attached_table(results.records) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));
         blocks.push(Block::Table(table));
     }
-    if is_solved {
-        blocks.extend(error_over_work::blocks(results));
-        blocks.extend(error_over_time::blocks(results));
-        blocks.push(worst_checks::block(results));
+    if results.records.iter().any(|record| record.stability.is_none()) {
+        blocks.extend(cost::work_blocks(results));
+        blocks.extend(cost::wall_time_blocks(results));
+        blocks.push(checks::worst_checks(results));
     }
     Ok(Page {
         title: study.title.clone(),
@@ -58,19 +54,15 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     })
 }
 
-/// Whether everything is as expected; where not, why, in the box itself.
+/// Whether everything is as expected, and the reasons if not.
 fn verdict(results: &StudyResults<'_>) -> Callout {
     let judged = results.judgements.len();
     let mut text = match judged {
-        0 => "The study expects nothing.".to_owned(),
+        0 => "The study has no expectations.".to_owned(),
         _ => format!("{} of {judged} expectations are met.", results.met()),
     };
     if let Some((case, sentence)) = results.unsound.first() {
-        let _ = write!(
-            text,
-            " {} checks of its runs fail, the first of {case}: {sentence}.",
-            results.unsound.len()
-        );
+        let _ = write!(text, " {} checks of its runs fail, first {case}: {sentence}.", results.unsound.len());
     }
     let failing = failing(results);
     for judgement in failing.iter().take(MOST_REASONS) {
@@ -87,7 +79,7 @@ fn failing<'b>(results: &'b StudyResults<'_>) -> Vec<&'b Judgement> {
     results.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect()
 }
 
-/// What is not met openly, and every expectation behind a click.
+/// The unmet expectations, and every expectation behind a click.
 fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     let mut blocks = Vec::new();
     let failing = failing(results);
@@ -97,14 +89,14 @@ fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     if !results.judgements.is_empty() {
         let all: Vec<_> = results.judgements.iter().collect();
         blocks.push(Block::Details {
-            summary: "Every expectation, with the reason of its verdict".to_owned(),
+            summary: "Every expectation, with the reason for its verdict".to_owned(),
             blocks: vec![Block::Table(judgements_table("Expectations", &all))],
         });
     }
     blocks
 }
 
-/// A section from every heading on; what stands before the first is of the expectations.
+/// A section from every heading on; the blocks before the first are about the expectations.
 fn sections(blocks: Vec<Block>) -> Vec<Section> {
     let mut sections = vec![Section {
         heading: "Expectations".to_owned(),
@@ -112,13 +104,11 @@ fn sections(blocks: Vec<Block>) -> Vec<Section> {
         ..Section::default()
     }];
     for block in blocks {
-        match (block, sections.last_mut()) {
-            (Block::Heading(heading), _) => {
-                let id = format!("{}-{}", slug(&heading), sections.len());
-                sections.push(Section { heading, id, ..Section::default() });
-            }
-            (block, Some(last)) => last.blocks.push(block),
-            (_, None) => {}
+        if let Block::Heading(heading) = block {
+            let id = format!("{}-{}", slug(&heading), sections.len());
+            sections.push(Section { heading, id, ..Section::default() });
+        } else if let Some(last) = sections.last_mut() {
+            last.blocks.push(block);
         }
     }
     sections.retain(|section| !section.blocks.is_empty());

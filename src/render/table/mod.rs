@@ -1,14 +1,9 @@
 //! A table as plain data, and its writers: text, Markdown, HTML, CSV and LaTeX.
 
-pub mod csv_table;
-pub mod html_table;
-pub mod latex_table;
-pub mod markdown_table;
-pub mod text_table;
+mod writers;
 
+use crate::render::error::RenderError;
 use crate::render::number;
-use crate::render::render_error::RenderError;
-use std::borrow::Cow;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,7 +21,7 @@ pub struct Table {
 /// A column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TableColumn {
-    /// What stands in the column.
+    /// The name of the quantity.
     pub header: String,
     /// The unit, if the numbers have one.
     pub unit: Option<String>,
@@ -34,12 +29,12 @@ pub struct TableColumn {
     pub align: Align,
 }
 
-/// Where a cell's text stands in its column.
+/// Alignment of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// At the left: words.
+    /// For words.
     Left,
-    /// At the right: numbers.
+    /// For numbers.
     Right,
 }
 
@@ -54,7 +49,7 @@ impl TableColumn {
         Self { align: Align::Right, ..Self::text(header) }
     }
 
-    /// The same column with a unit.
+    /// Sets the unit.
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
@@ -70,8 +65,8 @@ impl TableColumn {
     }
 }
 
-/// Columns from a header as it reads: parted by `|`, `>` before one of numbers, its unit in brackets, as in
-/// `case | > predicted [s] | verdict`.
+/// Columns from a header such as `case | > predicted [s] | verdict`: separated by `|`, with `>` before a column of
+/// numbers and its unit in brackets.
 pub fn columns(header: &str) -> Vec<TableColumn> {
     let column = |cell: &str| match cell.trim().strip_prefix('>').map(str::trim) {
         None => TableColumn::text(cell.trim()),
@@ -83,12 +78,12 @@ pub fn columns(header: &str) -> Vec<TableColumn> {
     header.split('|').map(column).collect()
 }
 
-/// A cell. Every kind of number is spelled in one way throughout all reports.
+/// A cell. Each kind of number has one format in all reports.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// Words.
     Text(String),
-    /// A name as it is typed: a method, a key, a command.
+    /// A name as the user types it: a method, a key, a command.
     Code(String),
     /// An error: `5.62e-3`.
     Error(f64),
@@ -106,27 +101,27 @@ pub enum Cell {
     Number(f64),
     /// A judgement.
     Verdict(Mood, String),
-    /// Words that lead to a page.
+    /// A link.
     Link {
-        /// What is read.
+        /// Its text.
         words: String,
-        /// Where it leads: a path or an address.
+        /// Its target: a path or an address.
         target: String,
     },
-    /// A judgement that leads to the page that carries it.
+    /// A judgement with a link to the page that shows it.
     Evidence {
         /// The judgement.
         mood: Mood,
-        /// What is read.
+        /// Its text.
         words: String,
-        /// Where it leads: a path or an address.
+        /// The target of the link: a path or an address.
         target: String,
     },
-    /// Nothing, and why.
+    /// A missing value and the reason for it.
     Missing(String),
 }
 
-/// What a judgement means to the reader.
+/// How a judgement is to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mood {
     /// As expected.
@@ -138,7 +133,7 @@ pub enum Mood {
 }
 
 impl Mood {
-    /// What a judgement that is met or not means.
+    /// The mood of a judgement that is met or not.
     pub fn of(is_met: bool) -> Self {
         if is_met { Self::Pass } else { Self::Fail }
     }
@@ -167,18 +162,24 @@ impl From<&str> for Cell {
     }
 }
 
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
 impl Cell {
-    /// Nothing, and why.
+    /// A missing value and the reason for it.
     pub fn missing(why: &str) -> Self {
         Self::Missing(why.to_owned())
     }
 
-    /// A value where there is one, else why there is none.
+    /// The value, or the reason why it is missing.
     pub fn of(value: Option<f64>, kind: fn(f64) -> Self, why: &str) -> Self {
         value.map_or_else(|| Self::missing(why), kind)
     }
 
-    /// The number that a cell is sorted by, where its words do not tell it.
+    /// The number that a cell is sorted by, if it has one.
     pub(crate) fn value(&self) -> Option<f64> {
         match self {
             Self::Error(v)
@@ -192,7 +193,7 @@ impl Cell {
         }
     }
 
-    /// What the cell says; why something is missing is left to the footnotes.
+    /// The cell as text; the reason for a missing value is left to the footnotes.
     pub(crate) fn show(&self) -> String {
         match self {
             Self::Text(text) | Self::Code(text) | Self::Link { words: text, .. } => text.clone(),
@@ -223,32 +224,18 @@ impl Table {
         Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new() }
     }
 
-    /// The same table with one more line below it.
+    /// Adds a line below the table.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    /// The same table with more lines below it.
+    /// Adds lines below the table.
     #[must_use]
     pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
         self.notes.extend(notes);
         self
-    }
-
-    /// The table with its first rows only, where it has more than so many.
-    pub(crate) fn first_rows(&self, most: usize) -> Cow<'_, Self> {
-        if self.rows.len() <= most {
-            return Cow::Borrowed(self);
-        }
-        let Self { title, columns, rows, notes } = self;
-        Cow::Owned(Self {
-            title: title.clone(),
-            columns: columns.clone(),
-            rows: rows[..most].to_vec(),
-            notes: notes.clone(),
-        })
     }
 
     /// Refuses a row with too few or too many cells.
@@ -294,7 +281,7 @@ fn mark(i: usize) -> String {
     }
 }
 
-/// What a cell says with the mark of its footnote, if it has one.
+/// A cell as text with the mark of its footnote, if it has one.
 pub(crate) fn marked(cell: &Cell, footnotes: &[&str]) -> (String, Option<String>) {
     let place = match cell {
         Cell::Missing(reason) => footnotes.iter().position(|f| f == reason),

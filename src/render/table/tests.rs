@@ -99,3 +99,16 @@ fn a_terminal_is_never_steered() {
     let text = written(table.to_text());
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
 }
+
+#[test]
+fn a_table_for_a_paper_has_its_rules_its_powers_and_no_bare_specials() {
+    let row =
+        vec![Cell::Code("a_b".into()), Cell::Error(3.62e-3), Cell::Percent(0.05), Cell::missing("no run")];
+    let latex = Table::of("T", columns("m | > e | > share | > x"), [row]).to_latex().expect("a table");
+    assert!(latex.contains("\\begin{tabular}{lrrr}\n\\toprule\n"), "{latex}");
+    assert!(
+        latex.contains("\\texttt{a\\_b} & $3.62\\cdot10^{-3}$ & 5.00 \\% & –\\textsuperscript{a} \\\\"),
+        "{latex}"
+    );
+    assert!(latex.contains("\\bottomrule\n\\end{tabular}\n% (a) no run"), "{latex}");
+}

@@ -1,19 +1,19 @@
-//! The tables of an explained case.
+//! Tables of an explained case: where its errors are, its levels, and its golden values.
 
 use crate::case::quantity::Quantity;
 use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::render::tables::attached_run_table;
 use crate::render::tables::golden_changes::differences_table;
+use crate::render::tables::runs::attached_notes;
 
 /// Carriers, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
     let mut tables = vec![carriers_table(record, &explanation.carriers)];
-    tables.extend(explanation.carriers.first().into_iter().flat_map(|first| {
-        explanation.levels.iter().map(|series| levels_table(first, series)).collect::<Vec<_>>()
-    }));
+    if let Some(first) = explanation.carriers.first() {
+        tables.extend(explanation.levels.iter().map(|series| levels_table(first, series)));
+    }
     if !explanation.differences.is_empty() {
         tables.push(differences_table(&explanation.differences));
     }
@@ -23,8 +23,8 @@ pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
 /// One sentence on the golden values of a case.
 pub fn golden_sentence(explanation: &Explanation) -> String {
     match (explanation.has_golden, explanation.differences.len(), explanation.agreeing) {
-        (false, ..) => "there are no golden values to hold the case against".to_owned(),
-        (true, 0, 0) => "no golden value is of this case: it is not in the CI tier".to_owned(),
+        (false, ..) => "there are no golden values to compare the case with".to_owned(),
+        (true, 0, 0) => "this case has no golden values: it is not in the CI tier".to_owned(),
         (true, 0, agreeing) => format!("all {agreeing} golden values of the case agree"),
         (true, differing, agreeing) => {
             format!("{differing} values differ from the golden ones, {agreeing} agree")
@@ -76,7 +76,7 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
         "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
              squared L2 error; values in Pa and m"
     ));
-    table.notes(attached_run_table::notes_of(record))
+    table.notes(attached_notes(record))
 }
 
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {

@@ -4,17 +4,13 @@ use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_convergence::ParetoChange;
+use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
 /// Differences shown in a table before the rest is only counted.
 const MOST_DIFFERENCES: usize = 40;
 
-/// A count of things, in the singular where there is one.
-pub(crate) fn count_of(count: usize, one: &str, several: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { several })
-}
-
-/// What values of one kind have in common and how far the worst is off, in one sentence.
+/// One sentence on the changes of one kind: what the values share, and how far the worst moved.
 pub(crate) fn summary(group: &DifferenceGroup) -> String {
     let is = if group.values == 1 { "is" } else { "are" };
     let what = match group.change {
@@ -46,7 +42,7 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
     sentence
 }
 
-/// The same with the name of the worst.
+/// The summary with the name of the worst value.
 pub fn sentence(group: &DifferenceGroup) -> String {
     format!("{}: {}", summary(group), group.worst.name)
 }

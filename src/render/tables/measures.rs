@@ -4,9 +4,9 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
-use crate::record::{Record, Status};
+use crate::record::{PhaseTime, Record, Status};
+use crate::render::error::RenderError;
 use crate::render::number;
-use crate::render::render_error::RenderError;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ pub fn table_of(record: &Record) -> Result<String, RenderError> {
     Ok(text)
 }
 
-/// One row a reference, quantity and sample; one column a time factor; L2 or relative error.
+/// One row per reference, quantity and sample, one column per time factor: L2 or relative error.
 pub fn errors_table(record: &Record) -> Table {
     let case = &record.case;
     let mut columns = columns("reference | quantity | sample");
@@ -80,35 +80,57 @@ fn work_note(record: &Record) -> String {
     )
 }
 
-/// Start checks, balances, the worst of all outputs, and dimensionless groups of a record; checks with their bounds.
+/// Start checks, worst balances over all outputs, and dimensionless groups of a record; checks with their bounds.
 pub fn checks_table(record: &Record) -> Table {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
-    let plain = || Cell::Text(String::new());
     if let Some(start) = &record.start {
-        add("points at the start", Cell::Count(start.points as u64), plain());
+        add("points at the start", Cell::Count(start.points as u64), "".into());
     }
     for check in &record_checks::worst_of([record]) {
         add(check.what, Cell::Error(check.value), bound_cell(check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
-        let exact = format!("exactly {:.7}", row.exact);
-        add(&row.name, Cell::Text(format!("{:.7}", row.found)), Cell::Text(exact));
+        add(&row.name, format!("{:.7}", row.found).into(), format!("exactly {:.7}", row.exact).into());
     }
-    add("storage n E_oed/K_w", Cell::Error(record.groups.storage), plain());
-    add("finite strain m_vl q", Cell::Error(record.groups.finite_strain), plain());
-    add("inertia c_v/(H V)", Cell::Error(record.groups.inertia), plain());
+    for (name, value) in groups_of(record) {
+        add(name, Cell::Error(value), "".into());
+    }
     Table::of("checks and groups", columns("what | > value | bound"), rows)
         .notes(record_checks::complaints(record).iter().map(|one| format!("✗ {one}")))
+}
+
+/// The dimensionless groups of a record.
+pub(crate) fn groups_of(record: &Record) -> [(&'static str, f64); 3] {
+    let groups = &record.groups;
+    [
+        ("storage n E_oed/K_w", groups.storage),
+        ("finite strain m_vl q", groups.finite_strain),
+        ("inertia c_v/(H V)", groups.inertia),
+    ]
+}
+
+/// One row per phase in the order of a run: share of the time, and cost of a point and step.
+pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {
+    let updates = record.counters.point_updates.max(1) as f64;
+    let rows = phases.iter().map(|time| {
+        vec![
+            time.phase.name().into(),
+            Cell::Percent(time.share),
+            Cell::Number(1e3 * time.seconds),
+            Cell::Number(1e9 * time.seconds / updates),
+            Cell::Count(time.entries),
+        ]
+    });
+    let header = "phase | > share | > time [ms] | > a point and step [ns] | > entered";
+    Table::of("where the time went", columns(header), rows)
+        .note("wall time without that of the clock, which is read at the start of each phase; a run without it is faster")
 }
 
 /// The bound of a check with the mark of its judgement.
 pub fn bound_cell(check: &RecordCheck) -> Cell {
     match check.bound {
-        Some(bound) => {
-            let mood = Mood::of(check.holds());
-            Cell::Verdict(mood, format!("≤ {}", number::error(bound)))
-        }
+        Some(bound) => Cell::Verdict(Mood::of(check.holds()), format!("≤ {}", number::error(bound))),
         None if check.unjudged.is_empty() => Cell::Text("not judged".to_owned()),
         None => Cell::Text(format!("not judged: {}", check.unjudged)),
     }

@@ -4,12 +4,9 @@
 use crate::golden::compare::Difference;
 use crate::judge::comparison::situation::{Ended, ends_of};
 use crate::record::whole_file::write_rebuildable;
-use crate::render::answers::making::Making;
-use crate::render::answers::{Answers, answer_page};
+use crate::render::answers::{Answers, Making, answer_page};
 use crate::render::escape::document;
-use crate::render::page::html_page::render_html;
-use crate::render::page::markdown_page::render_markdown;
-use crate::render::page::{Page, all_figures, slug, tables};
+use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::StudyResults;
 use crate::render::report::pages::index_page;
 use crate::render::report::situations::situations_page;
@@ -18,12 +15,6 @@ use oedometer_exact::exact_error::ExactError;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// What stands before the name of a study in a link of the answers, and instead of the pages of all studies and of all
-/// situations: each form of the page leads to its own.
-const STUDY: &str = "study:";
-const INDEX: &str = "page:studies";
-const SITUATIONS: &str = "page:situations";
 
 /// Writes all files below a folder; the path of the answer page.
 pub fn write(
@@ -41,8 +32,7 @@ pub fn write(
         .collect::<Vec<_>>()
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
-    write_forms(&studies, "index", "README", &index_page(results, "html"), &index_page(results, "md"))?;
-
+    write_both(&studies, "index", "README", &index_page(results))?;
     let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> = results
         .par_iter()
         .map(|one| ends_of(one.study, one.records))
@@ -50,64 +40,42 @@ pub fn write(
         .into_iter()
         .collect();
     let ends = ends?.concat();
-    let situations = |form| situations_page(&ends, form);
-    write_forms(out, "situations", "situations", &situations("html"), &situations("md"))?;
+    write_both(out, "situations", "situations", &situations_page(&ends))?;
 
     making.seconds = start.elapsed().as_secs_f64();
-    let links = |study: &str| format!("{STUDY}{study}");
-    let (index, situations) = (INDEX, SITUATIONS);
-    let answers =
-        Answers { results, changes, making: &making, links: &links, index, ends: &ends, situations };
+    let answers = Answers { results, changes, making: &making, ends: &ends };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
-    write_exports(out, &front)?;
-    let markdown = front.clone().with_links(&|target| match target.strip_prefix(STUDY) {
-        Some(study) => markdown_link(out, results, study),
-        None if target == INDEX => "studies/README.md".to_owned(),
-        None => target.replace(SITUATIONS, "situations.md"),
+    write_both(out, "index", "README", &front)?;
+    let readme = results.iter().fold(render_markdown(&front)?, |text, one| match path_from(out, &one.file) {
+        Some(file) => {
+            text.replace(&format!("](studies/{}.md)", slug(&one.study.name)), &format!("]({file})"))
+        }
+        None => text,
     });
-    write_page(&out.join("README.md"), &render_markdown(&markdown)?)?;
-    let html = front.with_links(&|target| match target.strip_prefix(STUDY) {
-        Some(study) => format!("studies/{}.html", slug(study)),
-        None if target == INDEX => "studies/index.html".to_owned(),
-        None => target.replace(SITUATIONS, "situations.html"),
-    });
-    let path = out.join("index.html");
-    write_page(&path, &render_html(&html)?)?;
-    Ok(path)
-}
-
-/// Writes a page in both forms, with the figures and tables of the first.
-fn write_forms(
-    folder: &Path,
-    html_name: &str,
-    markdown_name: &str,
-    html: &Page,
-    markdown: &Page,
-) -> anyhow::Result<()> {
-    write_page(&folder.join(format!("{html_name}.html")), &render_html(html)?)?;
-    write_page(&folder.join(format!("{markdown_name}.md")), &render_markdown(markdown)?)?;
-    write_exports(folder, html)
+    write_page(&out.join("README.md"), &readme)?;
+    Ok(out.join("index.html"))
 }
 
 /// The pages of a study with their figures and tables.
 fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
-    let page = study_page(one)?;
     let name = slug(&one.study.name);
-    write_forms(studies, &name, &name, &page, &page)
+    write_both(studies, &name, &name, &study_page(one)?)
 }
 
-/// Where the Markdown front page leads for a study: to its file, which a repository has beside the report, and to
-/// its page where there is none.
-fn markdown_link(out: &Path, results: &[StudyResults<'_>], study: &str) -> String {
-    let page = format!("studies/{}.md", slug(study));
-    let Some(one) = results.iter().find(|one| one.study.name == study) else { return page };
+/// A page as HTML and Markdown, with its figures and tables as files.
+fn write_both(folder: &Path, html: &str, markdown: &str, page: &Page) -> anyhow::Result<()> {
+    write_page(&folder.join(format!("{html}.html")), &render_html(page)?)?;
+    write_page(&folder.join(format!("{markdown}.md")), &render_markdown(page)?)?;
+    write_exports(folder, page)
+}
+
+/// The path from the folder of the report to the file of a study, if both are below the current folder: the front page
+/// in a repository links to the files of studies, because their pages are not kept.
+fn path_from(out: &Path, file: &str) -> Option<String> {
     let is_plain =
         |path: &Path| path.components().all(|part| matches!(part, std::path::Component::Normal(_)));
-    if is_plain(out) && is_plain(Path::new(&one.file)) && Path::new(&one.file).is_file() {
-        format!("{}{}", "../".repeat(out.components().count()), one.file)
-    } else {
-        page
-    }
+    let is_near = is_plain(out) && is_plain(Path::new(file)) && Path::new(file).is_file();
+    is_near.then(|| format!("{}{file}", "../".repeat(out.components().count())))
 }
 
 /// Whole or not at all, and not forced to the disk: after a loss of power the report is made again from its records.

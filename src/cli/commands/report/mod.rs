@@ -18,7 +18,7 @@ use crate::golden::{GoldenFile, values_of};
 use crate::record::Record;
 use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
-use crate::render::answers::making::Making;
+use crate::render::answers::Making;
 use crate::render::report::StudyResults;
 use crate::study::check::Study;
 use rayon::prelude::*;

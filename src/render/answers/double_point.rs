@@ -1,30 +1,28 @@
-//! One layer of material points or two? Runs that differ in that alone, by their situation.
+//! One set of material points or two? Runs of single-point and double-point MPM that differ in nothing else, by their
+//! situation.
 
 use crate::case::keys::{Key, Value};
 use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
 use crate::measure::record_checks::has_burst;
-use crate::render::answers::question::{Answer, Links, Question, links_to, short};
+use crate::render::answers::{Answer, Links, Question, links_to, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
-use crate::render::tables::golden_changes::count_of;
+use oedometer_soil::wording::count_of;
 
-/// The question.
-pub const QUESTION: Question = Question { heading: "One layer of material points, or two?", id: "layers" };
+const QUESTION: Question = Question { heading: "One set of material points, or two?", id: "double-point" };
 
-/// The key that says how many, and the table of a study file that has it.
+/// The key of the number of point sets, and its table in a study file.
 const KEY: [&str; 2] = ["sets", "points"];
 
-/// Error, robustness and cost of two layers beside one.
+/// Error, robustness and cost of double-point MPM beside single-point MPM.
 pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
-    let needed = "runs that differ in `points.sets` alone";
-    Key::named(KEY[0], KEY[1])
-        .and_then(|key| compare(results, key, links))
-        .unwrap_or_else(|| QUESTION.open(needed))
+    let compared = Key::named(KEY[0], KEY[1]).and_then(|key| compare(results, key, links));
+    compared.unwrap_or_else(|| QUESTION.open(&format!("runs that differ in `{}.{}` alone", KEY[1], KEY[0])))
 }
 
-/// The comparison by a key of two values, one and two; none where no study has twins.
+/// The comparison by a key with the values one and two; `None` where no study has such pairs.
 fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Option<Answer> {
     let mut all: Vec<Twins<'_>> = Vec::new();
     let mut studies: Vec<&str> = Vec::new();
@@ -54,18 +52,17 @@ fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Option<
             Cell::of(one.cost, Cell::Number, "not timed"),
         ]
     });
-    let header = "situation | method | > pairs of runs | > error of two over that of one: least | > median | > largest \
-                  | > failed, one layer | > two layers | > time of two over one";
+    let header = "situation | method | > pairs of runs | > error of double-point over single-point: least | > median \
+                  | > largest | > failed, single-point | > failed, double-point | > time of double-point over single-point";
     let bursts = bursts(results);
     let table = Table::of("", columns(header), rows)
-        .note("pairs of runs that differ in the layers alone; error of the pressure at the points, at every output of a pair")
+        .note("pairs of runs that differ in the point sets alone; error of the pressure at the points, at every output")
         .note(burst_note(&bursts));
     let sentence = format!("{} Evidence: {}.", sentence(&told, bursts.len()), links_to(links, studies));
     Some(QUESTION.told(sentence, vec![Block::Table(short(table, "in the studies"))]))
 }
 
-/// Runs of two layers, with a twin or without, in which a pressure burst: what ended them, or what was seen between
-/// outputs.
+/// All double-point runs with a pressure burst: a pressure beyond what the load can make.
 fn bursts(results: &[StudyResults<'_>]) -> Vec<String> {
     let records = results.iter().flat_map(|one| one.records);
     records.filter(|record| has_burst(record)).map(|record| record.case.label()).collect()
@@ -73,54 +70,67 @@ fn bursts(results: &[StudyResults<'_>]) -> Vec<String> {
 
 fn burst_note(bursts: &[String]) -> String {
     match bursts {
-        [] => "in no run of two layers did a pressure leave what the load can make".to_owned(),
-        _ => format!("a pressure burst in {}: {}", count_of(bursts.len(), "run", "runs"), bursts.join("; ")),
+        [] => "in no double-point run did the pressure exceed what the load can cause".to_owned(),
+        _ => format!("{} had a pressure burst: {}", runs(bursts.len()), bursts.join("; ")),
     }
 }
 
-/// What a row of all methods with the same errors is called, beside rows of methods that differ or alone.
+/// The name of a row of all methods with the same errors.
 fn others(told: &[TwinsOfSituation], row: &TwinsOfSituation) -> String {
     let is_differing = |one: &TwinsOfSituation| one.situation == row.situation && one.method.is_some();
     if told.iter().any(is_differing) { "every other method" } else { "every method" }.to_owned()
 }
 
-/// What the pairs say: where the layers are one, where two are better and where worse, and what they cost.
+/// `no double-point run`, `2 double-point runs`.
+fn runs(count: usize) -> String {
+    if count == 0 {
+        "no double-point run".to_owned()
+    } else {
+        count_of(count, "double-point run", "double-point runs")
+    }
+}
+
+/// Ratios of errors this close to one are the same error.
+const ALIKE: f64 = 0.05;
+
+/// Where the errors agree, where double-point MPM is better or worse, and what it costs.
 fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
     let pairs: usize = told.iter().map(|one| one.pairs).sum();
     let failed = [0, 1].map(|side| told.iter().map(|one| one.failed[side]).sum::<usize>());
     let mut parts: Vec<String> = Vec::new();
     for one in told {
         let Some([least, median, largest]) = one.ratios else { continue };
-        let situation = one.situation.name().to_lowercase();
-        parts.push(match &one.method {
-            None => format!(
-                "{situation}, {}: the same error within {:.0e}",
-                others(told, one),
-                (largest - 1.0).abs().max((least - 1.0).abs()).max(1e-16)
-            ),
-            Some(method) => format!(
-                "{situation}, `{method}`: two layers have {} times the error of one ({} to {})",
-                number::number(median),
-                number::number(least),
-                number::number(largest)
-            ),
-        });
+        let off = (largest - 1.0).max(1.0 - least);
+        let method = one.method.map_or(others(told, one), |method| format!("`{method}`"));
+        let errors = if one.method.is_none() {
+            format!("the same error to within {:.0e}", off.max(1e-16))
+        } else if off <= ALIKE {
+            format!("the same error to within {}", number::percent(off))
+        } else {
+            let [least, median, largest] = [least, median, largest].map(number::number);
+            format!("double-point MPM has {median} times the error (from {least} to {largest})")
+        };
+        parts.push(format!("“{}”, {method}: {errors}", one.situation.name()));
     }
     let costs: Vec<f64> = told.iter().filter_map(|one| one.cost).collect();
     let cost = match (costs.iter().copied().reduce(f64::min), costs.iter().copied().reduce(f64::max)) {
         (Some(least), Some(most)) => {
-            format!(", and two take {} to {} times as long", number::number(least), number::number(most))
+            let [least, most] = [least, most].map(number::number);
+            let times = if least == most { least } else { format!("{least} to {most}") };
+            format!(" A double-point run takes {times} times as long.")
         }
         _ => String::new(),
     };
-    format!(
-        "Over {pairs} pairs of runs: {}. {} of these runs with one layer and {} with two ended before their last output{cost}; \
-         in {} of two layers a pressure burst.",
-        parts.join("; "),
-        failed[0],
-        failed[1],
-        count_of(bursts, "run", "runs"),
-    )
+    let ended = match failed {
+        [0, 0] => "All runs of the pairs reached their last output".to_owned(),
+        [single, _] => format!(
+            "{} and {} of the pairs ended before their last output",
+            count_of(single, "single-point run", "single-point runs"),
+            runs(failed[1])
+        ),
+    };
+    let burst = runs(bursts);
+    format!("{pairs} pairs of runs: {}. {ended}; {burst} had a pressure burst.{cost}", parts.join("; "))
 }
 
 #[cfg(test)]
@@ -132,7 +142,7 @@ mod tests {
     use crate::study::file::StudySource;
 
     #[test]
-    fn two_are_held_against_one_by_situation_and_nothing_is_said_without_both() {
+    fn double_point_runs_are_compared_by_situation_and_nothing_is_said_without_pairs() {
         let text = "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [0.1]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
                     integrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = [1, 2]\n";
         let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
@@ -144,16 +154,12 @@ mod tests {
         let key = Key::named("points_per_cell", "sweep").expect("a key");
         let Some(Answer::Told(section)) = compare(&results, key, &links) else { panic!("both are there") };
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
-        assert!(
-            sentence.starts_with(
-                "Over 2 pairs of runs: small strain, points out of place, `GC-SRI-patch`: two layers have "
-            ),
-            "{sentence}"
-        );
-        assert!(
-            sentence.ends_with("in 0 runs of two layers a pressure burst. Evidence: [`s`](s.html)."),
-            "{sentence}"
-        );
+        let start =
+            "2 pairs of runs: “Small strain, points out of place”, `GC-SRI-patch`: double-point MPM has ";
+        assert!(sentence.starts_with(start), "{sentence}");
+        let end =
+            "All runs of the pairs reached their last output; no double-point run had a pressure burst.";
+        assert!(sentence.contains(end), "{sentence}");
         let dimensions = Key::named("dimensions", "column").expect("a key");
         assert!(compare(&results, dimensions, &links).is_none());
     }

@@ -7,21 +7,17 @@ use crate::measure::theory::{
     theory_consolidation, theory_isochrones,
 };
 use crate::record::{Record, Status};
-use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
-use crate::render::report::labels::first_measure;
+use crate::render::report::labels::{QUOTED_CELLS, first_measure, grouped};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 
-/// Cells of the runs whose profiles are drawn: the paper's column.
-const SHOWN_CELLS: usize = 10;
-
-/// Points a cell of those runs: the first of these that a study has.
+/// Points per cell of the runs whose profiles are drawn: the first of these that a study has.
 const SHOWN_POINTS: [usize; 2] = [2, 4];
 
-/// Profiles of a study's runs on the paper's mesh, one run a method; none for studies that refine
-/// but one method.
+/// Profiles of the runs of a study on the paper's mesh, one run per method; empty for a study of one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let shown = shown_records(results.records);
     if shown.len() < 2 || results.study.scene.has_plane_fields() {
@@ -29,7 +25,8 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     }
     let mut blocks = vec![Block::Heading("Profiles on ten cells".to_owned())];
     let mut figures = Vec::new();
-    for record in compared(&shown) {
+    // The first and the last method of the study: the plainest and the paper's.
+    for record in shown.first().into_iter().chain(shown.last()) {
         figures.push(isochrones(results, record)?);
     }
     if !coincide(results, &shown) {
@@ -40,10 +37,10 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     Ok(blocks)
 }
 
-/// Settlements within this of one another are one marker.
+/// Relative difference up to which settlements share one marker.
 const ONE_MARKER: f64 = 0.01;
 
-/// Whether the settlements of all runs lie on one another at every output: then their curves tell nothing apart.
+/// Whether the settlements of all runs coincide at every output, so that their curves show no difference.
 fn coincide(results: &StudyResults<'_>, shown: &[&Record]) -> bool {
     let own = results.study.references[0].name();
     shown[0].case.time_factors.iter().all(|time| {
@@ -57,24 +54,14 @@ fn coincide(results: &StudyResults<'_>, shown: &[&Record]) -> bool {
 
 /// The first sound run of each method on the paper's mesh.
 fn shown_records(records: &[Record]) -> Vec<&Record> {
-    let is_sound = |record: &&Record| record.case.cells == SHOWN_CELLS && record.status == Status::Ok;
-    let has =
+    let is_sound = |record: &&Record| record.case.cells == QUOTED_CELLS && record.status == Status::Ok;
+    let with =
         |points: &usize| records.iter().filter(is_sound).any(|record| record.case.points_per_cell == *points);
-    let points_per_cell = SHOWN_POINTS.into_iter().find(has);
+    let points_per_cell = SHOWN_POINTS.into_iter().find(with);
     let is_shown =
         |record: &&Record| is_sound(record) && Some(record.case.points_per_cell) == points_per_cell;
-    let mut shown: Vec<&Record> = Vec::new();
-    for record in records.iter().filter(is_shown) {
-        if shown.iter().all(|other| other.case.method != record.case.method) {
-            shown.push(record);
-        }
-    }
-    shown
-}
-
-/// The first and the last method of the ladder: the plainest and the paper's.
-fn compared<'a>(shown: &[&'a Record]) -> Vec<&'a Record> {
-    [shown.first(), shown.last()].into_iter().flatten().copied().collect()
+    let runs = records.iter().filter(is_shown).map(|record| (record.case.method, record));
+    grouped(runs).into_iter().map(|(_, own)| own[0]).collect()
 }
 
 /// Time factor of an isochrone, with the degree of consolidation where large strains make that the
@@ -87,7 +74,7 @@ fn isochrone_name(results: &StudyResults<'_>, theory: &TheoryIsochrone) -> Strin
     }
 }
 
-/// What stands at the axis of the depth: water leaves a slab between plates at its side.
+/// Label of the depth axis; water leaves a slab between plates at its sides.
 fn depth_name(own: ReferenceKind) -> &'static str {
     if own == ReferenceKind::Mandel {
         "distance from the drained side (a − x)/a (–)"
@@ -143,23 +130,23 @@ pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Fi
             .series
             .push(Series::new(record.case.method.to_string(), points).style(Style::Markers).slot(slot));
     }
-    let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their \
-                   stresses, hardly in their settlement.";
+    let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their stresses and \
+                   hardly in their settlement.";
     Ok(results.figure("consolidation", chart, caption))
 }
 
 /// Markers of one run on a curve of consolidation.
 const MARKERS: usize = 12;
 
-/// Every so many of the points, those of another run between them: the line is seen, and no run hides another.
+/// Every so many of the points, with those of other runs between them, so that the line is seen and no run hides
+/// another.
 fn thinned(points: &[(f64, f64)], slot: usize, runs: usize) -> Vec<(f64, f64)> {
     let stride = (points.len() / MARKERS).max(1);
     let first = stride * slot / runs.max(1);
     points.iter().skip(first).step_by(stride).copied().collect()
 }
 
-/// Why a constant in each cell is of first order at the points and of second at the centres, with
-/// the numbers.
+/// Why a constant in each cell is of first order at the points and of second at the centres, with numbers.
 fn sampling_note(shown: &[&Record]) -> Option<String> {
     let record = shown
         .iter()
@@ -169,11 +156,10 @@ fn sampling_note(shown: &[&Record]) -> Option<String> {
     let error =
         |sample| record.error(Quantity::Pressure, sample, Norm::L2, own, time_factor).map(|row| row.value);
     Some(format!(
-        "**Where one samples decides the order.** {} gives every point of a cell the value of its centre. That value \
-         is right to second order at the centre (error {:.2e} at T_v = {time_factor}), but a point beside it misses \
-         the slope times its distance: a profile of slope (π/2) q/H leaves (π/2)(h/H)√((1 − 1/m²)/12) = {:.2e} with m \
-         = {} points a cell, and {:.2e} is measured. It is the same run, seen at two places; a patch gives the points \
-         their slope back.",
+        "**The sampling points decide the order.** {} gives every point of a cell the value at its centre. That value is of \
+         second order at the centre (error {:.2e} at T_v = {time_factor}), but a point beside it is off by the slope times \
+         its distance: a profile of slope (π/2) q/H gives (π/2)(h/H)√((1 − 1/m²)/12) = {:.2e} with m = {} points per cell, \
+         and {:.2e} is measured. Both are errors of the same run; recovery over a patch restores the slope at the points.",
         record.case.method,
         error(Sample::Centres)?,
         constant_recovery_error(&record.case),

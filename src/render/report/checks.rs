@@ -1,12 +1,14 @@
-//! What a study measures beside errors of fields: peaks, and what moves where nothing may.
+//! What a study measures beside errors of fields: peaks, quantities that must not move, start checks and balances.
 
-use crate::record::{MeasureRow, Record};
+use crate::measure::record_checks;
+use crate::record::{MeasureRow, Record, Status};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
+use crate::render::tables::measures::{bound_cell, groups_of};
 
-/// A row of every case and measure, that of its worst output; nothing where nothing is measured so.
-pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+/// One row per case and measure, of its worst output; empty where nothing is measured so.
+pub fn measures(results: &StudyResults<'_>) -> Vec<Block> {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for record in results.records {
         let case = record.case.label();
@@ -17,7 +19,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     }
     let header = "case | measure | > T_v | > found | > exact | > error";
     let table = Table::of("Measures beside the errors", columns(header), rows)
-        .note("of an output the worst; `T_v` is empty where a measure is of the whole run")
+        .note("the worst output of each run; `T_v` is empty where a measure is of the whole run")
         .note(
             "spurious_velocity: largest nodal velocity over the hydraulic conductivity; pore_water: water in the soil over \
              its pores, less one; largest_pressure: of any water point since the start, over the load, where 1 is what \
@@ -26,22 +28,44 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     vec![Block::Heading("Measures".to_owned()), Block::Table(table)]
 }
 
-/// The measures of a record as rows of a table of what is found, what is exact, and the error.
-pub fn cells_of(case: &str, row: &MeasureRow) -> Vec<Cell> {
-    let time = row.time_factor.map_or(Cell::Text(String::new()), |factor| Cell::Text(factor.to_string()));
-    let value = |value: f64| Cell::Text(format!("{value:.7}"));
-    let number = |number: f64| if row.exact == 0.0 { Cell::Error(number) } else { value(number) };
+/// The worst of every check over the runs of a study, and the groups of its first run.
+pub fn worst_checks(results: &StudyResults<'_>) -> Block {
+    // Runs that failed have no result to check.
+    let sound = results.records.iter().filter(|record| record.status == Status::Ok);
+    let mut rows: Vec<Vec<Cell>> = record_checks::worst_of(sound)
+        .iter()
+        .map(|check| vec![check.what.into(), Cell::Error(check.value.abs()), bound_cell(check)])
+        .collect();
+    let groups = results.records.first().into_iter().flat_map(groups_of);
+    rows.extend(groups.map(|(what, value)| vec![what.into(), Cell::Error(value), "".into()]));
+    let table =
+        Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
+            .note(
+                "Pressures recovered over a patch of cells (`-patch`) do not conserve the stored water exactly: the imbalance \
+                 falls with the mesh. An equilibrium residual of zero proves nothing: with one value per cell both stresses \
+                 can be wrong by the same amount.",
+            );
+    Block::Details {
+        summary: "Start checks, balances and dimensionless groups".to_owned(),
+        blocks: vec![Block::Table(table)],
+    }
+}
+
+/// A measure as a row: found, exact, and the error.
+fn cells_of(case: &str, row: &MeasureRow) -> Vec<Cell> {
+    let number =
+        |value: f64| if row.exact == 0.0 { Cell::Error(value) } else { Cell::Text(format!("{value:.7}")) };
     vec![
         case.into(),
         Cell::Code(row.name.clone()),
-        time,
+        row.time_factor.map_or(String::new(), |factor| factor.to_string()).into(),
         number(row.found),
-        if row.exact == 0.0 { Cell::Text("0".to_owned()) } else { value(row.exact) },
+        number(row.exact),
         Cell::Error(row.error()),
     ]
 }
 
-/// Of every measure of a record the row with the largest error, in the order of the record; what is no number is worst.
+/// The row with the largest error of every measure of a record, in the order of the record; NaN is worst.
 fn worst_of(record: &Record) -> Vec<&MeasureRow> {
     let mut worst: Vec<&MeasureRow> = Vec::new();
     for row in &record.measures {
@@ -70,7 +94,7 @@ mod tests {
             Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
         let mut records = records_of(text);
         let told = |records: &[Record]| {
-            let blocks = blocks(&StudyResults::new(&study, records, Tier::Full));
+            let blocks = measures(&StudyResults::new(&study, records, Tier::Full));
             let Some(Block::Table(table)) = blocks.last() else { return String::new() };
             table.to_text().expect("a table")
         };

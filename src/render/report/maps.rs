@@ -1,18 +1,20 @@
-//! A map of soils: the colour of each is the method that is the cheapest for one percent there.
+//! Maps over inputs: the cheapest method for one percent on each soil, and critical steps, predicted and observed.
 
 use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, Way, mapped_soils};
+use crate::judge::comparison::stability_map::{MapAxis, MapScale, maps_of};
 use crate::measure::statistics::median;
-use crate::render::chart::describe::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
+use crate::render::tables::runs;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Soils from which on there is something to draw.
 const LEAST_SOILS: usize = 4;
 
 /// Map and table of a study that varies conductivity and stiffness; nothing for others.
-pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
     let Some(reference) = results.study.references.first() else { return Vec::new() };
     let soils = mapped_soils(results.records, reference.name());
     if soils.len() < LEAST_SOILS {
@@ -22,14 +24,14 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let mut figures = vec![results.figure("cheapest method", winners(&soils), CAPTION)];
     figures.extend(broken(&soils).map(|chart| results.figure("where runs break", chart, CAPTION_OF_BROKEN)));
     blocks.push(Block::Figures(figures));
-    blocks.push(Block::Table(table_of(&soils)));
+    blocks.push(Block::Table(methods_table(&soils)));
     blocks
 }
 
-const CAPTION: &str = "Error of the pore pressure at the points; time by the steps that were taken and what one costs, the same on \
-                       any machine.";
-const CAPTION_OF_BROKEN: &str = "Soils on which some run of an integrator failed, whatever its method: with the steps that the \
-                                 study tried.";
+const CAPTION: &str = "Error of the pore pressure at the points; time from the number of steps and the cost of one, which is \
+                       the same on any machine.";
+const CAPTION_OF_BROKEN: &str =
+    "Soils on which some run of an integrator failed with the steps that the study tried.";
 
 /// What stands for soils on which every run came to its end.
 const NONE_FAILED: &str = "no run failed";
@@ -53,7 +55,7 @@ fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
 fn winners(soils: &[MappedSoil]) -> Chart {
     let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for soil in soils {
-        let name = soil.cheapest().map_or("none comes to it", |way| way.name.as_str());
+        let name = soil.cheapest().map_or("none reaches it", |way| way.name.as_str());
         names.entry(name).or_default().push(place(soil));
     }
     map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
@@ -82,7 +84,7 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
 
 /// Every method and integrator over the soils: where it was tried, comes to the tolerance, wins, what it costs over
 /// the winner, and where it breaks.
-fn table_of(soils: &[MappedSoil]) -> Table {
+fn methods_table(soils: &[MappedSoil]) -> Table {
     let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
     let rows = names.into_iter().map(|name| {
         let count = |is: &dyn Fn(&MappedSoil) -> bool| {
@@ -108,4 +110,57 @@ fn table_of(soils: &[MappedSoil]) -> Table {
         100.0 * TOLERANCE
     );
     Table::of("Methods over the map", columns(&header), rows).note(format!("of {} soils", soils.len()))
+}
+
+/// Ratio of the largest to the smallest step from which a map has a logarithmic axis.
+const WIDE: f64 = 20.0;
+
+/// Maps and table of a study whose task is stability; nothing for others.
+pub fn critical_steps(results: &StudyResults<'_>) -> Vec<Block> {
+    if results.records.iter().all(|record| record.stability.is_none()) {
+        return Vec::new();
+    }
+    let mut figures = Vec::new();
+    for map in maps_of(results.records) {
+        let steps = || map.curves.iter().flat_map(|curve| &curve.points).map(|point| point.predicted);
+        let most = steps().fold(0.0, f64::max);
+        let least = steps().fold(f64::INFINITY, f64::min);
+        let label = "critical step over h/c (–)";
+        let x = axis_of(map.axis);
+        let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
+        let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
+        chart.size = Size::PANEL;
+        for (slot, curve) in map.curves.iter().enumerate() {
+            let predicted = curve.points.iter().map(|point| (point.at, point.predicted)).collect();
+            let observed =
+                curve.points.iter().filter_map(|point| Some((point.at, point.observed?))).collect();
+            chart.series.push(
+                Series::new(format!("{}, predicted", curve.name), predicted).style(Style::Line).slot(slot),
+            );
+            chart.series.push(
+                Series::new(format!("{}, observed", curve.name), observed).style(Style::Markers).slot(slot),
+            );
+        }
+        let caption = format!(
+            "Lines: spectral radius of the step operator. Marks: bisection of runs. Largest difference {:.2} %.",
+            100.0 * map.largest_deviation
+        );
+        figures.push(results.figure(&map.shared, chart, caption));
+    }
+    vec![
+        Block::Heading("Critical step, predicted and observed".to_owned()),
+        Block::Figures(figures),
+        Block::Details {
+            summary: "Every case with the runs just below and above its limit".to_owned(),
+            blocks: vec![Block::Table(runs::critical_steps(results.records))],
+        },
+    ]
+}
+
+fn axis_of(axis: &MapAxis) -> ChartAxis {
+    match axis.scale {
+        MapScale::Counts => ChartAxis::linear(axis.label).with_ticks((1..=5).map(f64::from).collect()),
+        MapScale::Linear => ChartAxis::linear(axis.label),
+        MapScale::Log => ChartAxis::log10(axis.label),
+    }
 }

@@ -1,0 +1,255 @@
+//! Colours, markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
+//! the colour-blind and readers of grey paper can tell them apart.
+use crate::render::chart::svg::{
+    Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
+};
+use crate::render::chart::{Chart, Style};
+use crate::render::script::{width, wrap};
+use plotters::element::Circle;
+use plotters::prelude::{Color, RGBColor};
+use plotters::style::colors::WHITE;
+use plotters::style::text_anchor::HPos;
+
+/// Okabe and Ito (2008), without the yellow that vanishes on white; black belongs to the theory.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0x00, 0x72, 0xB2),
+    RGBColor(0xD5, 0x5E, 0x00),
+    RGBColor(0x00, 0x9E, 0x73),
+    RGBColor(0xCC, 0x79, 0xA7),
+    RGBColor(0xE6, 0x9F, 0x00),
+    RGBColor(0x56, 0xB4, 0xE9),
+    RGBColor(0x7A, 0x7A, 0x7A),
+];
+
+pub(super) const DARK: RGBColor = RGBColor(0x1A, 0x1A, 0x1A);
+pub(super) const TEXT: RGBColor = RGBColor(0x26, 0x26, 0x26);
+pub(super) const QUIET: RGBColor = RGBColor(0x5F, 0x5F, 0x5F);
+
+/// Lengths of dashes and gaps in drawing units.
+const DASHES: [&str; 7] = ["", "75 35", "22 28", "95 30 22 30", "105 25", "60 25 20 25 20 25", "40 30"];
+
+/// Blue to red through near-white, after the `RdBu` of Brewer (2003).
+const FIELD_COLOURS: [RGBColor; 9] = [
+    RGBColor(0x21, 0x66, 0xAC),
+    RGBColor(0x43, 0x93, 0xC3),
+    RGBColor(0x92, 0xC5, 0xDE),
+    RGBColor(0xD1, 0xE5, 0xF0),
+    RGBColor(0xF7, 0xF7, 0xF7),
+    RGBColor(0xFD, 0xDB, 0xC7),
+    RGBColor(0xF4, 0xA5, 0x82),
+    RGBColor(0xD6, 0x60, 0x4D),
+    RGBColor(0xB2, 0x18, 0x2B),
+];
+
+/// The colour of a value as a share of the largest, −1 to 1; grey where it is not finite. In 240 steps, so that equal
+/// neighbours can share a rectangle.
+pub(super) fn field_colour(share: f64) -> RGBColor {
+    if !share.is_finite() {
+        return RGBColor(0xC9, 0xC9, 0xC9);
+    }
+    let place = (120.0 * (share.clamp(-1.0, 1.0) + 1.0)).round() / 30.0;
+    let below = place.floor().min(7.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
+    let (low, high) = (FIELD_COLOURS[below as usize], FIELD_COLOURS[below as usize + 1]);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+    let part = |a: u8, b: u8| (f64::from(a) + (place - below) * (f64::from(b) - f64::from(a))).round() as u8;
+    RGBColor(part(low.0, high.0), part(low.1, high.1), part(low.2, high.2))
+}
+
+/// How a series looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look {
+    pub colour: RGBColor,
+    pub is_theory: bool,
+    pub has_line: bool,
+    dash: &'static str,
+    pub marker: Option<usize>,
+}
+
+impl Look {
+    /// Line width, px.
+    pub fn width(&self) -> f64 {
+        if self.is_theory { 1.7 } else { 1.5 }
+    }
+
+    /// Attributes of the group of its lines.
+    pub fn line_attributes(&self) -> String {
+        let dash =
+            if self.dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", self.dash) };
+        format!(" stroke-linejoin=\"round\"{dash}")
+    }
+}
+
+/// The looks of all series, in their order. Where no number is given it is that of the name, so that a method looks
+/// the same at every time.
+pub(super) fn looks(chart: &Chart) -> Vec<Look> {
+    let mut names: [Vec<&str>; 2] = Default::default();
+    let look = |series: &'_ crate::render::chart::Series, place: usize| {
+        let is_theory = series.style == Style::Theory;
+        let slot = series.slot.unwrap_or(place);
+        Look {
+            colour: if is_theory { DARK } else { COLOURS[slot % COLOURS.len()] },
+            is_theory,
+            has_line: series.style != Style::Markers,
+            dash: DASHES[slot % DASHES.len()],
+            marker: matches!(series.style, Style::Markers | Style::LineAndMarkers).then_some(slot),
+        }
+    };
+    let mut looks = Vec::new();
+    for series in &chart.series {
+        let seen = &mut names[usize::from(series.style == Style::Theory)];
+        let known = seen.iter().position(|name| *name == series.name && !name.is_empty());
+        let place = known.unwrap_or_else(|| {
+            seen.push(&series.name);
+            seen.len() - 1
+        });
+        looks.push(look(series, place));
+    }
+    looks
+}
+
+/// Outline of a marker of unit size; empty for a disc.
+fn outline(shape: usize) -> Vec<Px> {
+    // An arm and its copies turned by one, two and three right angles.
+    let four_arms = |arm: [Px; 3]| {
+        let turned = |arm: &[Px; 3]| Some(arm.map(|(x, y)| (-y, x)));
+        std::iter::successors(Some(arm), turned).take(4).flatten().collect()
+    };
+    match shape {
+        1 => vec![(-0.88, -0.88), (0.88, -0.88), (0.88, 0.88), (-0.88, 0.88)],
+        2 => vec![(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
+        3 => vec![(0.0, -1.3), (1.05, 0.0), (0.0, 1.3), (-1.05, 0.0)],
+        4 => vec![(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)],
+        5 => four_arms([(-0.36, -1.2), (0.36, -1.2), (0.36, -0.36)]),
+        6 => four_arms([(-1.1, -0.6), (-0.6, -1.1), (0.0, -0.5)]),
+        _ => Vec::new(),
+    }
+}
+
+/// Draws a marker. After the seven full shapes come the same ones, hollow.
+pub(super) fn draw_marker(area: &Area<'_>, at: Px, slot: usize, radius: f64, colour: RGBColor) -> Drawn {
+    let shape = outline(slot % 7);
+    let is_hollow = (slot / 7) % 2 == 1;
+    // A thin white edge keeps neighbours apart.
+    let layers =
+        [(radius + 0.7, WHITE.mix(0.9)), (radius, colour.to_rgba()), (radius * 0.55, WHITE.to_rgba())];
+    for (radius, colour) in layers.into_iter().take(if is_hollow { 3 } else { 2 }) {
+        if shape.is_empty() {
+            area.draw(&Circle::new(spot(at), units(radius), colour.filled()))?;
+        } else {
+            let corners: Vec<Px> =
+                shape.iter().map(|(x, y)| (at.0 + radius * x, at.1 + radius * y)).collect();
+            polygon(area, &corners, colour)?;
+        }
+    }
+    Ok(())
+}
+
+const FONT: Font = Font { size: 12.0, colour: TEXT, is_bold: false };
+/// Width of the sample of a line, and of the gap behind it, px.
+const SAMPLE: f64 = 34.0;
+const GAP: f64 = 8.0;
+const ROW: f64 = 19.0;
+/// Height of a further line of a name, px.
+const LINE: f64 = 14.0;
+const BETWEEN_COLUMNS: f64 = 22.0;
+
+/// The legend below the plot, in columns of equal width.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Legend {
+    entries: Vec<(Look, Vec<String>)>,
+    columns: usize,
+    column_width: f64,
+    row: f64,
+}
+
+impl Legend {
+    /// The legend of the series that have something drawn, within so many pixels.
+    pub fn of(chart: &Chart, looks: &[Look], is_drawn: impl Fn(usize) -> bool, room: f64) -> Self {
+        let mut seen: Vec<(Look, &str)> = Vec::new();
+        for (place, (series, look)) in chart.series.iter().zip(looks).enumerate() {
+            let entry = (*look, series.name.as_str());
+            if is_drawn(place) && !series.name.is_empty() && !seen.contains(&entry) {
+                seen.push(entry);
+            }
+        }
+        let most = (room - SAMPLE - GAP) / FONT.size;
+        let entries: Vec<_> = seen.into_iter().map(|(look, name)| (look, wrap(name, most))).collect();
+        let lines = || entries.iter().flat_map(|(_, lines)| lines);
+        let widest = lines().map(|line| width(line) * FONT.size).fold(0.0, f64::max);
+        let column_width = SAMPLE + GAP + widest + BETWEEN_COLUMNS;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few columns")]
+        let columns = ((room + BETWEEN_COLUMNS) / column_width).floor().max(1.0) as usize;
+        let tallest = entries.iter().map(|(_, lines)| lines.len()).max().unwrap_or(1).max(1);
+        Self { entries, columns, column_width, row: ROW + LINE * (tallest - 1) as f64 }
+    }
+
+    pub fn height(&self) -> f64 {
+        self.entries.len().div_ceil(self.columns) as f64 * self.row
+    }
+
+    /// The elements of the legend with its upper left corner at a place.
+    pub fn elements(&self, size: Px, corner: Px) -> Result<String, String> {
+        let mut out = String::new();
+        for (place, (look, lines)) in self.entries.iter().enumerate() {
+            let x = corner.0 + (place % self.columns) as f64 * self.column_width;
+            let y = corner.1 + (place / self.columns) as f64 * self.row + ROW / 2.0;
+            if look.has_line {
+                let style = stroke(look.colour, look.width());
+                let sample = layer(size, |area| line(area, &[(x, y), (x + SAMPLE, y)], style))?;
+                out += &group(&look.line_attributes(), "", &sample);
+            }
+            out += &layer(size, |area| {
+                if let Some(slot) = look.marker {
+                    draw_marker(area, (x + SAMPLE / 2.0, y), slot, 4.0, look.colour)?;
+                }
+                for (row, words) in lines.iter().enumerate() {
+                    write(area, words, (x + SAMPLE + GAP, y + LINE * row as f64), FONT, HPos::Left)?;
+                }
+                Ok(())
+            })?;
+        }
+        Ok(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::chart::{ChartAxis, Series};
+
+    #[test]
+    fn the_first_slots_differ_in_colour_dash_and_shape() {
+        for a in 0..7 {
+            for b in 0..a {
+                assert_ne!(COLOURS[a], COLOURS[b]);
+                assert_ne!(DASHES[a], DASHES[b]);
+                assert_ne!(outline(a), outline(b));
+            }
+        }
+    }
+
+    #[test]
+    fn zero_is_near_white_and_the_ends_are_blue_and_red() {
+        let ends = [-1.0, 0.0, 99.0].map(field_colour);
+        assert_eq!(ends, [FIELD_COLOURS[0], FIELD_COLOURS[4], FIELD_COLOURS[8]]);
+        assert_eq!(field_colour(f64::NAN), RGBColor(0xC9, 0xC9, 0xC9));
+    }
+
+    #[test]
+    fn a_name_has_one_look_and_one_entry() {
+        let chart = Chart::new("", ChartAxis::linear("x"), ChartAxis::linear("y"))
+            .with(Series::theory("exact", vec![]))
+            .with(Series::new("a", vec![]))
+            .with(Series::new("b", vec![]))
+            .with(Series::theory("exact", vec![]))
+            .with(Series::new("a", vec![]))
+            .with(Series::theory("other", vec![]));
+        let looks = looks(&chart);
+        assert_eq!(looks[1], looks[4]);
+        assert_eq!(looks[0], looks[3]);
+        assert_ne!(looks[1], looks[2]);
+        assert!(looks[0].colour == DARK && looks[5].colour == DARK && looks[0].dash != looks[5].dash);
+        assert_eq!(Legend::of(&chart, &looks, |_| true, 500.0).entries.len(), 4);
+    }
+}

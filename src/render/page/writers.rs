@@ -1,0 +1,283 @@
+//! Writers of pages: one self-contained HTML file, and GitHub's Markdown with the figures beside it. What stands around
+//! the sections of HTML is in `page.html` and `page.css`.
+use crate::render::error::RenderError;
+use crate::render::escape;
+use crate::render::page::marked_text::{paragraphs, to_html, to_markdown};
+use crate::render::page::{Block, Figure, Page, Section, check, shown_rows, table_file};
+use crate::render::table::{Mood, Table};
+use std::fmt::Write as _;
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// Sorts and filters tables; the page is whole without it.
+const SCRIPT: &str = include_str!("page.js");
+
+/// Counts what has been written, and knows the name of the page's files.
+#[derive(Default)]
+struct Written<'a> {
+    figures: usize,
+    tables: usize,
+    files: Option<&'a str>,
+}
+
+impl<'a> Written<'a> {
+    fn of(page: &'a Page) -> Self {
+        Self { files: page.files.as_deref(), ..Self::default() }
+    }
+
+    /// The name of the file of the next table.
+    fn next_table(&mut self) -> Option<String> {
+        self.tables += 1;
+        self.files.map(|page| table_file(page, self.tables))
+    }
+}
+
+/// The page as one HTML file that needs nothing else.
+///
+/// # Errors
+/// If a name is unusable or used twice, a table is ragged, or a figure cannot be drawn.
+pub fn render_html(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
+    let mut written = Written::of(page);
+    let mut sections = String::new();
+    for section in &page.sections {
+        let (id, heading, mark) = (&section.id, escape::html(&section.heading), html_mark(section));
+        let _ = writeln!(
+            sections,
+            "<section id=\"{id}\">\n<h2>{heading}{mark}<a class=\"anchor\" href=\"#{id}\" \
+             aria-label=\"Link to this section\">#</a></h2>"
+        );
+        for block in &section.blocks {
+            html_block(block, &mut sections, &mut written)?;
+        }
+        sections.push_str("</section>\n");
+    }
+    let footer = html_text(&page.footer);
+    let filter = page.filter.as_deref().map(escape::plain_html);
+    let callout = page.callout.as_ref().map(|(mood, text)| html_callout(*mood, text));
+    Ok(filled(
+        TEMPLATE,
+        &[
+            ("title", &escape::plain_html(&page.title)),
+            ("style", STYLE),
+            ("wide", if page.is_wide { " wide" } else { "" }),
+            ("heading", &escape::html(&page.title)),
+            ("lead", &html_text(&page.lead)),
+            ("callout", &callout.unwrap_or_default()),
+            ("contents", &html_contents(page)),
+            ("filter", &filter.map(|filter| format!(" data-filter=\"{filter}\"")).unwrap_or_default()),
+            ("sections", &sections),
+            ("footer", &if footer.is_empty() { footer } else { format!("<footer>\n{footer}</footer>\n") }),
+            ("script", SCRIPT),
+        ],
+    ))
+}
+
+/// A template with texts in the places of their names. What is filled in is not looked at again.
+fn filled(template: &str, texts: &[(&str, &str)]) -> String {
+    let mut out = String::new();
+    for (at, part) in template.split("{{ ").enumerate() {
+        let (name, after) = if at == 0 { ("", part) } else { part.split_once(" }}").unwrap_or((part, "")) };
+        out.push_str(texts.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text));
+        out.push_str(after);
+    }
+    out
+}
+
+/// The list of the sections, where there are several.
+fn html_contents(page: &Page) -> String {
+    if page.sections.len() < 2 {
+        return String::new();
+    }
+    let mut out = "<nav aria-label=\"Contents\">\n<p class=\"nav-title\">Contents</p>\n<ol>\n".to_owned();
+    for section in &page.sections {
+        let (id, heading, mark) = (&section.id, escape::html(&section.heading), html_mark(section));
+        let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a>{mark}</li>");
+    }
+    out + "</ol>\n</nav>\n"
+}
+
+fn html_mark(section: &Section) -> String {
+    let marked = |mood: Mood| format!(" <span class=\"{}\">{}</span>", mood.class(), mood.mark());
+    section.mood.map(marked).unwrap_or_default()
+}
+
+/// The paragraphs of a lightly marked text.
+fn html_text(text: &str) -> String {
+    paragraphs(text).iter().map(|paragraph| format!("<p>{}</p>\n", to_html(paragraph))).collect()
+}
+
+fn html_callout(mood: Mood, text: &str) -> String {
+    let (class, mark, text) = (mood.class(), mood.mark(), html_text(text));
+    let mark = format!("<span class=\"mark\" aria-hidden=\"true\">{mark}</span>");
+    format!("<aside class=\"callout {class}\">{mark}<div>{}</div></aside>\n", text.trim_end())
+}
+
+fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
+    match block {
+        Block::Paragraph(text) => out.push_str(&html_text(text)),
+        Block::Heading(text) => {
+            let _ = writeln!(out, "<h3>{}</h3>", escape::html(text));
+        }
+        Block::List(points) => {
+            out.push_str("<ul>\n");
+            for point in points {
+                let _ = writeln!(out, "<li>{}</li>", to_html(&paragraphs(point).join(" ")));
+            }
+            out.push_str("</ul>\n");
+        }
+        Block::Table(table) => html_table(table, out, written)?,
+        Block::Figure(figure) => html_figure(figure, out, written)?,
+        Block::Figures(figures) => {
+            out.push_str("<div class=\"row\">\n");
+            for figure in figures {
+                html_figure(figure, out, written)?;
+            }
+            out.push_str("</div>\n");
+        }
+        Block::Callout(mood, text) => out.push_str(&html_callout(*mood, text)),
+        Block::Details { summary, blocks } => {
+            let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
+            for block in blocks {
+                html_block(block, out, written)?;
+            }
+            out.push_str("</details>\n");
+        }
+    }
+    Ok(())
+}
+
+/// A table with links to its files.
+fn html_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
+    let file = written.next_table();
+    let (shown, rest) = shown_rows(table, file.as_deref());
+    out.push_str(&shown.to_html()?);
+    out.push_str(&rest.map(|rest| html_text(&rest)).unwrap_or_default());
+    if let Some(file) = file {
+        let csv = format!("<a href=\"tables/{file}.csv\">CSV</a>");
+        let _ = writeln!(out, "<p class=\"files\">{csv} <a href=\"tables/{file}.tex\">LaTeX</a></p>");
+    }
+    Ok(())
+}
+
+/// A figure with its number, caption and links to its files.
+fn html_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
+    written.figures += 1;
+    let (name, number, svg) = (&figure.name, written.figures, figure.svg()?);
+    let files = written.files.map_or(String::new(), |_| {
+        let svg = format!("<a href=\"figures/{name}.svg\">SVG</a>");
+        format!(" <span class=\"files\">{svg} <a href=\"figures/{name}.csv\">data</a></span>")
+    });
+    // No screen makes a figure larger than it was meant to be.
+    let own = natural_width(svg).map_or(String::new(), |width| format!(" style=\"--own: {width}px\""));
+    let caption =
+        paragraphs(&figure.caption).iter().map(|text| to_html(text)).collect::<Vec<_>>().join("<br>");
+    let _ = write!(
+        out,
+        "<figure id=\"figure-{name}\">\n<div class=\"card\"{own}>{svg}</div>\n\
+         <figcaption><b>Figure {number}.</b> {caption}{files}</figcaption>\n</figure>\n",
+    );
+    Ok(())
+}
+
+/// The width that an SVG document gives itself, in pixels.
+fn natural_width(svg: &str) -> Option<f64> {
+    let (head, _) = svg.split_once('>')?;
+    let (_, after) = head.split_once(" width=\"")?;
+    after.split_once('"')?.0.parse().ok().filter(|width: &f64| width.is_finite())
+}
+
+/// The page as Markdown. Its figures are at `figures/NAME.svg`, as `figures` lists them, and its links to pages of the
+/// report lead to their Markdown form.
+///
+/// # Errors
+/// If a name is unusable or used twice, or a table is ragged.
+pub fn render_markdown(page: &Page) -> Result<String, RenderError> {
+    check(page)?;
+    let mut written = Written::of(page);
+    let mut out = vec![format!("# {}", escape::markdown(&page.title)), markdown_text(&page.lead)];
+    out.extend(page.callout.as_ref().map(|(mood, text)| markdown_callout(*mood, text)));
+    let mark = |section: &Section| section.mood.map(|mood| format!(" {}", mood.mark())).unwrap_or_default();
+    if page.sections.len() > 2 {
+        let entry =
+            |one: &Section| format!("- [{}](#{}){}", escape::markdown(&one.heading), one.id, mark(one));
+        out.push(page.sections.iter().map(entry).collect::<Vec<_>>().join("\n"));
+    }
+    for section in &page.sections {
+        // An anchor of our own: those made from headings change with every word.
+        out.push(format!("<a id=\"{}\"></a>", section.id));
+        out.push(format!("## {}{}", escape::markdown(&section.heading), mark(section)));
+        for block in &section.blocks {
+            out.push(markdown_block(block, &mut written)?);
+        }
+    }
+    if !page.footer.is_empty() {
+        out.extend(["---".to_owned(), markdown_text(&page.footer)]);
+    }
+    out.retain(|part| !part.is_empty());
+    Ok(format!("{}\n", out.join("\n\n")))
+}
+
+/// The paragraphs of a lightly marked text.
+fn markdown_text(text: &str) -> String {
+    paragraphs(text).iter().map(|paragraph| to_markdown(paragraph)).collect::<Vec<_>>().join("\n\n")
+}
+
+fn markdown_callout(mood: Mood, text: &str) -> String {
+    let kind = match mood {
+        Mood::Pass => "TIP",
+        Mood::Fail => "CAUTION",
+        Mood::Note => "NOTE",
+    };
+    format!("> [!{kind}]\n> {}", markdown_text(text).replace("\n\n", "\n>\n> "))
+}
+
+fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, RenderError> {
+    Ok(match block {
+        Block::Paragraph(text) => markdown_text(text),
+        Block::Heading(text) => format!("### {}", escape::markdown(text)),
+        Block::List(points) => {
+            let point = |point: &String| format!("- {}", to_markdown(&paragraphs(point).join(" ")));
+            points.iter().map(point).collect::<Vec<_>>().join("\n")
+        }
+        Block::Table(table) => {
+            let (shown, rest) = shown_rows(table, written.next_table().as_deref());
+            let table = shown.to_markdown()?.trim_end().to_owned();
+            std::iter::once(table).chain(rest).collect::<Vec<_>>().join("\n\n")
+        }
+        Block::Figure(figure) => markdown_figure(figure),
+        Block::Figures(figures) => figures.iter().map(markdown_figure).collect::<Vec<_>>().join("\n\n"),
+        Block::Callout(mood, text) => markdown_callout(*mood, text),
+        Block::Details { summary, blocks } => {
+            let inside: Result<Vec<_>, _> =
+                blocks.iter().map(|block| markdown_block(block, written)).collect();
+            let (summary, inside) = (escape::html(summary), inside?.join("\n\n"));
+            format!("<details>\n<summary>{summary}</summary>\n\n{inside}\n\n</details>")
+        }
+    })
+}
+
+fn markdown_figure(figure: &Figure) -> String {
+    let image = format!("![{}](figures/{}.svg)", escape::markdown(&figure.chart.title), figure.name);
+    let caption = markdown_text(&figure.caption);
+    if caption.is_empty() { image } else { format!("{image}\n\n{caption}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_of_the_template_is_filled_once_and_what_fills_it_stays_as_it_is() {
+        assert_eq!(filled("a {{ x }} b {{ y }}\n", &[("y", "{{ x }}"), ("x", "1")]), "a 1 b {{ x }}\n");
+        let page = Page { title: "A < B".to_owned(), ..Page::default() };
+        let html = render_html(&page).expect("a page");
+        assert!(html.contains("<title>A &lt; B</title>"), "{html}");
+        assert!(html.contains("<div class=\"page\">") && html.ends_with("</html>\n"), "{html}");
+        assert!(!html.contains("{{") && !html.contains("<nav") && !html.contains("<footer>"), "{html}");
+        for place in TEMPLATE.split("{{ ").skip(1) {
+            let (name, _) = place.split_once(" }}").expect("a place that ends");
+            assert_eq!(TEMPLATE.matches(&format!("{{{{ {name} }}}}")).count(), 1, "{name}");
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Error against work, and against wall time over every integrator: the front, the cheapest run within a tolerance, and
+//! other programs.
+
+use crate::case::IntegratorKind;
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::comparison::peers::{self, Comparison, Peer};
+use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
+use crate::measure::statistics::spread;
+use crate::record::{Record, Status};
+use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
+use crate::render::page::Block;
+use crate::render::report::labels::{DrawnPaths, drawn};
+use crate::render::report::{StudyResults, labels};
+use crate::render::table::{Cell, Table, TableColumn, columns};
+use crate::study::expectation::{Axis, Measure};
+
+/// Error over point updates, and the wall times of runs that had the machine to themselves.
+pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let Some(measure) = measure_of(results) else { return blocks };
+    let mut along_mesh = results.paths.along(Axis::Cells).to_vec();
+    // The work of an attached solver is not counted.
+    along_mesh.retain(|path| path.records.iter().all(|record| !record.case.is_attached()));
+    if along_mesh.len() > 1 {
+        let mut chart = Chart::new(
+            "Error against work",
+            ChartAxis::log10("point updates (points × steps)"),
+            ChartAxis::log10(labels::error_axis(&measure)),
+        );
+        let DrawnPaths { paths, note } = drawn(&along_mesh);
+        let labels = labels::path_labels(&paths);
+        let (words, end) = (labels::measure(&measure), labels.subtitle_end());
+        chart.subtitle = Some(format!("{words}, T_v = {}{end}", measure.time_factor));
+        for (path, label) in paths.iter().zip(labels.each) {
+            let point =
+                |record: &&Record| Some((record.counters.point_updates as f64, error(record, &measure)?));
+            chart.series.push(Series::new(label, path.records.iter().filter_map(point).collect()));
+        }
+        let caption = "Work up to the last output, counted and not timed: every step visits every point once, or does the \
+                       same by one banded map of the grid. Order p in h gives e ~ W^(−p/2), because a mesh twice as fine \
+                       has twice the points and twice the steps.";
+        blocks.push(Block::Heading("Error against work".to_owned()));
+        blocks.push(Block::Figure(results.figure("work", chart, caption)));
+        blocks.extend(note.map(Block::Paragraph));
+    }
+    let is_timed = |record: &&Record| !record.wall_alone().is_empty() && record.status == Status::Ok;
+    let timed: Vec<&Record> = results.records.iter().filter(is_timed).collect();
+    if timed.len() > 1 && results.study.timing_repeats > 0 {
+        blocks.push(Block::Table(timing_table(&timed, &measure)));
+    }
+    blocks
+}
+
+/// Pressure at the points against the scene's own reference at the last output.
+fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
+    let reference = results.study.references.first()?.name();
+    let last = *results.records.first()?.case.time_factors.last()?;
+    Some(labels::first_measure(Quantity::Pressure, Sample::Points, reference, last))
+}
+
+fn error(record: &Record, measure: &Measure) -> Option<f64> {
+    let own = Measure { sample: record.main_sample(), ..measure.clone() };
+    Some(own.error(record)?.value.abs())
+}
+
+fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
+    let rows = timed.iter().filter_map(|record| {
+        let wall = spread(&record.wall_alone())?;
+        let updates = Some(record.counters.point_updates as f64).filter(|updates| *updates > 0.0);
+        Some(vec![
+            Cell::Code(record.case.label()),
+            Cell::of(error(record, measure), Cell::Error, "no error was measured"),
+            labels::counted(record, record.counters.steps),
+            labels::counted(record, record.counters.point_updates),
+            Cell::Seconds(wall.median),
+            format!("{:.3} … {:.3} s, {} runs", wall.minimum, wall.maximum, wall.count).into(),
+            Cell::of(
+                updates.map(|updates| 1e9 * wall.median / updates),
+                Cell::Number,
+                "of an attached solver",
+            ),
+        ])
+    });
+    let title =
+        format!("Cost, with the error of the {} at T_v = {}", labels::measure(measure), measure.time_factor);
+    let header =
+        "case | > error | > steps | > point updates | > wall, median | spread | > a point and step [ns]";
+    Table::of(title, columns(header), rows)
+        .note("wall times only of runs that had the machine to themselves, taken in rounds over all cases")
+}
+
+/// Error against wall time, for a study with timed runs of several integrators.
+pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let reference = results.study.references.first();
+    let precision = reference.and_then(|reference| WorkPrecision::of(results.records, reference.name()));
+    let Some(precision) = precision else { return Vec::new() };
+    if labels::distinct(precision.runs.iter().map(|run| run.record.case.integrator)).len() < 2 {
+        return Vec::new();
+    }
+    let mut blocks = vec![
+        Block::Heading("Error against wall time".to_owned()),
+        Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
+        Block::Table(cheapest_table(&precision)),
+        Block::Table(front_table(&precision)),
+    ];
+    if peers::solve_their_column(&precision.runs) {
+        blocks.push(Block::Table(peers_table(&precision)));
+    }
+    blocks
+}
+
+/// Slot of the markers of other programs, which no integrator has.
+const PEERS_SLOT: usize = 6;
+
+/// Runs by their integrator, the front with the names of its runs, and other programs on the same column.
+pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
+    let mut chart = Chart::new(
+        "Error against wall time",
+        ChartAxis::log10("wall time (s)"),
+        ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
+    );
+    chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
+    let point = |run: &TimedRun<'_>| (run.wall.median, run.error);
+    for kind in IntegratorKind::ALL {
+        let runs = precision.runs.iter().filter(|run| run.record.case.integrator == kind);
+        let points: Vec<_> = runs.map(point).collect();
+        if !points.is_empty() {
+            chart.series.push(Series::new(kind.name(), points).style(Style::Markers));
+        }
+    }
+    let front: Vec<_> = precision.runs.iter().filter(|run| run.on_front).collect();
+    let line = front.iter().map(|run| point(run)).collect();
+    chart.series.push(Series::theory("no run is both cheaper and more accurate", line));
+    chart.names.extend(front.iter().map(|run| {
+        let case = &run.record.case;
+        PointName { at: point(run), name: format!("{}, {}", case.method, case.cells) }
+    }));
+    if peers::solve_their_column(&precision.runs) {
+        let place = |peer: &Peer| peer.wall_seconds.zip(peer.worst_error());
+        let points = peers::PEERS.iter().filter_map(place).collect();
+        chart.series.push(Series::new("other programs", points).style(Style::Markers).slot(PEERS_SLOT));
+        chart.names.extend(peers::PEERS.iter().filter_map(|peer| {
+            let cells = peer.cells.map_or(String::new(), |cells| format!(", {cells}"));
+            Some(PointName { at: place(peer)?, name: format!("{}{cells}", peer.name) })
+        }));
+    }
+    chart
+}
+
+/// The caption of the chart of wall times.
+pub fn caption(precision: &WorkPrecision<'_>) -> String {
+    let noise = precision.noise_floor.map_or(String::new(), |noise| {
+        format!(" Timed twice in this session, the same run differs by {:.0} %.", 100.0 * noise)
+    });
+    let others = if peers::solve_their_column(&precision.runs) {
+        " Other programs were timed on another day, on two cores under load; their error is against the solution for \
+         incompressible water, which differs by 2e-4."
+    } else {
+        ""
+    };
+    format!(
+        "Each point is a run, named by method and number of cells. Wall time is the median over repeats taken in rounds \
+         over all runs. The line joins the runs for which no other run is both cheaper and more accurate.{noise}{others}"
+    )
+}
+
+/// Columns of a run.
+fn run_columns() -> Vec<TableColumn> {
+    columns("run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates")
+}
+
+fn run_cells(run: &TimedRun<'_>) -> Vec<Cell> {
+    vec![
+        Cell::Code(run.record.case.label()),
+        Cell::Error(run.error),
+        Cell::Number(1e3 * run.wall.median),
+        Cell::Number(1e3 * run.wall.deviation),
+        labels::counted(run.record, run.record.counters.steps),
+        labels::counted(run.record, run.record.counters.point_updates),
+    ]
+}
+
+fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
+    let rows = precision.cheapest.iter().map(|cheapest| {
+        let mut row = vec![Cell::Percent(cheapest.tolerance)];
+        row.extend(cheapest.run.iter().flat_map(run_cells));
+        row.resize(1 + run_columns().len(), Cell::missing("no timed run is within the tolerance"));
+        row
+    });
+    let mut columns = columns("> tolerance");
+    columns.extend(run_columns());
+    Table::of("The cheapest run within a tolerance", columns, rows)
+        .note("error of the pore pressure at the points, relative L2, the worst of the outputs")
+}
+
+fn front_table(precision: &WorkPrecision<'_>) -> Table {
+    let front = precision.runs.iter().filter(|run| run.on_front).map(run_cells);
+    let title = "Runs for which no other is both cheaper and more accurate";
+    let noise = precision
+        .noise_floor
+        .map(|noise| format!("timed twice in this session, the same run differs by {:.1} %", 100.0 * noise));
+    Table::of(title, run_columns(), front)
+        .note("wall times of runs that had the machine to themselves, in rounds over all runs")
+        .notes(noise)
+}
+
+/// Each other program beside the cheapest run here that is nowhere worse.
+pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
+    let measured = |value: Option<f64>, kind| Cell::of(value, kind, "not measured");
+    let rows = peers::compare(&precision.runs).into_iter().map(|Comparison { peer, ahead }| {
+        let cells = peer.cells.map_or(String::new(), |cells| format!(", {cells} cells"));
+        let scheme = peer.time_scheme.replace("BE", "backward Euler");
+        let mut row: Vec<Cell> =
+            vec![format!("{}: {}{cells}, {scheme}, at {}", peer.name, peer.kind, peer.samples).into()];
+        row.extend(peer.errors.map(|error| measured(error, Cell::Error)));
+        row.push(measured(peer.seconds, Cell::Number));
+        if let Some((run, errors)) = ahead {
+            row.push(Cell::Code(run.record.case.label()));
+            row.extend(errors.map(|error| measured(error, Cell::Error)));
+            row.push(Cell::Number(run.wall.median));
+        }
+        row.resize(10, Cell::missing("every run here has a larger error at some of the times"));
+        row
+    });
+    let times = peers::TIME_FACTORS.map(|factor| format!("> T_v = {factor}")).join(" | ");
+    Table::of(
+        "Other programs on this column, and the cheapest run here whose errors are no larger at any of the times",
+        columns(&format!("program | {times} | > CPU [s] | run here | {times} | > wall [s]")),
+        rows,
+    )
+    .note(
+        "errors against Terzaghi's solution for incompressible water, from which every run with the stiffness of water is \
+         2e-4 away; the times of the other programs are of another machine and session",
+    )
+}

@@ -1,0 +1,319 @@
+//! A plane layer: pressure fields beside the exact one, the ranking of the methods, and errors and oscillation against the
+//! stiffness of the water and of the skeleton.
+
+use crate::judge::comparison::locking::{Showing, Standing, StiffnessSweep, SweptStiffness, standings};
+use crate::measure::fields::PlaneField;
+use crate::record::{Record, Status};
+use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size};
+use crate::render::number;
+use crate::render::page::{Block, Figure};
+use crate::render::report::StudyResults;
+use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use oedometer_convergence::Class;
+use oedometer_exact::exact_error::ExactError;
+
+/// Cells over the height of the runs whose fields are drawn.
+const SHOWN_CELLS: usize = 8;
+
+/// Fields and ranking of a study of a layer; nothing for a column's.
+pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+    if !results.study.scene.has_plane_fields() {
+        return Ok(Vec::new());
+    }
+    let mut blocks = Vec::new();
+    let shown = shown_records(results.records);
+    if let Some(first) = shown.first() {
+        blocks.push(Block::Heading(format!("Pressure at the points, {SHOWN_CELLS} cells over the height")));
+        let time_factor = first.case.time_factors[0];
+        let mut figures = Vec::new();
+        if let Some(field) = PlaneField::of(first, time_factor)? {
+            figures.push(figure(results, "Exact", &field, &field.exact, time_factor, None));
+        }
+        for record in shown {
+            if let Some(field) = PlaneField::of(record, time_factor)? {
+                let name = record.case.method.to_string();
+                let index = field.oscillation_index();
+                figures.push(figure(results, &name, &field, &field.computed, time_factor, Some(index)));
+            }
+        }
+        blocks.push(Block::Figures(figures));
+    }
+    let standings = standings(results.study, results.records)?;
+    // One row says nothing about who stands where; nor do rows without a start.
+    if standings.iter().filter(|one| one.displacement.is_some()).count() > 1 {
+        blocks.push(Block::Heading("Which methods cope with incompressible water and soil".to_owned()));
+        blocks.push(Block::List(verdicts(&standings)));
+        blocks.push(Block::Table(accuracy(&standings)));
+        blocks.push(Block::Table(robustness(&standings)));
+    }
+    blocks.extend(sweep_blocks(results)?);
+    Ok(blocks)
+}
+
+/// The first sound run of each method on the shown mesh, in the undisturbed soil.
+fn shown_records(records: &[Record]) -> Vec<&Record> {
+    let mut shown: Vec<&Record> = Vec::new();
+    for record in records {
+        let case = &record.case;
+        if case.cells == SHOWN_CELLS
+            && record.status == Status::Ok
+            && case.has_usual_compressibility()
+            && shown.iter().all(|other| other.case.method != case.method)
+        {
+            shown.push(record);
+        }
+    }
+    shown
+}
+
+fn figure(
+    results: &StudyResults<'_>,
+    name: &str,
+    field: &PlaneField,
+    values: &[f64],
+    time_factor: f64,
+    oscillation: Option<f64>,
+) -> Figure {
+    // All fields share their colours, which reach a little beyond the exact values.
+    let largest_of = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let reach = REACH * largest_of(&field.exact);
+    let mut chart = Chart::new(
+        name.to_owned(),
+        ChartAxis::linear("x/H (–)"),
+        ChartAxis::linear("height above the base y/H (–)"),
+    );
+    chart.field = Some(ColourField {
+        label: "p/q (–)".to_owned(),
+        reach: Some(reach),
+        x_edges: field.x_edges.clone(),
+        y_edges: field.y_edges.clone(),
+        values: values.to_vec(),
+    });
+    chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
+    let largest = largest_of(values);
+    let beyond = (largest > reach)
+        .then(|| format!(" Values reach {}, beyond the common scale.", number::number(largest)))
+        .unwrap_or_default();
+    let caption = match oscillation {
+        None => format!("Theory at T_v = {time_factor}. All these fields share one scale."),
+        Some(index) => {
+            format!("{name} at T_v = {time_factor}: oscillation index {}.{beyond}", number::fixed(index, 2))
+        }
+    };
+    results.figure(&format!("field-{name}"), chart, caption)
+}
+
+/// Reach of the colours over the largest exact value.
+const REACH: f64 = 1.25;
+
+/// The findings in sentences; none on what was not swept.
+fn verdicts(standings: &[Standing]) -> Vec<String> {
+    let names = |is: &dyn Fn(&Standing) -> bool| -> String {
+        let found: Vec<String> =
+            standings.iter().filter(|one| is(one)).map(|one| one.method.to_string()).collect();
+        if found.is_empty() { "none".to_owned() } else { found.join(", ") }
+    };
+    let is_independent =
+        |one: &Standing| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked);
+    let mut sentences = vec![format!(
+        "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
+        names(&|one| one.class == Some(Class::Locked))
+    )];
+    if standings.iter().any(|one| one.spread.is_some()) {
+        sentences.push(format!(
+            "**Displacement error independent of the water's stiffness** (within 2 % from K_w/E = 10³ on, and not \
+             locked): {}.",
+            names(&is_independent)
+        ));
+    }
+    if standings.iter().any(|one| one.stiff_skeleton.is_some()) {
+        sentences.push(format!(
+            "**Holds where the skeleton is nearly incompressible too** (of those, no more than twice the errors of \
+             displacement and pressure at ν = 0.25): {}.",
+            names(&|one| is_independent(one) && keeps_errors(one))
+        ));
+    }
+    sentences
+}
+
+/// Whether a method under the stiffest skeleton has at most twice its usual errors of displacement and pressure.
+pub fn keeps_errors(one: &Standing) -> bool {
+    let keeps = |stiff: Option<f64>, plain: Option<f64>| {
+        stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
+    };
+    keeps(one.stiff_skeleton, one.displacement) && keeps(one.stiff_skeleton_pressure, one.pressure)
+}
+
+/// Errors and orders at the start, the best mean rank first.
+fn accuracy(standings: &[Standing]) -> Table {
+    let rows = standings.iter().map(|one| {
+        let class = match one.class {
+            Some(Class::Locked) => Cell::Verdict(Mood::Fail, Class::Locked.name().to_owned()),
+            Some(class) => Cell::Text(class.name().to_owned()),
+            None => Cell::missing(UNMEASURED),
+        };
+        vec![
+            Cell::Code(one.method.to_string()),
+            rounded(Some(one.rank), 1),
+            class,
+            measured(one.displacement, Cell::Error),
+            measured(one.displacement_order, Cell::Order),
+            measured(one.pressure, Cell::Error),
+            measured(one.pressure_order, Cell::Order),
+            measured(one.consolidated, Cell::Error),
+            rounded(one.oscillation, 3),
+        ]
+    });
+    Table::of(
+        "Methods by their mean rank: accuracy",
+        columns(
+            "method | > mean rank | class | > u at T_v = 0 | > order | > p at T_v = 0 | > order | > p \
+             at the last output | > oscillation",
+        ),
+        rows,
+    )
+    .note(
+        "u: relative L2 error of the nodal displacement; p: of the pressure at the points; both against Biot's exact \
+         solution on the finest mesh that every method ran. Oscillation: total variation of the pressure over that of the \
+         exact one, minus one. The rank is the mean over the columns of both tables.",
+    )
+    .note(
+        "B-bar (Hughes 1980; by cells in the material point method: Coombs et al. 2018) treats the volumetric strain of the \
+         skeleton like that of the water; mean: cell means of the points' divergence (Mast et al. 2012); nodal: averages at \
+         the nodes (Detournay & Dzik 2006); null-space: filter by cells (Gritton & Berzins 2017; Tran & Sołowski 2019); \
+         bspline2, bspline3: quadratic and cubic B-splines (Steffen, Kirby & Berzins 2008).",
+    )
+}
+
+/// Effects of stiffness, and cost, in the order of the mean rank.
+fn robustness(standings: &[Standing]) -> Table {
+    let rows = standings.iter().map(|one| {
+        vec![
+            Cell::Code(one.method.to_string()),
+            measured(one.spread, Cell::Percent),
+            measured(one.stiff_skeleton, Cell::Error),
+            measured(one.stiff_skeleton_pressure, Cell::Error),
+            measured(one.critical_step, Cell::Number),
+            measured(one.seconds, Cell::Seconds),
+        ]
+    });
+    Table::of(
+        "Methods by their mean rank: stiffness and cost",
+        columns(
+            "method | > spread of u over K_w | > u at the largest ν | > p at the largest ν | > \
+                 explicit limit [h/c] | > implicit run",
+        ),
+        rows,
+    )
+    .note("Spread: of the displacement error at T_v = 0 over K_w/E from 10³ on.")
+}
+
+/// Why a cell is empty.
+const UNMEASURED: &str = "not measured, or of no meaning for a locked body";
+
+fn measured(value: Option<f64>, kind: fn(f64) -> Cell) -> Cell {
+    Cell::of(value, kind, UNMEASURED)
+}
+
+fn rounded(value: Option<f64>, decimals: usize) -> Cell {
+    value.map_or_else(|| Cell::missing(UNMEASURED), |value| Cell::Text(number::fixed(value, decimals)))
+}
+
+/// Figures of the last output and, behind a click, every number.
+fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+    let mut blocks = Vec::new();
+    for stiffness in SweptStiffness::ALL {
+        let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
+        let Some(last) = sweep.time_factors.last().copied() else { continue };
+        blocks.push(Block::Heading(words_of(stiffness).0.to_owned()));
+        blocks.push(Block::Paragraph(format!(
+            "{} cells over the height, T_v = {last}. The line of a method that the stiffness does not affect is level. Methods \
+             that agree hide each other; the tables have them all.",
+            sweep.cells
+        )));
+        let figures =
+            Showing::ALL.iter().map(|showing| sweep_figure(results, &sweep, last, *showing)).collect();
+        blocks.push(Block::Figures(figures));
+        let tables = sweep.time_factors.iter().flat_map(|time_factor| {
+            Showing::ALL.iter().map(|showing| Block::Table(sweep_table(&sweep, *time_factor, *showing)))
+        });
+        blocks.push(Block::Details {
+            summary: "All numbers at all times".to_owned(),
+            blocks: tables.collect(),
+        });
+    }
+    Ok(blocks)
+}
+
+/// The heading of the figures of a stiffness, and one word for the names of their files.
+fn words_of(stiffness: SweptStiffness) -> (&'static str, &'static str) {
+    match stiffness {
+        SweptStiffness::Water => ("Stiff water, through consolidation", "water"),
+        SweptStiffness::Skeleton => ("Nearly incompressible skeleton, through consolidation", "skeleton"),
+    }
+}
+
+/// The subject of a figure, and one word for the name of its file.
+fn subject(showing: Showing) -> (&'static str, &'static str) {
+    match showing {
+        Showing::Displacement => ("Displacement at the nodes", "displacement"),
+        Showing::Pressure => ("Pressure at the points", "pressure"),
+        Showing::Oscillation => ("Oscillation of the pressure", "oscillation"),
+    }
+}
+
+fn sweep_figure(
+    results: &StudyResults<'_>,
+    sweep: &StiffnessSweep,
+    time_factor: f64,
+    showing: Showing,
+) -> Figure {
+    let x = match sweep.stiffness {
+        SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
+        SweptStiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
+    };
+    let (subject, word) = subject(showing);
+    let title = format!("{subject}, T_v = {time_factor}");
+    let label = match showing {
+        Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
+        Showing::Oscillation => "total variation over the exact one's (–)",
+    };
+    let mut chart = Chart::new(title.clone(), x, ChartAxis::log10(label));
+    chart.size = Size::PANEL;
+    for row in sweep.at(time_factor) {
+        let points = sweep.values.iter().zip(&row.found).filter_map(|(value, found)| {
+            let found = found[showing as usize]?;
+            // An oscillation shows as a ratio of variations above one.
+            let found = if showing == Showing::Oscillation { 1.0 + found } else { found };
+            let is_skeleton = sweep.stiffness == SweptStiffness::Skeleton;
+            Some((if is_skeleton { 1.0 - 2.0 * value } else { *value }, found))
+        });
+        chart.series.push(Series::new(row.method.to_string(), points.collect()));
+    }
+    if showing == Showing::Oscillation {
+        chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
+    }
+    let name = format!("{word}-{}", words_of(sweep.stiffness).1);
+    results.figure(&name, chart, format!("{title}."))
+}
+
+fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
+    let header = |value: &f64| match sweep.stiffness {
+        SweptStiffness::Water => format!("K_w/E = {value}"),
+        SweptStiffness::Skeleton => format!("ν = {value}"),
+    };
+    let mut columns = columns("method");
+    columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));
+    let cell = |value: Option<f64>| match (value, showing) {
+        (None, _) => Cell::missing("not run"),
+        (Some(value), Showing::Oscillation) => Cell::Number(value),
+        (Some(value), _) => Cell::Error(value),
+    };
+    let rows = sweep.at(time_factor).map(|row| {
+        let cells = row.found.iter().map(|found| cell(found[showing as usize]));
+        std::iter::once(Cell::Code(row.method.to_string())).chain(cells).collect()
+    });
+    let note = (showing == Showing::Oscillation)
+        .then(|| "Total variation over the exact one's, minus one.".to_owned());
+    Table::of(format!("{}, T_v = {time_factor}", subject(showing).0), columns, rows).notes(note)
+}

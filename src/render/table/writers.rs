@@ -1,0 +1,268 @@
+//! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
+use crate::render::error::RenderError;
+use crate::render::escape::{
+    csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
+};
+use crate::render::number;
+use crate::render::table::{Align, Cell, Table, marked};
+use std::fmt::Write as _;
+
+/// Length in letters from which a cell of HTML is a sentence that needs a wide column.
+const LONG: usize = 60;
+
+impl Table {
+    /// For a terminal, without colours.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_text(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        let mut grid = comfy_table::Table::new();
+        grid.load_style(comfy_table::presets::ASCII_MARKDOWN);
+        grid.set_content_arrangement(comfy_table::ContentArrangement::Disabled);
+        grid.set_header(self.columns.iter().map(|column| one_line(&column.heading())));
+        for row in &self.rows {
+            grid.add_row(row.iter().map(|cell| match marked(cell, &footnotes) {
+                (text, Some(mark)) => format!("{} [{mark}]", one_line(&text)),
+                (text, None) => one_line(&text),
+            }));
+        }
+        for (own, column) in self.columns.iter().zip(grid.column_iter_mut()) {
+            column.set_cell_alignment(match own.align {
+                Align::Left => comfy_table::CellAlignment::Left,
+                Align::Right => comfy_table::CellAlignment::Right,
+            });
+        }
+        let mut out = String::new();
+        if !self.title.is_empty() {
+            let _ = write!(out, "{}\n\n", one_line(&self.title));
+        }
+        for row in grid.lines() {
+            let _ = writeln!(out, "{}", row.trim_end());
+        }
+        let below = self.lines_below();
+        out.push_str(if below.is_empty() { "" } else { "\n" });
+        for (mark, note) in below {
+            let mark = mark.map(|mark| format!("[{mark}] ")).unwrap_or_default();
+            let _ = writeln!(out, "{mark}{}", one_line(note));
+        }
+        Ok(out)
+    }
+
+    /// For GitHub's Markdown.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_markdown(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        let mut out = String::new();
+        if !self.title.is_empty() {
+            let _ = write!(out, "**{}**\n\n", markdown(&self.title));
+        }
+        let mut row = |cells: Vec<String>| {
+            let _ = writeln!(out, "| {} |", cells.join(" | "));
+        };
+        row(self.columns.iter().map(|column| markdown(&column.heading())).collect());
+        let rule = |align| if align == Align::Left { ":---" } else { "---:" };
+        row(self.columns.iter().map(|column| rule(column.align).to_owned()).collect());
+        for cells in &self.rows {
+            row(cells.iter().map(|cell| in_markdown(cell, &footnotes)).collect());
+        }
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
+            let _ = writeln!(out, "\n{mark}{}", markdown(note));
+        }
+        Ok(out)
+    }
+
+    /// A fragment of HTML.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_html(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        let class = |align| if align == Align::Left { "l" } else { "r" };
+        let mut out = String::from("<div class=\"table\">\n<table>\n");
+        if !self.title.is_empty() {
+            let _ = writeln!(out, "<caption>{}</caption>", html(&self.title));
+        }
+        out.push_str("<thead>\n<tr>");
+        for column in &self.columns {
+            let unit = column.unit.as_ref().map(|unit| format!(" <small>{}</small>", html(unit)));
+            let (class, unit) = (class(column.align), unit.unwrap_or_default());
+            let _ = write!(out, "<th scope=\"col\" class=\"{class}\">{}{unit}</th>", html(&column.header));
+        }
+        out.push_str("</tr>\n</thead>\n<tbody>\n");
+        for row in &self.rows {
+            out.push_str("<tr>");
+            for (cell, column) in row.iter().zip(&self.columns) {
+                let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
+                let is_long = matches!(cell, Cell::Text(text) if text.chars().count() > LONG);
+                let class = format!("{}{}", class(column.align), if is_long { " long" } else { "" });
+                let _ = write!(out, "<td class=\"{class}\"{value}>{}</td>", in_html(cell, &footnotes));
+            }
+            out.push_str("</tr>\n");
+        }
+        out.push_str("</tbody>\n</table>\n</div>\n");
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
+            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html(note));
+        }
+        Ok(out)
+    }
+
+    /// For LaTeX with `booktabs`; title and notes are comments, so that the author writes the caption.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_latex(&self) -> Result<String, RenderError> {
+        self.check()?;
+        let footnotes = self.footnotes();
+        // A comment ends with its line.
+        let comment = |text: &str| text.replace(char::is_control, " ");
+        let mut out = String::new();
+        if !self.title.is_empty() {
+            let _ = writeln!(out, "% {}", comment(&self.title));
+        }
+        let aligned = self.columns.iter().map(|column| if column.align == Align::Left { 'l' } else { 'r' });
+        let _ = writeln!(out, "\\begin{{tabular}}{{{}}}\n\\toprule", aligned.collect::<String>());
+        let heads: Vec<String> = self.columns.iter().map(|column| latex_text(&column.heading())).collect();
+        let _ = writeln!(out, "{} \\\\\n\\midrule", heads.join(" & "));
+        for row in &self.rows {
+            let cells: Vec<String> = row.iter().map(|cell| in_latex(cell, &footnotes)).collect();
+            let _ = writeln!(out, "{} \\\\", cells.join(" & "));
+        }
+        out.push_str("\\bottomrule\n\\end{tabular}\n");
+        for (mark, note) in self.lines_below() {
+            let mark = mark.map_or(String::new(), |mark| format!("({mark}) "));
+            let _ = writeln!(out, "% {mark}{}", comment(note));
+        }
+        Ok(out)
+    }
+
+    /// For machines: numbers with all digits, shares as fractions, times in seconds, an empty field for a missing value,
+    /// and a column of its own for the half-width of an order. Words that a spreadsheet would take for a formula stand
+    /// behind an apostrophe.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_csv(&self) -> Result<String, RenderError> {
+        self.csv_with(|words| csv_field(words).into_owned())
+    }
+
+    /// CSV for programs: every word as it is.
+    ///
+    /// # Errors
+    /// If a row has too few or too many cells.
+    pub fn to_plain_csv(&self) -> Result<String, RenderError> {
+        self.csv_with(str::to_owned)
+    }
+
+    fn csv_with(&self, words: impl Fn(&str) -> String) -> Result<String, RenderError> {
+        self.check()?;
+        let has_width: Vec<bool> = (0..self.columns.len())
+            .map(|column| self.rows.iter().any(|row| matches!(row[column], Cell::OrderWithin(..))))
+            .collect();
+        let fields = |pairs: Vec<(String, String)>| -> Vec<String> {
+            let with_width = pairs.into_iter().zip(&has_width);
+            with_width
+                .flat_map(|((value, half), wide)| [Some(value), wide.then_some(half)])
+                .flatten()
+                .collect()
+        };
+        let heading = |column: &crate::render::table::TableColumn| {
+            let heading = column.heading();
+            (words(&heading), words(&format!("{heading} ±")))
+        };
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut write = || -> Result<(), csv::Error> {
+            writer.write_record(fields(self.columns.iter().map(heading).collect()))?;
+            for row in &self.rows {
+                writer.write_record(fields(row.iter().map(|cell| in_csv(cell, &words)).collect()))?;
+            }
+            Ok(())
+        };
+        let fail = |reason: String| RenderError::Csv { title: self.title.clone(), reason };
+        write().map_err(|error| fail(error.to_string()))?;
+        let bytes = writer.into_inner().map_err(|error| fail(error.to_string()))?;
+        String::from_utf8(bytes).map_err(|error| fail(error.to_string()))
+    }
+}
+
+fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
+    let link = |words: &str, target: &str| {
+        format!("[{}]({})", markdown(words), markdown_target(target).replace('|', "%7C"))
+    };
+    match (cell, marked(cell, footnotes)) {
+        (Cell::Code(name), _) => {
+            // The bars of a table are escaped even within back quotes.
+            let name = one_line(name).replace('|', "\\|");
+            if name.contains('`') { format!("`` {name} ``") } else { format!("`{name}`") }
+        }
+        (Cell::Verdict(mood, text), _) => format!("{} {}", mood.mark(), markdown(text)),
+        (Cell::Link { words, target }, _) => link(words, target),
+        (Cell::Evidence { mood, words, target }, _) => format!("{} {}", mood.mark(), link(words, target)),
+        (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
+        // Only words are escaped: a number may start with a minus.
+        (Cell::Text(_), (text, None)) => markdown(&text),
+        (_, (text, None)) => text,
+    }
+}
+
+fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
+    match (cell, marked(cell, footnotes)) {
+        (Cell::Code(name), _) => format!("<code>{}</code>", plain_html(name)),
+        (Cell::Text(text), _) => html(text),
+        (Cell::Link { words, target }, _) => {
+            format!("<a href=\"{}\">{}</a>", plain_html(target), html(words))
+        }
+        (Cell::Verdict(mood, text), _) => {
+            format!("<span class=\"{}\">{} {}</span>", mood.class(), mood.mark(), html(text))
+        }
+        (Cell::Evidence { mood, words, target }, _) => {
+            let (class, target, mark) = (mood.class(), plain_html(target), mood.mark());
+            format!("<a class=\"{class}\" href=\"{target}\">{mark} {}</a>", html(words))
+        }
+        (Cell::Missing(reason), (text, mark)) => {
+            let mark = mark.map(|mark| format!("<sup>{mark}</sup>")).unwrap_or_default();
+            format!("<span class=\"missing\" title=\"{}\">{text}{mark}</span>", plain_html(reason))
+        }
+        // The minus of a number, not the one in its exponent.
+        (_, (text, _)) => text.strip_prefix('-').map_or_else(|| plain_html(&text), |rest| format!("−{rest}")),
+    }
+}
+
+/// A cell of LaTeX; numbers in powers of ten are mathematics, such as `$3.62\cdot10^{-3}$`.
+fn in_latex(cell: &Cell, footnotes: &[&str]) -> String {
+    let (text, mark) = marked(cell, footnotes);
+    match cell {
+        Cell::Code(name) => format!("\\texttt{{{}}}", latex(name)),
+        Cell::Verdict(_, text) | Cell::Evidence { words: text, .. } => latex_text(text),
+        Cell::Error(value) | Cell::Number(value) if value.is_finite() => match text.split_once('e') {
+            Some((digits, exponent)) => format!("${digits}\\cdot10^{{{exponent}}}$"),
+            None => format!("${text}$"),
+        },
+        _ => {
+            let mark = mark.map_or(String::new(), |mark| format!("\\textsuperscript{{{mark}}}"));
+            format!("{}{mark}", latex_text(&text))
+        }
+    }
+}
+
+/// The value of a cell, and the half-width of its interval.
+fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> (String, String) {
+    let value = match cell {
+        Cell::Text(text)
+        | Cell::Code(text)
+        | Cell::Verdict(_, text)
+        | Cell::Link { words: text, .. }
+        | Cell::Evidence { words: text, .. } => words(text),
+        Cell::OrderWithin(value, half) => return (number::exact(*value), number::exact(*half)),
+        Cell::Count(count) => count.to_string(),
+        other => other.value().map_or(String::new(), number::exact),
+    };
+    (value, String::new())
+}
