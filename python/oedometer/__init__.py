@@ -193,7 +193,7 @@ def score(
     ``volume``: weights, ``[place]``; all alike where left out. ``sample`` names the kind of places: points, centres or
     nodes. ``material`` as in :func:`exact`.
 
-    Raises ``ValueError`` where shapes do not fit, a number is none, or the scene refuses.
+    Raises ``ValueError`` where shapes do not fit, a number is not finite, or the scene refuses.
     """
     lists = (
         time,

@@ -1,7 +1,7 @@
-//! What Python calls: every function hands on to `oedometer::api`, and computes nothing.
+//! Functions for Python. Each calls `oedometer::api` and computes nothing.
 //!
-//! Lists of numbers cross the border as bytes of doubles in the machine's order, which any buffer of Python has; what is
-//! structured as JSON. The module `oedometer` around this one gives them shapes and names.
+//! Lists of numbers are passed as bytes of native doubles, which any buffer of Python has, and structured values as JSON.
+//! The module `oedometer` around this one gives them shapes and names.
 
 use oedometer::api;
 use oedometer::api::convergence::Demand;
@@ -11,13 +11,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::ffi::OsString;
 
-/// Doubles of bytes.
+/// Bytes to doubles.
 fn doubles(bytes: &[u8]) -> Vec<f64> {
     let (chunks, _) = bytes.as_chunks::<8>();
     chunks.iter().map(|chunk| f64::from_ne_bytes(*chunk)).collect()
 }
 
-/// Bytes of doubles.
+/// Doubles to bytes.
 fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
     let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
     PyBytes::new(py, &bytes)
@@ -31,7 +31,7 @@ fn json(value: &impl serde::Serialize) -> PyResult<String> {
     serde_json::to_string(value).map_err(refused)
 }
 
-/// `--set` assignments of bare names, by their tables.
+/// Assignments of bare names with their tables, as for `--set`.
 fn assignments(scene: &str, inputs: Vec<(String, String)>) -> PyResult<Vec<String>> {
     let of = |(name, value): (String, String)| {
         api::dotted_key(scene, &name).map(|key| format!("{key}={value}")).map_err(refused)
@@ -112,7 +112,7 @@ fn convergence(sizes: &[u8], errors: &[u8], formal_order: Option<f64>) -> PyResu
     json(&found.map_err(refused)?)
 }
 
-/// Whether errors meet a demand, and why.
+/// Whether errors meet a demand, and the reason.
 #[pyfunction]
 fn verdict(
     sizes: &[u8],
@@ -125,7 +125,7 @@ fn verdict(
     api::convergence::verdict(&doubles(sizes), &doubles(errors), &demand).map_err(refused)
 }
 
-/// Runs a command line, the program's name first; the exit code.
+/// Runs a command line, beginning with the program's name, and returns the exit code.
 #[pyfunction]
 fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| oedometer::main_with(words))

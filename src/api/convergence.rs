@@ -10,31 +10,31 @@ use oedometer_convergence::{
 /// Errors up to this are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// What is found of a series.
+/// The orders and class of a series.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Found {
     /// Sizes of the levels, coarse to fine.
     pub sizes: Vec<f64>,
     /// Absolute errors at them.
     pub errors: Vec<f64>,
-    /// Orders between neighbours, one fewer; none where it has no value.
+    /// Orders between neighbouring levels, one fewer than levels; `None` where undefined.
     pub pair_orders: Vec<Option<f64>>,
     /// Class with its reason, order, floor and advice.
     pub classification: Classification,
 }
 
-/// What is demanded of a series; what is left out is not judged.
+/// Demands on a series; what is left out is not judged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Demand {
     /// The order, and how far below and above it may lie.
     pub order: Option<(f64, f64, f64)>,
-    /// A level by its size, and the bound on its error.
+    /// The size of a level and the bound on its error.
     pub at: Option<(f64, f64)>,
     /// The class; `asymptotic` where an order is demanded and no class is named.
     pub class: Option<String>,
 }
 
-/// A series of errors, whose signs may count, with what is known beside it.
+/// A series of errors with its context.
 fn series_of(
     sizes: &[f64],
     errors: &[f64],
@@ -42,7 +42,7 @@ fn series_of(
 ) -> Result<(ErrorSeries, Context), String> {
     if sizes.len() != errors.len() {
         return Err(format!(
-            "there are {} sizes and {} errors: give one of each a level",
+            "there are {} sizes and {} errors: give one of each per level",
             sizes.len(),
             errors.len()
         ));
@@ -51,7 +51,7 @@ fn series_of(
     let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
     let mut signed: Vec<(f64, f64)> = sizes.iter().copied().zip(errors.iter().copied()).collect();
     signed.sort_by(|a, b| b.0.total_cmp(&a.0));
-    // Norms have no sign, and then the signs tell nothing.
+    // Norms have no sign: then the signs are no information.
     let has_signs = errors.iter().any(|error| *error < 0.0);
     let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };
     Ok((series, Context { formal_order, round_off: Some(ROUND_OFF), signed, ..Context::default() }))
@@ -79,13 +79,13 @@ pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> 
 /// The verdict of a demand on a series: whether it passes, and the sentence that says why.
 ///
 /// # Errors
-/// When the lists differ in length, or the class is none.
+/// When the lists differ in length, or the class does not exist.
 pub fn verdict(sizes: &[f64], errors: &[f64], demand: &Demand) -> Result<(bool, String), String> {
     let (series, context) = series_of(sizes, errors, demand.order.map(|(value, ..)| value))?;
     let class = demand.class.as_deref().map(|word| {
         let names = Class::ALL.map(Class::name);
         let found = Class::ALL.into_iter().find(|class| class.name() == word);
-        found.ok_or_else(|| format!("no class is called `{word}`: {}", one_of(word, &names)))
+        found.ok_or_else(|| format!("unknown class `{word}`: {}", one_of(word, &names)))
     });
     let demand = SeriesDemand {
         order: demand.order.map(|(value, minus, plus)| OrderBand { value, minus, plus }),

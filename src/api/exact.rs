@@ -28,7 +28,7 @@ pub struct ExactValues {
     pub load: f64,
 }
 
-/// Evaluates a solution at time factors and at depths over the height, 0 at the surface; of a layer under the crest of
+/// Evaluates a solution at time factors and at depths over the height, 0 at the surface; for a layer under the crest of
 /// its load. `assignments` are those of `--set`.
 ///
 /// ```
@@ -38,7 +38,7 @@ pub struct ExactValues {
 /// ```
 ///
 /// # Errors
-/// When there is no such solution, or it refuses what it is given.
+/// When there is no such solution, or it refuses its inputs.
 pub fn exact(
     solution: &str,
     time_factors: &[f64],
@@ -48,8 +48,8 @@ pub fn exact(
     let (kind, _) = scene_of(solution)?;
     if kind == ReferenceKind::Mandel {
         return Err(
-            "the fields of `mandel` depend on the distance from the middle and not on a depth: the command \
-                    `oedometer exact mandel --x LIST` has them"
+            "the fields of `mandel` depend on the distance from the middle and not on a depth: use `oedometer exact mandel \
+             --x LIST`"
                 .to_owned(),
         );
     }

@@ -1,7 +1,7 @@
-//! The door for other languages: names, lists of numbers and `key=value` texts go in, lists and plain values come out.
+//! The interface for other languages: names, lists of numbers and `key=value` texts in, lists and plain values out.
 //!
-//! Nothing is computed here. Everything goes the way that the command line goes, so that a number from Python is the
-//! number that `oedometer` prints. Numbers are in SI; lists over places are `[time][place]`, one time after the other.
+//! It computes nothing and shares the functions of the command line, so that a number in Python is the number that
+//! `oedometer` prints. Numbers are in SI; lists over places are `[time][place]`, one time after the other.
 
 pub mod convergence;
 pub mod exact;
@@ -18,10 +18,10 @@ fn sentence(error: &anyhow::Error) -> String {
     exit::sentence(error)
 }
 
-/// The scene whose column a solution is of.
+/// A solution by its name, and the scene of its column.
 ///
 /// # Errors
-/// When no solution is called so: with the names that there are.
+/// When no solution has the name: lists the names.
 pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
     let kind: ReferenceKind = solution.parse().map_err(|_| {
         let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
@@ -30,11 +30,11 @@ pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
     Ok((kind, SceneKind::of_solution(kind)))
 }
 
-/// The dotted key of a study file that a bare name stands for, like `material.porosity` for `porosity`; what has a dot
-/// already stays. Geometry and load are the column's, or the layer's where the scene is one.
+/// The dotted key of a study file for a bare name, such as `material.porosity` for `porosity`; a name with a dot stays.
+/// Geometry and load belong to the column, or to the layer in a scene of a layer.
 ///
 /// # Errors
-/// When no scene or solution is called so, or no input: with the names that there are.
+/// When no scene, solution or input has the name: lists the names.
 pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     if name.contains('.') {
         return Ok(name.to_owned());

@@ -1,4 +1,4 @@
-//! Files of other programs as states.
+//! Reads files of other programs as states.
 
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
@@ -8,11 +8,11 @@ use crate::import::runs::{are_tables, files_of, runs_of};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
-/// Reads files with the meaning of a preset (of tables the convention's), one list of states a mesh. `time_step` is
+/// Reads files with the mapping of a preset (tables with the convention), one list of states per mesh. `time_step` is
 /// that of `--set-time-step`, s.
 ///
 /// # Errors
-/// What cannot be read or taken, with its file.
+/// When a file cannot be read or does not fit, with its name.
 pub fn read(
     files: &[PathBuf],
     preset: &str,

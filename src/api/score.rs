@@ -1,4 +1,4 @@
-//! Somebody else's result, given as lists, held against the references of a scene.
+//! Scores a result given as lists against the references of a scene.
 
 use crate::api::sentence;
 use crate::case::Case;
@@ -14,16 +14,16 @@ use crate::judge::score::Score;
 use oedometer_formats::ImportError;
 use std::path::Path;
 
-/// Samples of a result: of each list that is there one number a time and place, `[time][place]`.
+/// Samples of a result. Lists of fields have one number per time and place, `[time][place]`, or are empty.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Samples<'a> {
     /// Times, s.
     pub time: &'a [f64],
-    /// Initial heights over the base, m: one a place.
+    /// Initial heights over the base, m: one per place.
     pub height: &'a [f64],
-    /// Distances from the crest of a layer's load, m: one a place; empty for a column.
+    /// Distances from the crest of a layer's load, m: one per place; empty for a column.
     pub distance: &'a [f64],
-    /// Volumes or weights: one a place, or empty.
+    /// Volumes or weights: one per place, or empty.
     pub volume: &'a [f64],
     /// Excess pore pressure, compression positive, Pa.
     pub pressure: &'a [f64],
@@ -33,15 +33,15 @@ pub struct Samples<'a> {
     pub displacement: &'a [f64],
     /// Horizontal displacement, m.
     pub horizontal_displacement: &'a [f64],
-    /// Settlement of the surface, downward positive, m: one a time, or empty.
+    /// Settlement of the surface, downward positive, m: one per time, or empty.
     pub settlement: &'a [f64],
 }
 
-/// Scores samples against the references of a scene, or one of them. `assignments` are those of `--set`, `sample` the
-/// name of the kind of places.
+/// Scores samples against all references of a scene, or one of them. `assignments` are those of `--set`, `sample` is the
+/// kind of places.
 ///
 /// # Errors
-/// When lists do not fit each other, a number is none, or the scene or a reference refuses.
+/// When lists do not fit each other, a number is not finite, or the scene or a reference refuses its inputs.
 pub fn score(
     scene: &str,
     samples: &Samples,
@@ -59,7 +59,7 @@ pub fn score(
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
         let names = Sample::ALL.map(Sample::name).join(", ");
-        format!("no kind of places is called `{sample}`; there are {names}")
+        format!("unknown kind of places `{sample}`: expected {names}")
     })?;
     let mut mapping =
         Mapping::convention(case.scene.has_plane_fields()).map_err(|error| error.to_string())?;
@@ -84,51 +84,34 @@ pub fn score(
 }
 
 impl Samples<'_> {
-    /// The lists as states, every number looked at.
+    /// The lists as states.
     fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
-        let (times, places) = (self.time.len(), self.height.len());
-        if times == 0 || places == 0 {
-            return Err("there is no time or no place: give at least one of each".to_owned());
-        }
-        self.lists_fit(times, places)?;
+        self.check()?;
         let body = SolvedBody::of(case);
-        let mut rows = Vec::with_capacity(times * places);
+        let mut rows = Vec::with_capacity(self.time.len() * self.height.len());
         for (at, time) in self.time.iter().enumerate() {
-            for place in 0..places {
-                let refused = |why: String| {
-                    ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))
-                };
-                let number = |list: &[f64], index: usize, name: &str| match list.get(index) {
-                    None => Ok(None),
-                    Some(value) if value.is_finite() => Ok(Some(*value)),
-                    Some(value) => Err(refused(format!("`{name}` is {value}")).to_string()),
-                };
-                let index = at * places + place;
-                let stress = number(self.effective_stress, index, "effective_stress")?;
+            for (place, height) in self.height.iter().enumerate() {
+                let index = at * self.height.len() + place;
                 let raw = RawRow {
-                    time: number(&[*time], 0, "time")?.unwrap_or_default(),
-                    x: number(self.distance, place, "distance")?,
-                    y: number(self.height, place, "height")?.unwrap_or_default(),
-                    volume: number(self.volume, place, "volume")?,
-                    pressure: number(self.pressure, index, "pressure")?,
-                    // The convention of files counts compression positive, that of this program tension.
-                    stress: stress.map(|stress| -stress),
-                    displacement: number(self.displacement, index, "displacement")?,
-                    horizontal_displacement: number(
-                        self.horizontal_displacement,
-                        index,
-                        "horizontal_displacement",
-                    )?,
+                    time: *time,
+                    x: self.distance.get(place).copied(),
+                    y: *height,
+                    volume: self.volume.get(place).copied(),
+                    pressure: self.pressure.get(index).copied(),
+                    // Files count compression positive, this interface tension.
+                    stress: self.effective_stress.get(index).map(|stress| -stress),
+                    displacement: self.displacement.get(index).copied(),
+                    horizontal_displacement: self.horizontal_displacement.get(index).copied(),
                     moved: None,
                     others: place as u64,
+                };
+                let refused = |why: String| {
+                    ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))
                 };
                 rows.push(raw.sample(mapping, body, &refused).map_err(|error| error.to_string())?);
             }
         }
         let mut states = states_of(&rows).map_err(|error| error.to_string())?;
-        if let Some(at) = self.settlement.iter().position(|settlement| !settlement.is_finite()) {
-            return Err(format!("arrays: [{at}]: `settlement` is {}", self.settlement[at]));
-        }
         if !self.settlement.is_empty() {
             for state in &mut states {
                 let at = self.time.iter().position(|time| *time == state.time);
@@ -138,12 +121,24 @@ impl Samples<'_> {
         Ok(states)
     }
 
-    fn lists_fit(&self, times: usize, places: usize) -> Result<(), String> {
+    /// Refuses lists of the wrong length, numbers that are not finite, and a result without fields.
+    fn check(&self) -> Result<(), String> {
+        let (times, places) = (self.time.len(), self.height.len());
+        if times == 0 || places == 0 {
+            return Err("there is no time or no place: give at least one of each".to_owned());
+        }
         let fields = [
             ("pressure", self.pressure),
             ("effective_stress", self.effective_stress),
             ("displacement", self.displacement),
             ("horizontal_displacement", self.horizontal_displacement),
+        ];
+        let others = [
+            ("time", self.time, times),
+            ("height", self.height, places),
+            ("distance", self.distance, places),
+            ("volume", self.volume, places),
+            ("settlement", self.settlement, times),
         ];
         for (name, list) in fields {
             if !list.is_empty() && list.len() != times * places {
@@ -153,13 +148,17 @@ impl Samples<'_> {
                 ));
             }
         }
-        for (name, list, wanted) in [
-            ("distance", self.distance, places),
-            ("volume", self.volume, places),
-            ("settlement", self.settlement, times),
-        ] {
+        for (name, list, wanted) in others {
             if !list.is_empty() && list.len() != wanted {
-                return Err(format!("`{name}` has {} numbers and {wanted} are needed", list.len()));
+                return Err(format!("`{name}` has {} numbers and needs {wanted}", list.len()));
+            }
+        }
+        let of_fields = fields.map(|(name, list)| (name, list, Some(places)));
+        let of_others = others.map(|(name, list, _)| (name, list, None));
+        for (name, list, row) in of_fields.into_iter().chain(of_others) {
+            if let Some(at) = list.iter().position(|value| !value.is_finite()) {
+                let place = row.map_or(format!("[{at}]"), |row| format!("[{}][{}]", at / row, at % row));
+                return Err(format!("arrays: {place}: `{name}` is {}", list[at]));
             }
         }
         if fields.iter().all(|(_, list)| list.is_empty()) && self.settlement.is_empty() {
@@ -207,7 +206,7 @@ mod tests {
         let mut holed = found.pressure.clone();
         holed[3] = f64::NAN;
         assert!(with(&holed).is_err_and(|told| told.contains("[0][3]") && told.contains("NaN")));
-        // One that is none is no settlement that nobody gave.
+        // A settlement that is not finite is an error, not a missing one.
         let settlement = [f64::NAN, 1e-6];
         let samples = Samples {
             time: &found.time,

@@ -1,21 +1,20 @@
-//! Text made safe for the document it goes into. Titles, names of files and headers of tables come from anywhere: what
-//! steers a terminal, turns the direction of a line or breaks it is never passed on.
+//! Text made safe for the document it goes into. Titles, names of files and headers of tables come from anywhere, so
+//! characters that control a terminal, or turn or break a line, are never passed on.
 use crate::render::script::{ScriptLevel, ScriptRun, runs};
 use std::borrow::Cow;
 
-/// Stands for a letter that would not be seen.
+/// Replaces a character that would not be seen.
 const UNSEEN: char = '\u{fffd}';
 
-/// Whether a letter does something to the text around it instead of standing in it: controls but for the end of a line
-/// and the tabulator, what turns the direction of writing, separators of lines and paragraphs, marks of byte order, and
-/// tags.
+/// Whether a character acts on the text around it: controls other than line end and tab, changes of the writing
+/// direction, separators of lines and paragraphs, byte order marks, and tags.
 fn is_unseen(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
         || matches!(c, '\u{feff}' | '\u{e0000}'..='\u{e007f}')
         || (c.is_control() && c != '\n' && c != '\t')
 }
 
-/// A document as it may leave this program: a whole text for a terminal, a page or a file.
+/// A whole text for a terminal, a page or a file.
 pub(crate) fn document(text: &str) -> Cow<'_, str> {
     if text.contains(is_unseen) { text.replace(is_unseen, "\u{fffd}").into() } else { text.into() }
 }
@@ -33,7 +32,7 @@ fn of_one_line(c: char) -> char {
     }
 }
 
-/// A field of CSV with words: a spreadsheet reads one that begins with `=`, `+`, `-` or `@` as a formula, and one behind
+/// A field of CSV with words. A spreadsheet reads a field that begins with `=`, `+`, `-` or `@` as a formula, and one after
 /// an apostrophe as words. Numbers stay as they are.
 pub(crate) fn csv_field(text: &str) -> Cow<'_, str> {
     let is_of_numbers = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || ".eE+- %±".contains(c));
@@ -60,7 +59,7 @@ pub(crate) fn html(text: &str) -> String {
         .collect()
 }
 
-/// Text for HTML as it is spelled; also fit for attributes.
+/// Text for HTML without scripts, also fit for attributes.
 pub(crate) fn plain_html(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -121,7 +120,7 @@ pub(crate) fn latex_text(text: &str) -> String {
     runs(text).into_iter().map(piece).collect()
 }
 
-/// Text for LaTeX as it is spelled: what would be read as commands is escaped, symbols become mathematics.
+/// Text for LaTeX without scripts: commands are escaped, symbols become mathematics.
 pub(crate) fn latex(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars().filter(|c| !c.is_control()) {

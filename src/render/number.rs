@@ -7,7 +7,7 @@ pub fn error(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { finite(value, |v| format!("{v:.2e}")) }
 }
 
-/// Two errors with three digits, or with as many as tell them apart.
+/// Two errors with three digits, or with as many as show their difference.
 pub fn told_apart(values: [f64; 2]) -> [String; 2] {
     let [one, two] = values.map(error);
     if one != two || values[0] == values[1] {
@@ -68,7 +68,7 @@ pub fn count(value: u64) -> String {
     out
 }
 
-/// A value for a machine: the shortest spelling that reads back as the same bits.
+/// A value for a program: the shortest text that reads back as the same bits.
 pub fn exact(value: f64) -> String {
     finite(value, |v| format!("{v:?}"))
 }

@@ -1,10 +1,10 @@
-//! Text with subscripts and superscripts, so that `T_v`, `10⁻³` and `m²` read well in every font.
+//! Text with subscripts and superscripts, so that `T_v`, `10⁻³` and `m²` look right in every font.
 //!
 //! A single letter, an underscore and letters or digits is a symbol with a subscript (`K_w`,
 //! `Δt_crit`, `L_∞`); `points_per_cell` is a name and stays as it is. Unicode superscripts and
 //! subscripts are taken apart, because few fonts hold all of them.
 
-/// Where a piece of text stands.
+/// The level of a piece of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ScriptLevel {
     Base,
@@ -19,7 +19,7 @@ pub(crate) struct ScriptRun {
     pub text: String,
 }
 
-/// Takes `text` apart. Characters that no document may hold are dropped.
+/// Splits a text into runs of one level. Characters that no document may hold are dropped.
 pub(crate) fn runs(text: &str) -> Vec<ScriptRun> {
     let chars: Vec<char> = text.chars().filter(|&c| is_allowed(c)).collect();
     let mut out = Vec::new();
@@ -42,7 +42,7 @@ pub(crate) fn runs(text: &str) -> Vec<ScriptRun> {
     out
 }
 
-/// Neither control characters nor those that no document may hold.
+/// Whether a document may hold the character.
 fn is_allowed(c: char) -> bool {
     !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
@@ -54,7 +54,7 @@ fn push(out: &mut Vec<ScriptRun>, level: ScriptLevel, c: char) {
     }
 }
 
-/// Where the underscore of a symbol at `i` stands, and where its subscript ends.
+/// The places of the underscore of a symbol at `i` and of the end of its subscript.
 fn subscript_at(chars: &[char], i: usize) -> Option<(usize, usize)> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     // A difference is a symbol too.
@@ -78,7 +78,7 @@ fn belongs(c: char) -> bool {
 const ABOVE: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺ⁿ";
 const ON_THE_LINE: &str = "0123456789−+n";
 
-/// What stands on the line for a character that Unicode has above it.
+/// The character on the line of a Unicode superscript.
 fn superscript(c: char) -> Option<char> {
     if c.is_ascii() {
         return None; // Nearly every character: not worth a search.

@@ -1,5 +1,5 @@
-//! Methods that solved the same column on several meshes: one path a method, all at one time, so that their
-//! errors can stand beside each other.
+//! Methods that solved the same column on several meshes: one path per method, all at one time, so that their errors can
+//! be compared.
 
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// The paper's method.
 pub const PAPERS: &str = "GC-SRI-patch";
 
-/// The path that stands for a method.
+/// The path that represents a method.
 pub struct MethodPath<'a> {
     /// The method.
     pub method: String,
@@ -29,7 +29,7 @@ pub struct MethodPath<'a> {
 
 /// Methods on one column with one soil.
 pub struct Regime<'a> {
-    /// One path a method, in the order of their studies.
+    /// One path per method, in the order of their studies.
     pub methods: Vec<MethodPath<'a>>,
     /// The time factor at which most of them have errors.
     pub time_factor: f64,
@@ -86,7 +86,7 @@ fn is_plain(case: &Case) -> bool {
     variant.is_empty() || variant.split(", ").all(|part| part.ends_with(" drag"))
 }
 
-/// Of several values the one that most methods have; of those the largest.
+/// The value that most methods have; the largest of several.
 fn value_of_most(all: &[MethodPath<'_>], values_of: &dyn Fn(&MethodPath<'_>) -> Vec<f64>) -> Option<f64> {
     let values = all.iter().flat_map(|one| values_of(one).into_iter().map(|value| (value, &one.method)));
     let known = grouped(values).into_iter().map(|(value, methods)| (value, distinct(methods)));
@@ -116,10 +116,10 @@ fn mesh_of_most(all: &[MethodPath<'_>]) -> Option<usize> {
         .find(|cells| *cells as f64 == finest)
 }
 
-/// What speaks for a path: three levels, the quoted mesh, how many of its series have a settled order, levels.
+/// Rank of a path: three levels, the quoted mesh, number of series with a settled order, levels.
 type Worth = (bool, bool, usize, usize);
 
-/// One path a method, that for which most speaks.
+/// The best path of each method.
 fn best_of_each<'a>(all: Vec<MethodPath<'a>>, reference: &str, time_factor: f64) -> Vec<MethodPath<'a>> {
     let worth = |one: &MethodPath<'_>| {
         let series = CONVERGENCE.map(|(quantity, sample)| {
@@ -157,7 +157,7 @@ impl Regime<'_> {
     }
 
     /// The largest of a method's errors on the finest mesh of most: of pressure and effective stress at the
-    /// points, and of the settlement; none where one is missing.
+    /// points, and of the settlement; `None` if one is missing.
     pub fn largest_error(&self, one: &MethodPath<'_>) -> Option<f64> {
         let errors = [
             (Quantity::Pressure, Sample::Points),

@@ -8,6 +8,7 @@ use crate::render::chart::words::{Frame, Space, names, rules, triangles};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::error::RenderError;
 use crate::render::script::{width, wrap};
+use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::element::Rectangle;
@@ -92,14 +93,7 @@ impl Layout {
             notes(chart, &x_ends, &y_ends).iter().flat_map(|note| wrap(note, inner / NOTE.size)).collect();
         let height =
             plot.bottom + BELOW + 8.0 + legend.height() + notes.len() as f64 * NOTE.size * LINE + PAD * 0.8;
-        // A slender body leaves room that nobody needs.
-        let lines = [(TITLE.size * 1.05, &title), (SUBTITLE.size, &subtitle), (NOTE.size, &notes)];
-        let words =
-            lines.into_iter().flat_map(|(font, lines)| lines.iter().map(move |line| font * width(line)));
-        let needed = words.fold(plot.right + right - PAD, |most, width| most.max(PAD + width)) + PAD;
-        let is_slender = chart.size.equal_units && legend.height() == 0.0;
-        let width = if is_slender { needed.min(wide).ceil() } else { wide };
-        let size = (width, height.ceil());
+        let size = (wide, height.ceil());
         Self { size, plot, x, y, bar: bar_axis(plot_height), title, subtitle, notes, legend, looks, points }
     }
 }
@@ -148,18 +142,15 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
             }
             let (count, names) = lost.entry(reason).or_default();
             *count += 1;
-            if !series.name.is_empty() && !names.contains(&series.name.as_str()) {
+            if !names.contains(&series.name.as_str()) {
                 names.push(&series.name);
             }
         }
     }
     let total: usize = lost.values().map(|(count, _)| count).sum();
-    let reasons = lost.iter().map(|(reason, (count, names))| {
-        let who = names.iter().take(3).copied().collect::<Vec<_>>().join(", ");
-        let more = if names.len() > 3 { ", …" } else { "" };
-        let who = if who.is_empty() { who } else { format!(" ({who}{more})") };
-        format!("{count} {}{who}", reason.words())
-    });
+    let reasons = lost
+        .iter()
+        .map(|(reason, (count, names))| format!("{count} {} ({})", reason.words(), names.join(", ")));
     let reasons = reasons.collect::<Vec<_>>().join("; ");
     let values = if total == 1 { "value" } else { "values" };
     let mut notes: Vec<String> = Vec::new();
@@ -167,12 +158,11 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
     notes.extend(without_data(chart));
     if let Some(field) = &chart.field {
         let missing = field.values.len() - field.drawn().count();
-        match (field.shape(), missing) {
-            (None, _) => notes.push("The edges and values of the field do not fit each other.".to_owned()),
-            (_, 0) => {}
-            (_, 1) => notes.push("1 cell without a value is grey.".to_owned()),
-            _ => notes.push(format!("{missing} cells without a value are grey.")),
-        }
+        let is_broken = field.shape().is_none();
+        notes
+            .extend(is_broken.then(|| "The edges and values of the field do not fit each other.".to_owned()));
+        let are = count_of(missing, "cell without a value is", "cells without a value are");
+        notes.extend((missing > 0 && !is_broken).then(|| format!("{are} grey.")));
     }
     notes
 }
@@ -270,23 +260,11 @@ impl Chart {
         };
         let extent = field.extent();
         let mut chart = self.plot(area, layout)?;
-        let cells = field.values.chunks(columns).enumerate().flat_map(|(row, values)| {
-            let colours: Vec<RGBColor> = values.iter().map(|value| field_colour(value / extent)).collect();
-            // Equal neighbours of a row are one rectangle.
-            let mut runs: Vec<(usize, usize, RGBColor)> = Vec::new();
-            for (column, colour) in colours.into_iter().enumerate() {
-                match runs.last_mut() {
-                    Some((_, end, last)) if *last == colour => *end = column + 1,
-                    _ => runs.push((column, column + 1, colour)),
-                }
-            }
-            let (low, high) = (field.y_edges[row], field.y_edges[row + 1]);
-            runs.into_iter().map(move |(start, end, colour)| {
-                let corners = [(field.x_edges[start], low), (field.x_edges[end], high)];
-                Rectangle::new(corners, colour.filled())
-            })
-        });
-        chart.draw_series(cells)?;
+        chart.draw_series(field.values.iter().enumerate().map(|(place, value)| {
+            let (row, column) = (place / columns, place % columns);
+            let corner = |after: usize| (field.x_edges[column + after], field.y_edges[row + after]);
+            Rectangle::new([corner(0), corner(1)], field_colour(value / extent).filled())
+        }))?;
         let (plot, size) = (layout.plot, layout.size);
         let left = plot.right + BAR.0;
         let label_room = bar.label_width() + BESIDE;
@@ -330,18 +308,9 @@ impl Chart {
                         space.add_line(a, b);
                     }
                 }
-                // No colour of a line shows on all colours of a field: there it has a white edge.
-                let edge = self.field.is_some().then_some((WHITE, look.width() + 2.0));
-                for (colour, width) in edge.into_iter().chain([(look.colour, look.width())]) {
-                    let drawn =
-                        layer(layout.size, |area| self.curve(area, layout, series, stroke(colour, width)))?;
-                    let attributes = if colour == WHITE {
-                        " stroke-linejoin=\"round\"".to_owned()
-                    } else {
-                        look.line_attributes()
-                    };
-                    out += &group(&attributes, &series.name, &drawn);
-                }
+                let style = stroke(look.colour, look.width());
+                let drawn = layer(layout.size, |area| self.curve(area, layout, series, style))?;
+                out += &group(&look.line_attributes(), &series.name, &drawn);
             }
         }
         // A document within the document cuts what lies outside of it.

@@ -17,7 +17,7 @@ for (const table of document.querySelectorAll("main table")) {
         const numbers = x !== "" && y !== "" && !Number.isNaN(s) && !Number.isNaN(t);
         return numbers ? s - t : x.localeCompare(y);
       };
-      // What is missing stands last, whichever way.
+      // Missing values are last in both directions.
       const lacks = (row) => row.cells[place].querySelector(".missing") !== null;
       const rows = [...body.rows].filter((row) => !lacks(row)).sort(compare);
       body.append(...(down ? rows.reverse() : rows), ...[...body.rows].filter(lacks));

@@ -1,5 +1,5 @@
-//! Writers of pages: one self-contained HTML file, and GitHub's Markdown with the figures beside it. What stands around
-//! the sections of HTML is in `page.html` and `page.css`.
+//! Writers of pages: one self-contained HTML file, and GitHub's Markdown with the figures beside it. The frame around the
+//! sections of HTML is in `page.html` and `page.css`.
 use crate::render::error::RenderError;
 use crate::render::escape;
 use crate::render::page::marked_text::{paragraphs, to_html, to_markdown};

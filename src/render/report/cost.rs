@@ -11,7 +11,7 @@ use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::labels::{DrawnPaths, drawn};
 use crate::render::report::{StudyResults, labels};
-use crate::render::table::{Cell, Table, TableColumn, columns};
+use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and the wall times of runs that had the machine to themselves.
@@ -101,7 +101,6 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         Block::Heading("Error against wall time".to_owned()),
         Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
         Block::Table(cheapest_table(&precision)),
-        Block::Table(front_table(&precision)),
     ];
     if peers::solve_their_column(&precision.runs) {
         blocks.push(Block::Table(peers_table(&precision)));
@@ -164,44 +163,28 @@ pub fn caption(precision: &WorkPrecision<'_>) -> String {
     )
 }
 
-/// Columns of a run.
-fn run_columns() -> Vec<TableColumn> {
-    columns("run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates")
-}
-
-fn run_cells(run: &TimedRun<'_>) -> Vec<Cell> {
-    vec![
-        Cell::Code(run.record.case.label()),
-        Cell::Error(run.error),
-        Cell::Number(1e3 * run.wall.median),
-        Cell::Number(1e3 * run.wall.deviation),
-        labels::counted(run.record, run.record.counters.steps),
-        labels::counted(run.record, run.record.counters.point_updates),
-    ]
-}
-
 fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
     let rows = precision.cheapest.iter().map(|cheapest| {
         let mut row = vec![Cell::Percent(cheapest.tolerance)];
-        row.extend(cheapest.run.iter().flat_map(run_cells));
-        row.resize(1 + run_columns().len(), Cell::missing("no timed run is within the tolerance"));
+        row.extend(cheapest.run.iter().flat_map(|run| {
+            [
+                Cell::Code(run.record.case.label()),
+                Cell::Error(run.error),
+                Cell::Number(1e3 * run.wall.median),
+                Cell::Number(1e3 * run.wall.deviation),
+                labels::counted(run.record, run.record.counters.steps),
+                labels::counted(run.record, run.record.counters.point_updates),
+            ]
+        }));
+        row.resize(7, Cell::missing("no timed run is within the tolerance"));
         row
     });
-    let mut columns = columns("> tolerance");
-    columns.extend(run_columns());
-    Table::of("The cheapest run within a tolerance", columns, rows)
-        .note("error of the pore pressure at the points, relative L2, the worst of the outputs")
-}
-
-fn front_table(precision: &WorkPrecision<'_>) -> Table {
-    let front = precision.runs.iter().filter(|run| run.on_front).map(run_cells);
-    let title = "Runs for which no other is both cheaper and more accurate";
-    let noise = precision
-        .noise_floor
-        .map(|noise| format!("timed twice in this session, the same run differs by {:.1} %", 100.0 * noise));
-    Table::of(title, run_columns(), front)
-        .note("wall times of runs that had the machine to themselves, in rounds over all runs")
-        .notes(noise)
+    let header =
+        "> tolerance | run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates";
+    Table::of("The cheapest run within a tolerance", columns(header), rows).note(
+        "error of the pore pressure at the points, relative L2, the worst of the outputs; wall times of runs that had the \
+         machine to themselves, in rounds over all runs",
+    )
 }
 
 /// Each other program beside the cheapest run here that is nowhere worse.

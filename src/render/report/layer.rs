@@ -15,7 +15,7 @@ use oedometer_exact::exact_error::ExactError;
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;
 
-/// Fields and ranking of a study of a layer; nothing for a column's.
+/// Fields and ranking of a study of a layer; empty for a column.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     if !results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
@@ -39,7 +39,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
         blocks.push(Block::Figures(figures));
     }
     let standings = standings(results.study, results.records)?;
-    // One row says nothing about who stands where; nor do rows without a start.
+    // A ranking needs two methods with an undrained start.
     if standings.iter().filter(|one| one.displacement.is_some()).count() > 1 {
         blocks.push(Block::Heading("Which methods cope with incompressible water and soil".to_owned()));
         blocks.push(Block::List(verdicts(&standings)));

@@ -10,10 +10,10 @@ use crate::render::table::{Cell, Table, columns};
 use crate::render::tables::runs;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Soils from which on there is something to draw.
+/// Fewest soils that make a map.
 const LEAST_SOILS: usize = 4;
 
-/// Map and table of a study that varies conductivity and stiffness; nothing for others.
+/// Map and table of a study that varies conductivity and stiffness; empty for others.
 pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
     let Some(reference) = results.study.references.first() else { return Vec::new() };
     let soils = mapped_soils(results.records, reference.name());
@@ -33,14 +33,14 @@ const CAPTION: &str = "Error of the pore pressure at the points; time from the n
 const CAPTION_OF_BROKEN: &str =
     "Soils on which some run of an integrator failed with the steps that the study tried.";
 
-/// What stands for soils on which every run came to its end.
+/// Name of the soils on which every run reached its end.
 const NONE_FAILED: &str = "no run failed";
 
 fn place(soil: &MappedSoil) -> (f64, f64) {
     (soil.conductivity, soil.stiffness)
 }
 
-/// Soils by names as a figure: a colour a name.
+/// Soils by name, one colour per name.
 fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
     let x = ChartAxis::log10("hydraulic conductivity k (m/s)");
     let mut chart = Chart::new(title, x, ChartAxis::log10("Young's modulus E (Pa)"));
@@ -51,7 +51,7 @@ fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
     chart
 }
 
-/// Who is the cheapest on every soil.
+/// The cheapest way on every soil.
 fn winners(soils: &[MappedSoil]) -> Chart {
     let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for soil in soils {
@@ -61,7 +61,7 @@ fn winners(soils: &[MappedSoil]) -> Chart {
     map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
 }
 
-/// Where runs of an integrator failed, beside the soils on which none did; none where no run failed at all.
+/// Soils where runs of an integrator failed, beside those where none did; `None` if no run failed at all.
 fn broken(soils: &[MappedSoil]) -> Option<Chart> {
     if soils.iter().all(|soil| soil.broken.is_empty()) {
         return None;
@@ -82,8 +82,8 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
     Some(map_of("Where runs break".to_owned(), names))
 }
 
-/// Every method and integrator over the soils: where it was tried, comes to the tolerance, wins, what it costs over
-/// the winner, and where it breaks.
+/// Every method and integrator over the soils: where it was tried, reaches the tolerance, is cheapest, its cost over the
+/// cheapest, and where it fails.
 fn methods_table(soils: &[MappedSoil]) -> Table {
     let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
     let rows = names.into_iter().map(|name| {
@@ -115,7 +115,7 @@ fn methods_table(soils: &[MappedSoil]) -> Table {
 /// Ratio of the largest to the smallest step from which a map has a logarithmic axis.
 const WIDE: f64 = 20.0;
 
-/// Maps and table of a study whose task is stability; nothing for others.
+/// Maps and table of a study whose task is stability; empty for others.
 pub fn critical_steps(results: &StudyResults<'_>) -> Vec<Block> {
     if results.records.iter().all(|record| record.stability.is_none()) {
         return Vec::new();

@@ -12,7 +12,7 @@ use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::WINDOW;
 use oedometer_exact::reference::ReferenceKind;
 
-/// Quantities of one figure, side by side; a layer's settlement says less than its displacements.
+/// Quantities of the figures, side by side: the settlement of a column, the displacement of a layer.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
     let of_the_body = if results.study.scene.has_plane_fields() {
         (Quantity::Displacement, Sample::Nodes)
@@ -30,7 +30,7 @@ fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
 /// Floors that are listed below a table before the rest is only counted.
 const MOST_NOTES: usize = 20;
 
-/// Figures and tables of a study along an axis; none where nothing was refined on it.
+/// Figures and tables of a study along an axis; empty without refinement along it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     let all = longest_paths(results, axis);
     if all.is_empty() {
@@ -69,7 +69,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     blocks
 }
 
-/// The figure of one error over the mesh, against the scene's own solution; none where it was not refined.
+/// The figure of one error over the mesh, against the scene's own solution; `None` without refinement.
 pub fn mesh_figure(
     results: &StudyResults<'_>,
     quantity: Quantity,

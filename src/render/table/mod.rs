@@ -258,7 +258,7 @@ impl Table {
         footnotes.chain(self.notes.iter().map(|note| (None, note.as_str()))).collect()
     }
 
-    /// The reasons for what is missing, each once, in the order of their first appearance.
+    /// The reasons for missing values, each once, in the order of their first appearance.
     pub(crate) fn footnotes(&self) -> Vec<&str> {
         let mut reasons: Vec<&str> = Vec::new();
         for cell in self.rows.iter().flatten() {

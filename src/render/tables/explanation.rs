@@ -8,7 +8,7 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::differences_table;
 use crate::render::tables::runs::attached_notes;
 
-/// Carriers, levels and changes of a case.
+/// Places of the errors, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
     let mut tables = vec![carriers_table(record, &explanation.carriers)];
     if let Some(first) = explanation.carriers.first() {

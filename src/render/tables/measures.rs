@@ -60,7 +60,8 @@ const MEASURES: [(Quantity, Sample, Norm); 5] = [
 ];
 
 /// Why a relative error has no value.
-pub(crate) const NOT_RESOLVED: &str = "the exact value is zero, or below what round-off of the run and the accuracy of the reference leave of it";
+pub(crate) const NOT_RESOLVED: &str =
+    "the exact value is zero, or smaller than the round-off of the run or the accuracy of the reference";
 
 fn missing_reason(record: &Record) -> String {
     match &record.status {

@@ -1,4 +1,4 @@
-//! Tables of somebody else's result held against references.
+//! Tables of a foreign result compared with references.
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
@@ -10,11 +10,11 @@ use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::tables::measures::NOT_RESOLVED;
 use std::collections::HashMap;
 
-/// Times closer than this, relative, are equal but for the digits that were written.
+/// Relative difference of times that comes from the digits written.
 const SAME_TIME: f64 = 1e-9;
 
-/// One row a time and quantity: the main norm against every reference, and the place that carries
-/// most of the error against the first.
+/// One row per time and quantity: the main norm against every reference, and the place with most of the error against the
+/// first.
 pub fn errors_table(score: &Score, title: &str) -> Table {
     let mut references: Vec<&str> = Vec::new();
     let unresolved = score.unresolved.iter().map(|one| one.reference.as_str());
@@ -76,7 +76,7 @@ fn place_cells(worst: Option<&WorstPlace>, is_plane: bool) -> Vec<Cell> {
     cells
 }
 
-/// One row a series over meshes, with its errors, order and class.
+/// One row per series over meshes, with its errors, order and class.
 pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
     let mut columns = columns("> T_v | quantity | reference");
     columns.extend(cells.iter().map(|cells| TableColumn::number(format!("{cells} cells"))));
@@ -99,8 +99,8 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
     let difference = series.iter().map(|one| one.time_difference).fold(0.0, f64::max);
     if difference > SAME_TIME {
         notes.push(format!(
-            "times differ between the meshes, by up to {difference:.1e} of the T_v shown; each is held against the exact \
-             solution at its own"
+            "times differ between the meshes by up to {difference:.1e} of the T_v shown; each is compared with the exact \
+             solution at its own time"
         ));
     }
     Table::of("convergence", columns, rows).notes(notes)

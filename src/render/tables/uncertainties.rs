@@ -1,10 +1,10 @@
-//! The table of values that have no exact one, with what refinement tells of them.
+//! The table of values without an exact solution, with their numerical uncertainty.
 
 use crate::judge::judgement::Judgement;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_convergence::{Behaviour, ErrorModel};
 
-/// One row a value that was asked for; none where none was.
+/// One row per requested value; `None` without such values.
 pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
     let rows: Vec<Vec<Cell>> = judgements.iter().filter_map(row_of).collect();
     (!rows.is_empty()).then(|| {
@@ -25,8 +25,8 @@ pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
     })
 }
 
-/// Why the finest three levels tell nothing.
-const OSCILLATES: &str = "the finest three go to and fro";
+/// Why the finest three levels have no estimate.
+const OSCILLATES: &str = "the finest three levels oscillate";
 /// Why there is no fit.
 const FEW: &str = "fewer than four levels";
 
@@ -51,7 +51,7 @@ fn row_of(judgement: &Judgement) -> Option<Vec<Cell>> {
     ])
 }
 
-/// A value with digits enough for the uncertainties that stand beside it.
+/// A value with enough digits for the uncertainties beside it.
 fn digits(value: f64) -> Cell {
     Cell::Text(format!("{value:.6}"))
 }
@@ -59,7 +59,7 @@ fn digits(value: f64) -> Cell {
 fn behaviour_name(behaviour: Behaviour) -> &'static str {
     match behaviour {
         Behaviour::Monotone => "monotone",
-        Behaviour::Oscillatory => "to and fro",
+        Behaviour::Oscillatory => "oscillatory",
         Behaviour::Divergent => "divergent",
         Behaviour::Equal => "equal",
     }
