@@ -150,7 +150,7 @@ pub fn time_study(
             }
             let timed = runner
                 .time_alone(&record.case, store)
-                .map_err(|source| RunError::Case { label: record.case.label(), source })?;
+                .map_err(|error| RunError::refused(&record.case, &error))?;
             if timed.is_empty() {
                 continue;
             }

@@ -53,31 +53,32 @@ pub enum RunError {
     /// A result could not be kept.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A case could not be set up.
-    #[error("{label}: {source}")]
+    /// A case could not be set up, or crashed, which is a fault of this program.
+    #[error("{label}: {reason}")]
     Case {
         /// Label of the case.
         label: String,
-        /// Why.
-        source: ExactError,
-    },
-    /// A case crashed: a fault of this program.
-    #[error("{label}: crashed; please report it with the study file")]
-    Crashed {
-        /// Label of the case.
-        label: String,
+        /// Why it has no record.
+        reason: String,
     },
 }
 
 impl RunError {
-    /// The case that has no record, with the reason; none where it is no case's own fault.
+    /// The error of a case that its exact solutions refuse.
+    pub fn refused(case: &Case, error: &ExactError) -> Self {
+        Self::Case { label: case.label(), reason: error.to_string() }
+    }
+
+    /// The error of a case that crashed.
+    pub fn crashed(case: &Case) -> Self {
+        Self::Case { label: case.label(), reason: "crashed; please report it with the study file".to_owned() }
+    }
+
+    /// The case that has no record, with the reason; `None` where it is no case's own fault.
     pub fn of_case(&self) -> Option<(&str, String)> {
         match self {
             Self::Store(_) => None,
-            Self::Case { label, source } => Some((label, source.to_string())),
-            Self::Crashed { label } => {
-                Some((label, "crashed; please report it with the study file".to_owned()))
-            }
+            Self::Case { label, reason } => Some((label, reason.clone())),
         }
     }
 }

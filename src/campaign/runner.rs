@@ -242,8 +242,8 @@ fn run_and_keep(
             return None;
         }
         Ok(Ok(record)) => record,
-        Ok(Err(source)) => return Some(Err(Box::new(RunError::Case { label: case.label(), source }))),
-        Err(_) => return Some(Err(Box::new(RunError::Crashed { label: case.label() }))),
+        Ok(Err(error)) => return Some(Err(Box::new(RunError::refused(case, &error)))),
+        Err(_) => return Some(Err(Box::new(RunError::crashed(case)))),
     };
     // What is on disk of a case that was not allowed to begin stays.
     let store = store.filter(|_| !runner.study().holds_back(case));

@@ -100,8 +100,7 @@ impl Family {
         let mut seen: Vec<Seen> = Vec::new();
         loop {
             let alive = self.alive();
-            self.kill_group();
-            Self::kill_each(&alive);
+            self.kill(&alive);
             for one in &alive {
                 if !seen.contains(one) {
                     seen.push(one.clone());
@@ -118,18 +117,17 @@ impl Family {
 
 #[cfg(unix)]
 impl Family {
-    fn kill_group(&self) {
-        // Those that are gone already are none.
-        let _ = rustix::process::kill_process_group(self.leader, rustix::process::Signal::KILL);
-    }
-
-    fn kill_each(alive: &[Seen]) {
-        for one in alive.iter().filter_map(|one| rustix::process::Pid::from_raw(one.id)) {
-            let _ = rustix::process::kill_process(one, rustix::process::Signal::KILL);
+    /// Kills its group, and what has left it.
+    fn kill(&self, alive: &[Seen]) {
+        use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+        // Those that are gone already need nothing.
+        let _ = kill_process_group(self.leader, Signal::KILL);
+        for one in alive.iter().filter_map(|one| Pid::from_raw(one.id)) {
+            let _ = kill_process(one, Signal::KILL);
         }
     }
 
-    /// Takes the ends of those that came to this program as their parent's parent.
+    /// Waits for those that became children of this program when their parents ended.
     fn forget(&self, seen: &[Seen]) {
         use rustix::process::{Pid, WaitOptions, waitpid};
         let others = seen.iter().filter_map(|one| Pid::from_raw(one.id)).filter(|id| *id != self.leader);
@@ -141,12 +139,10 @@ impl Family {
 
 #[cfg(not(unix))]
 impl Family {
-    fn kill_group(&self) {
+    fn kill(&self, _: &[Seen]) {
         let arguments = ["/T", "/F", "/PID", &self.leader.to_string()].map(str::to_owned);
         let _ = std::process::Command::new("taskkill").args(arguments).output();
     }
-
-    fn kill_each(_: &[Seen]) {}
 
     fn forget(&self, _: &[Seen]) {}
 }

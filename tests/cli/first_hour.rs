@@ -1,7 +1,7 @@
 //! The first hour of a new user: a study of one's own, a soft soil, a shipped study by its name.
 
 use crate::program::{call, folder_with};
-use flate2::read::GzDecoder;
+use flate2::read::MultiGzDecoder;
 use std::fs;
 use std::io::Read;
 use std::path::Path;
@@ -137,7 +137,7 @@ fn compressed_tables_have_the_text_of_the_plain_ones() {
     assert!(!at.join("out/short/short.csv").exists(), "one form of a table is left");
     let packed = fs::read(at.join("out/short/profiles.csv.gz")).expect("a table");
     let mut text = Vec::new();
-    GzDecoder::new(packed.as_slice()).read_to_end(&mut text).expect("gzip");
+    MultiGzDecoder::new(packed.as_slice()).read_to_end(&mut text).expect("gzip");
     assert_eq!(text, plain);
 }
 
