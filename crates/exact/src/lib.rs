@@ -1,15 +1,28 @@
-//! Exact and reference solutions of consolidation, with no knowledge of solvers.
+//! Exact and reference solutions of poromechanics, each with a bound on its own error, with no knowledge of solvers.
 //!
-//! Everything is SI; excess pore pressure is positive in compression, effective stress in tension,
-//! displacement upward. Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the
-//! factor `T_v = c_v t/H²` with the *drained* coefficient of consolidation.
+//! | module | problem | source |
+//! |---|---|---|
+//! | [`terzaghi`] | column under a sudden load, compressible or incompressible water | Terzaghi (1943) |
+//! | [`single_mode`] | decay of the slowest mode of an unloaded column | Carslaw & Jaeger (1959) |
+//! | [`xie_leo`] | large strain in closed form, incompressible water | Xie & Leo (2004) |
+//! | [`large_strain`] | large strain for any soil law, continuity and water, sudden or growing load | Gibson, England & Hussey (1967) |
+//! | [`dynamic_column`] | column with the inertia of both phases, under a step, a ramp, or let go | after Zienkiewicz et al. (1980) |
+//! | [`cosine_layer`] | layer in plane strain under a cosine load | Biot (1941) |
+//! | [`mandel`] | slab between rigid plates | Mandel (1953), Cheng & Detournay (1988) |
+//! | [`manufactured`] | motions of the unit square with body forces and sources that make them exact | docs/theory.md, Eqs 24–28 |
 //!
-//! [`reference::Reference`] gives the fields of any of them; the front page of `oedometer` has an example that runs.
+//! [`consolidation`] has Terzaghi's functions of depth and time that several of them share. [`Reference`] gives the fields
+//! of any of them by name; the front page of `oedometer` has an example that runs.
+//!
+//! Everything is SI; excess pore pressure is positive in compression, effective stress in tension, displacement upward.
+//! Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the factor `T_v = c_v t/H²` with the *drained*
+//! coefficient of consolidation. Every solution has `fields`, `settlement`, `degree_of_consolidation` and `accuracy`: the
+//! terms it took and the bound on what they leave out.
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod at_rest;
+mod at_rest;
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;

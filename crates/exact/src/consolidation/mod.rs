@@ -12,20 +12,37 @@
 //! `T`, the sums over mirror images for small `T`; at [`SWITCH`] both need four terms for all of
 //! `f64`'s digits.
 
-pub(crate) mod elapsed;
-pub(crate) mod images;
-pub(crate) mod inverse;
-pub(crate) mod series_value;
-pub(crate) mod sine_series;
+pub(crate) mod series;
 
-pub use crate::consolidation::inverse::time_factor_for_degree;
-pub use crate::consolidation::series_value::SeriesValue;
-pub use crate::consolidation::sine_series::eigenvalue;
+pub use crate::consolidation::series::eigenvalue;
 
+use crate::consolidation::series::{images, modes};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use core::f64::consts::PI;
+use oedometer_soil::elementary;
 
 /// Time factor below which the images are summed, above which the modes.
 pub const SWITCH: f64 = 0.2;
+/// Newton's iteration for a degree of consolidation converges quadratically; this is far more than it takes.
+const MOST_STEPS: usize = 60;
+
+/// A truncated sum, with what was left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesValue {
+    /// The sum.
+    pub value: f64,
+    /// Number of terms in it.
+    pub terms: usize,
+    /// Rigorous bound on the absolute value of the omitted terms' sum.
+    pub tail_bound: f64,
+}
+
+impl SeriesValue {
+    /// A value that needs no sum.
+    pub fn closed_form(value: f64) -> Self {
+        Self { value, terms: 0, tail_bound: 0.0 }
+    }
+}
 
 /// Isochrone `W(ζ, T)`: 1 at the start, 0 at the drained surface `ζ = 0`.
 ///
@@ -38,7 +55,7 @@ pub fn isochrone(zeta: f64, time_factor: f64) -> Result<SeriesValue, ExactError>
     } else if time_factor < SWITCH {
         images::isochrone(zeta, time_factor)
     } else {
-        sine_series::isochrone(zeta, time_factor)
+        modes::isochrone(zeta, time_factor)
     })
 }
 
@@ -52,7 +69,7 @@ pub fn isochrone_integral(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
         let consolidated = images::consolidated_below(zeta, time_factor);
         SeriesValue { value: 1.0 - zeta - consolidated.value, ..consolidated }
     } else {
-        sine_series::isochrone_integral(zeta, time_factor)
+        modes::isochrone_integral(zeta, time_factor)
     })
 }
 
@@ -67,7 +84,7 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
     Ok(if time_factor < SWITCH {
         images::consolidated_below(zeta, time_factor)
     } else {
-        let integral = sine_series::isochrone_integral(zeta, time_factor);
+        let integral = modes::isochrone_integral(zeta, time_factor);
         SeriesValue { value: 1.0 - zeta - integral.value, ..integral }
     })
 }
@@ -78,6 +95,60 @@ pub fn consolidated_below(zeta: f64, time_factor: f64) -> Result<SeriesValue, Ex
 /// When `time_factor` is negative or not finite.
 pub fn degree_of_consolidation(time_factor: f64) -> Result<SeriesValue, ExactError> {
     consolidated_below(0.0, time_factor)
+}
+
+/// Time factor `T` with `U(T) = degree`, to about `1e-14` relative.
+///
+/// Early consolidation starts from `T = π U²/4`, late consolidation from the first mode,
+/// `1 − U = (8/π²) exp(−π² T/4)` (Terzaghi 1943).
+///
+/// # Errors
+/// When `degree` is outside [0, 1).
+pub fn time_factor_for_degree(degree: f64) -> Result<f64, ExactError> {
+    if !(0.0..1.0).contains(&degree) {
+        return Err(ExactError::Degree(degree));
+    }
+    if degree == 0.0 {
+        return Ok(0.0);
+    }
+    if degree < images::consolidated_below(0.0, SWITCH).value {
+        Ok(early(degree))
+    } else {
+        Ok(late(1.0 - degree))
+    }
+}
+
+/// Newton in `√T`, in which `U` is nearly linear.
+fn early(degree: f64) -> f64 {
+    let mut root = 0.5 * PI.sqrt() * degree;
+    for _ in 0..MOST_STEPS {
+        let time_factor = root * root;
+        // A degree whose time factor underflows has the limit's closed form.
+        if time_factor < f64::MIN_POSITIVE {
+            break;
+        }
+        let misfit = images::consolidated_below(0.0, time_factor).value - degree;
+        let step = misfit / (2.0 * root * images::consolidation_rate(time_factor));
+        root -= step;
+        if step.abs() <= f64::EPSILON * root {
+            break;
+        }
+    }
+    root * root
+}
+
+/// Newton in `ln(1 − U)`, which is nearly linear in `T`.
+fn late(remaining: f64) -> f64 {
+    let mut time_factor = (-4.0 / (PI * PI) * elementary::ln(remaining * PI * PI / 8.0)).max(SWITCH / 2.0);
+    for _ in 0..MOST_STEPS {
+        let value = modes::isochrone_integral(0.0, time_factor).value;
+        let step = value * elementary::ln(value / remaining) / modes::consolidation_rate(time_factor);
+        time_factor += step;
+        if step.abs() <= f64::EPSILON * time_factor {
+            break;
+        }
+    }
+    time_factor
 }
 
 #[cfg(test)]

@@ -63,15 +63,15 @@ fn both_forms_agree_on_both_sides_of_the_switch() {
         for i in 0..=40 {
             let zeta = f64::from(i) / 40.0;
             let difference =
-                images::isochrone(zeta, time_factor).value - sine_series::isochrone(zeta, time_factor).value;
+                images::isochrone(zeta, time_factor).value - modes::isochrone(zeta, time_factor).value;
             assert!(difference.abs() < 2e-15, "W {difference:e}");
             let difference = 1.0
                 - zeta
                 - images::consolidated_below(zeta, time_factor).value
-                - sine_series::isochrone_integral(zeta, time_factor).value;
+                - modes::isochrone_integral(zeta, time_factor).value;
             assert!(difference.abs() < 2e-15, "I {difference:e}");
         }
-        let ratio = images::consolidation_rate(time_factor) / sine_series::consolidation_rate(time_factor);
+        let ratio = images::consolidation_rate(time_factor) / modes::consolidation_rate(time_factor);
         // The images cancel beyond T = 1/2, where only the modes are used.
         assert!((ratio - 1.0).abs() < 1e-13, "dU/dT {ratio}");
     }
@@ -80,16 +80,16 @@ fn both_forms_agree_on_both_sides_of_the_switch() {
 #[test]
 fn forms_need_few_terms_at_the_switch() {
     assert!(images::isochrone(1.0, SWITCH).terms <= 4);
-    assert!(sine_series::isochrone(1.0, SWITCH).terms <= 5);
+    assert!(modes::isochrone(1.0, SWITCH).terms <= 5);
 }
 
 #[test]
 fn tail_bounds_hold() {
     // Each shortened sum's error is within the bound that the next term gives.
     for time_factor in [0.2, 0.5, 1.0] {
-        let whole = sine_series::isochrone(0.7, time_factor);
+        let whole = modes::isochrone(0.7, time_factor);
         assert!(whole.tail_bound < 2.8e-17);
-        let m = sine_series::eigenvalue(whole.terms);
+        let m = eigenvalue(whole.terms);
         let first_omitted = 2.0 / m * libm::exp(-m * m * time_factor);
         assert!(whole.tail_bound >= first_omitted);
     }

@@ -1,7 +1,6 @@
 //! A layer under a cosine load: Biot's consolidation in two dimensions.
 
-pub(crate) mod elastic;
-pub(crate) mod talbot;
+mod elastic;
 
 use core::f64::consts::PI;
 
@@ -17,6 +16,8 @@ use oedometer_soil::elementary;
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.
 const ENDED: f64 = 100.0;
+/// Nodes of Talbot's contour at which truncation, `exp(−1.36 N)`, has fallen below round-off.
+pub(crate) const NODES: usize = 26;
 
 /// Layer `0 < x < L`, `0 < y < H` in plane strain, drained at its top under `q cos(πx/L)`, on
 /// rollers at both sides, on an impermeable base (Biot 1941).
@@ -123,7 +124,7 @@ impl CosineLayer {
     /// # Errors
     /// When `time_factor` is negative or not finite, or the system is singular.
     pub fn at(&self, time_factor: f64) -> Result<LayerState, ExactError> {
-        self.inverted(time_factor, talbot::NODES)
+        self.inverted(time_factor, NODES)
     }
 
     /// The layer by a number of nodes on Talbot's contour.
@@ -140,7 +141,7 @@ impl CosineLayer {
         }
         let time = positive("time", self.parameters.time(time_factor))?;
         // The load is a step: 1/s.
-        let parts = talbot::contour(nodes)
+        let parts = talbot_contour(nodes)
             .map(|(z, weight)| {
                 let regime = Regime::Transformed(z / time);
                 Ok((ElasticSolution::new(self.constants, regime)?, weight / z))
@@ -188,14 +189,14 @@ impl CosineLayer {
     /// As for [`at`](Self::at).
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let fine = self.at(time_factor)?;
-        let coarse = self.inverted(time_factor, talbot::NODES * 3 / 4)?;
+        let coarse = self.inverted(time_factor, NODES * 3 / 4)?;
         let mut worst = 0.0_f64;
         for i in 0..=20 {
             let y = self.constants.height * f64::from(i) / 20.0;
             let difference = fine.fields(0.0, y)?.pressure - coarse.fields(0.0, y)?.pressure;
             worst = worst.max(difference.abs() / self.parameters.load);
         }
-        Ok(Accuracy::of(talbot::NODES, worst))
+        Ok(Accuracy::of(NODES, worst))
     }
 }
 
@@ -256,6 +257,23 @@ impl LayerState {
             ],
         }
     }
+}
+
+/// Upper half of Talbot's contour: `f(t) ≈ Re Σ w F(z/t)/t`.
+///
+/// The midpoint rule on the optimal cotangent contour of Weideman (2006) and Trefethen, Weideman
+/// & Schmelzer (2006, Eq. 4.1). The weights hold `exp(z)` and leave out the factor `1/t`.
+pub(crate) fn talbot_contour(nodes: usize) -> impl Iterator<Item = (Complex<f64>, Complex<f64>)> {
+    let count = nodes as f64;
+    (0..nodes / 2).map(move |k| {
+        let angle = (2.0 * k as f64 + 1.0) * PI / count;
+        let scaled = 0.6407 * angle;
+        let cotangent = 1.0 / elementary::tan(scaled);
+        let z = count * Complex::new(0.5017 * angle * cotangent - 0.6122, 0.2645 * angle);
+        let slope =
+            count * Complex::new(0.5017 * (cotangent - scaled * (1.0 + cotangent * cotangent)), 0.2645);
+        (z, elementary::exp_complex(z) * slope * Complex::new(0.0, -2.0 / count))
+    })
 }
 
 #[cfg(test)]

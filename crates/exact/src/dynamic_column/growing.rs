@@ -8,10 +8,10 @@
 use oedometer_soil::elementary;
 
 use crate::consolidation;
-use crate::consolidation::sine_series::eigenvalue;
-use crate::dynamic_column::DynamicColumn;
+use crate::consolidation::eigenvalue;
+use crate::consolidation::series::elapsed;
 use crate::dynamic_column::modes::{Amplitude, Growth, Mode};
-use crate::dynamic_column::steady::Steady;
+use crate::dynamic_column::{DynamicColumn, Steady};
 use crate::exact_error::ExactError;
 
 /// Whether a load that has grown over `duration` is so long past that the modes alone converge.
@@ -26,7 +26,7 @@ impl DynamicColumn {
     }
 
     /// Coefficients of one mode at a time in s, of a load that grows over `duration`.
-    pub(crate) fn growing_amplitude(
+    pub(super) fn growing_amplitude(
         &self,
         oscillator: &Mode,
         mode: usize,
@@ -89,7 +89,7 @@ impl DynamicColumn {
     ///
     /// # Errors
     /// When the time or the depth is impossible.
-    pub(crate) fn diffusion(&self, duration: f64, time: f64, zeta: f64) -> Result<Steady, ExactError> {
+    pub(super) fn diffusion(&self, duration: f64, time: f64, zeta: f64) -> Result<Steady, ExactError> {
         let column = &self.parameters;
         let strain = -column.load / column.oedometric_modulus();
         let y = column.height * (1.0 - zeta);
@@ -102,8 +102,8 @@ impl DynamicColumn {
         let mut impulse_rate = 0.0;
         let mut add = |time: f64, sign: f64| -> Result<(), ExactError> {
             let reached = self.diffused(time);
-            state.pressure += sign * scale * consolidation::elapsed::isochrone(zeta, reached);
-            impulse += sign * scale * consolidation::elapsed::isochrone_integral(zeta, reached);
+            state.pressure += sign * scale * elapsed::isochrone(zeta, reached);
+            impulse += sign * scale * elapsed::isochrone_integral(zeta, reached);
             impulse_rate += sign * scale * consolidation::isochrone_integral(zeta, reached)?.value;
             Ok(())
         };

@@ -1,18 +1,15 @@
 //! The column with inertia of both phases, exact.
 
-pub(crate) mod growing;
-pub(crate) mod modes;
-pub(crate) mod quartic;
-pub(crate) mod steady;
-pub(crate) mod summation;
-pub(crate) mod waves;
+mod growing;
+mod modes;
+mod quartic;
+mod summation;
 
 use std::borrow::Cow;
 
-use crate::consolidation::sine_series::eigenvalue;
+use crate::consolidation::eigenvalue;
 use crate::dynamic_column::modes::ModeState;
-use crate::dynamic_column::steady::Steady;
-use crate::dynamic_column::waves::{BLOCK, Waves};
+use crate::dynamic_column::summation::{BLOCK, Waves};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
@@ -72,6 +69,17 @@ pub struct DynamicFields {
     pub water_displacement: f64,
     /// Velocities of both phases.
     pub velocities: PhaseVelocities,
+}
+
+/// The state in closed form that the modes depart from: fields of the solid and of `ψ = (1 − n) u + n U_w`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steady {
+    solid: f64,
+    mixture: f64,
+    solid_rate: f64,
+    mixture_rate: f64,
+    solid_strain: f64,
+    pressure: f64,
 }
 
 impl DynamicColumn {

@@ -2,13 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::large_strain::chebyshev;
-use crate::large_strain::diffusion::Diffusion;
-use crate::large_strain::graded_grid::EvenGrid;
-use crate::large_strain::loading::{LoadAt, Loading};
-use crate::large_strain::radau::{POINTS, STAGES, weights};
+use crate::large_strain::chebyshev::{self, EvenGrid};
+use crate::large_strain::diffusion::{Diffusion, LoadAt, Loading};
+use crate::large_strain::radau::{POINTS, STAGES, StageFactors, StageModes, weights};
 use crate::large_strain::similarity::{Front, with_slopes};
-use crate::large_strain::stage_modes::{StageFactors, StageModes};
 
 /// Simplified Newton iterations before a step is halved.
 const MOST_ITERATIONS: usize = 40;

@@ -1,20 +1,16 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
-pub(crate) mod chebyshev;
+mod chebyshev;
 pub mod diffusion;
-pub(crate) mod graded_grid;
-pub(crate) mod loading;
-pub(crate) mod march;
-pub(crate) mod radau;
-pub(crate) mod similarity;
-pub(crate) mod stage_modes;
+mod march;
+mod radau;
+mod similarity;
 
 pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::field_values::{Accuracy, FieldValues};
-use crate::large_strain::diffusion::Diffusion;
-use crate::large_strain::loading::Loading;
+use crate::large_strain::diffusion::{Diffusion, Loading};
 use crate::large_strain::march::{March, Profile, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;

@@ -5,15 +5,14 @@
 //! at `x = ±a` (Mandel 1953; Cheng & Detournay 1988; docs/theory.md, Eq. 16). The pressure in the middle
 //! rises above its start before it falls: the sides drain, soften and leave their load to the core.
 //!
-//! `early` is the closed form of short times, `series` the sum over the roots of `tan α/α = 1/κ`.
+//! `sums::early` is the closed form of short times, `sums::series` the sum over the roots of `tan α/α = 1/κ`.
 
-mod early;
-mod eigenmode_series;
-mod ratios;
+mod sums;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
 use crate::field_values::{Accuracy, FieldValues};
-use crate::mandel::ratios::{Groups, MandelRatios};
+pub use crate::mandel::sums::MandelRatios;
+use crate::mandel::sums::{Groups, early, series};
 use crate::parameters::ColumnParameters;
 use oedometer_soil::elementary;
 
@@ -58,7 +57,7 @@ impl Mandel {
         if time < SERIES_FROM {
             return Ok(early::ratios(&self.groups, time, distance));
         }
-        Ok(eigenmode_series::ratios(&self.groups, time, distance))
+        Ok(series::ratios(&self.groups, time, distance))
     }
 
     /// Shear modulus `G`, Pa.
@@ -112,7 +111,7 @@ impl Mandel {
     /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
     pub fn middle_peak(&self) -> Option<(f64, f64)> {
         let height = |time: f64| {
-            let ratios = if time < SERIES_FROM { early::ratios } else { eigenmode_series::ratios };
+            let ratios = if time < SERIES_FROM { early::ratios } else { series::ratios };
             ratios(&self.groups, time, 0.0).pressure
         };
         // One peak between the diffusion's first touch of the middle and its end: the golden section of ln T.
@@ -141,8 +140,8 @@ impl Mandel {
         if time < SERIES_FROM {
             return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
         }
-        let terms = eigenmode_series::terms(time);
-        Ok(Accuracy::of(terms, eigenmode_series::bound(time, terms)))
+        let terms = series::terms(time);
+        Ok(Accuracy::of(terms, series::bound(time, terms)))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mandel's slab against values of 40 digits, its own Laplace transform, and its limits.
 
 use super::*;
-use crate::cosine_layer::talbot;
+use crate::cosine_layer::{NODES, talbot_contour};
 use core::f64::consts::PI;
 use nalgebra::Complex;
 use oedometer_soil::elementary;
@@ -138,7 +138,7 @@ fn the_pressure_in_the_middle_peaks_when_and_as_high_as_it_should() {
 fn by_laplace(slab: &Mandel, time: f64, distance: f64) -> [f64; 4] {
     let Groups { poissons_ratio: nu, kappa, start, .. } = slab.groups;
     let mut sums = [0.0; 3];
-    for (z, weight) in talbot::contour(talbot::NODES) {
+    for (z, weight) in talbot_contour(NODES) {
         let s = z / time;
         let r = elementary::sqrt_complex(s);
         let exp = |way: f64| elementary::exp_complex(-r * way);
@@ -178,11 +178,11 @@ fn the_closed_form_of_short_times_is_the_series() {
     for slab in extremes() {
         for time in [1e-6, 1e-4, 0.005, 0.02, 0.03] {
             for distance in [0.0, 0.5, 0.98, 1.0] {
-                let terms = eigenmode_series::terms(time);
-                let long = fields_of(eigenmode_series::sum(&slab.groups, time, distance, terms));
+                let terms = series::terms(time);
+                let long = fields_of(series::sum(&slab.groups, time, distance, terms));
                 let closed = fields_of(early::ratios(&slab.groups, time, distance));
                 for (value, other) in long.into_iter().zip(closed) {
-                    let rest = eigenmode_series::bound(time, terms) + early::bound(&slab.groups, time);
+                    let rest = series::bound(time, terms) + early::bound(&slab.groups, time);
                     assert!(
                         (value - other).abs() < rest + 3e-14,
                         "{slab:?} {time} {distance}: {value} {other}"
@@ -198,10 +198,10 @@ fn what_is_left_out_is_within_its_bound() {
     for slab in extremes() {
         for distance in [0.0, 0.7, 1.0] {
             let time = 0.1;
-            let whole = fields_of(eigenmode_series::sum(&slab.groups, time, distance, 20));
+            let whole = fields_of(series::sum(&slab.groups, time, distance, 20));
             for terms in 1..4 {
-                let cut = fields_of(eigenmode_series::sum(&slab.groups, time, distance, terms));
-                let bound = eigenmode_series::bound(time, terms);
+                let cut = fields_of(series::sum(&slab.groups, time, distance, terms));
+                let bound = series::bound(time, terms);
                 for (value, other) in cut.into_iter().zip(whole) {
                     assert!((value - other).abs() <= bound + 1e-15, "{terms}: {value} for {other}, {bound}");
                 }
@@ -226,7 +226,7 @@ fn every_root_is_one_and_in_its_place() {
         let kappa = slab.groups.kappa;
         assert!(kappa > 0.0 && kappa <= 0.75, "{kappa}");
         for index in [0, 1, 2, 10, 1000] {
-            let gap = eigenmode_series::gap_below_pole(kappa, index);
+            let gap = series::gap_below_pole(kappa, index);
             let root = (index as f64 + 0.5) * PI - gap;
             assert!(gap > 0.0 && root > index as f64 * PI);
             // tan α = cot δ = α/κ
@@ -235,7 +235,7 @@ fn every_root_is_one_and_in_its_place() {
     }
     // methods: α_0 of both materials.
     for (case, root) in [("seed", 1.324_225_891_702_15), ("soft-water", 1.402_652_657_454_25)] {
-        let found = 0.5 * PI - eigenmode_series::gap_below_pole(slab(case).groups.kappa, 0);
+        let found = 0.5 * PI - series::gap_below_pole(slab(case).groups.kappa, 0);
         assert!((found - root).abs() < 1e-13, "{case}: {found}");
     }
 }

@@ -5,22 +5,19 @@
 //! mixture and water and as a source of water (docs/theory.md, Eqs 24–27). Points move through the mesh in both
 //! directions and come back; no wall moves, and no front, load or surface spoils the reading.
 //!
-//! `four` are the numbers of four places, `jet` is the arithmetic with derivatives, `motion` the motions and their
-//! inverse, `model` which law goes with which, `motion_state` what follows from one at a point and time.
+//! `dual` is the arithmetic with derivatives, `motion` has the motions, their inverse and which law goes with which,
+//! `motion_state` what follows from a motion at a point and time.
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-pub mod four;
-pub mod jet;
-pub mod model;
+pub mod dual;
 pub mod motion;
 pub mod motion_state;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::field_values::{Accuracy, FieldValues};
-use crate::manufactured::four::PLACES;
-use crate::manufactured::model::ManufacturedModel;
-use crate::manufactured::motion::{Moment, Spot, Spots};
+use crate::manufactured::dual::PLACES;
+use crate::manufactured::motion::{ManufacturedModel, Moment, Spot, Spots};
 use crate::manufactured::motion_state::{Soil, State, States};
 use crate::parameters::ColumnParameters;
 use std::f64::consts::PI;
@@ -79,7 +76,7 @@ impl Manufactured {
         State::first_of(self.states_of(&Spots::of(&[Spot::of(place); PLACES]), &self.moment(time)))
     }
 
-    /// The same for four points and a time that are known already: for many points at one time.
+    /// The states of four points at a time, with what depends on place or time alone known already.
     #[inline(always)]
     pub fn states_of(&self, spots: &Spots, moment: &Moment) -> States {
         States::of(self.model, &self.parameters, &self.soil, spots, moment)
@@ -95,7 +92,7 @@ impl Manufactured {
         self.material_places(&[place; PLACES], moment, &[guess; PLACES])[0]
     }
 
-    /// The same of four places.
+    /// The points of the skeleton that are at four places at a time, from guesses, m.
     #[inline(always)]
     pub fn material_places(
         &self,

@@ -5,10 +5,10 @@
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-use crate::manufactured::four::{Four, PLACES};
-use crate::manufactured::jet::{Jet, Shape};
+use crate::manufactured::dual::{Dual, Four, Jet, Number, PLACES, Shape, Slope};
 use crate::parameters::MotionParameters;
 use oedometer_soil::elementary;
+use oedometer_soil::law::Law;
 use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
@@ -29,6 +29,36 @@ pub enum Motion {
     Shear,
     /// A disc that turns, the more the nearer its middle: by `α = A g (1 − 4r²)⁴`, `r < 1/2`. Volumes stay.
     Vortex,
+}
+
+/// A motion with the law of its soil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ManufacturedModel {
+    /// Form of the motion.
+    pub motion: Motion,
+    /// Stress–strain law.
+    pub law: Law,
+}
+
+impl ManufacturedModel {
+    /// A motion with the law that it has where nobody names one: of the constant modulus where nothing shears.
+    pub const fn of(motion: Motion) -> Self {
+        let law = match motion {
+            Motion::Box => Law::LogLinear,
+            Motion::Shear | Motion::Vortex => Law::NeoHookean,
+        };
+        Self { motion, law }
+    }
+
+    /// Whether stresses of the law follow from this motion in closed form: a rate of the constant modulus does where
+    /// nothing shears or turns.
+    pub fn has_law(self) -> bool {
+        match self.law {
+            Law::NeoHookean => true,
+            Law::LogLinear => self.motion == Motion::Box,
+            Law::Linear | Law::PorosityDependent | Law::Engineering => false,
+        }
+    }
 }
 
 /// A point `X` of the skeleton, m, with the sines and cosines of `πX` and `πY`.
@@ -159,12 +189,13 @@ impl Motion {
         for _ in 0..MOST_CORRECTIONS {
             let [x, y] = self.place(parameters, &Spots::of(&at.map(Spot::of)), moment);
             let off = |d: usize, jet: &Jet| {
-                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value
+                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value.value
             };
             let [off_x, off_y] = [off(0, &x), off(1, &y)];
-            let determinant = x.slope[0] * y.slope[1] - x.slope[1] * y.slope[0];
-            let correction_x = (y.slope[1] * off_x - x.slope[1] * off_y).over(determinant);
-            let correction_y = (x.slope[0] * off_y - y.slope[0] * off_x).over(determinant);
+            let ([xx, xy, _], [yx, yy, _]) = (x.value.slope, y.value.slope);
+            let determinant = xx * yy - xy * yx;
+            let correction_x = (yy * off_x - xy * off_y).over(determinant);
+            let correction_y = (xx * off_y - yx * off_x).over(determinant);
             for place in 0..PLACES {
                 let correction = [correction_x.0[place], correction_y.0[place]];
                 at[place] = [at[place][0] + correction[0], at[place][1] + correction[1]];
@@ -200,7 +231,7 @@ impl Motion {
 #[inline(always)]
 fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
     let [dx, dy] = [spots.place[0] + -MIDDLE, spots.place[1] + -MIDDLE];
-    let still = [Jet::coordinate(0, spots.place[0]), Jet::coordinate(1, spots.place[1])];
+    let still = [0, 1].map(|d| Dual::coordinate(d, Slope::coordinate(d, spots.place[d])));
     let share = (dx * dx + dy * dy) * -4.0 + 1.0;
     // S = s⁴, s = 1 − 4 r²
     let square = share * share;
@@ -210,10 +241,10 @@ fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
     let shape = Shape {
         value: square * square,
         slope: [first * by_x, first * by_y],
-        bend: [[second * by_x * by_x - first * 8.0, mixed], [mixed, second * by_y * by_y - first * 8.0]],
+        bend: [second * by_x * by_x - first * 8.0, mixed, second * by_y * by_y - first * 8.0],
     };
-    let [sine, cosine] = Jet::growing(&shape, times(amplitude, moment.growth)).sine_and_cosine();
+    let [sine, cosine] = Jet::growing(&shape, times(amplitude, moment.growth)).sincos();
     let [x, y] = [still[0] + -MIDDLE, still[1] + -MIDDLE];
     let turned = [cosine * x - sine * y + MIDDLE, sine * x + cosine * y + MIDDLE];
-    [Jet::where_positive(share, &turned[0], &still[0]), Jet::where_positive(share, &turned[1], &still[1])]
+    [0, 1].map(|d| Jet::where_positive(share, turned[d], still[d]))
 }

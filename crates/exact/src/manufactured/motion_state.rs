@@ -2,10 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-use crate::manufactured::four::Four;
-use crate::manufactured::jet::{Jet, Slope, TIME};
-use crate::manufactured::model::ManufacturedModel;
-use crate::manufactured::motion::{Moment, Spots};
+use crate::manufactured::dual::{Four, Jet, Number, Slope, TIME};
+use crate::manufactured::motion::{ManufacturedModel, Moment, Spots};
 use crate::parameters::ColumnParameters;
 use oedometer_soil::law::Law;
 
@@ -94,15 +92,14 @@ impl States {
         let position = model.motion.place(&parameters.motion, spots, moment);
         let pressure =
             Jet::growing(&spots.pressure_shape(), moment.beat.map(|value| parameters.load * value));
-        let deformation =
-            [[position[0].along(0), position[0].along(1)], [position[1].along(0), position[1].along(1)]];
-        let [[xx, xy], [yx, yy]] = deformation;
+        let [[xx, xy, _], [yx, yy, _]] = position.map(|place| place.slope);
+        let deformation = [[xx, xy], [yx, yy]];
         let volume_ratio = xx * yy - xy * yx;
         let per_volume = volume_ratio.recip();
         let inverse_deformation =
             [[yy * per_volume, xy * per_volume * -1.0], [yx * per_volume * -1.0, xx * per_volume]];
         // grad p = F⁻ᵀ grad_X p
-        let [along_x, along_y] = [pressure.along(0), pressure.along(1)];
+        let [along_x, along_y, _] = pressure.slope;
         let pressure_gradient = [
             inverse_deformation[0][0] * along_x + inverse_deformation[1][0] * along_y,
             inverse_deformation[0][1] * along_x + inverse_deformation[1][1] * along_y,
@@ -141,13 +138,13 @@ impl States {
 
     #[inline(always)]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
-        both(|i| self.position[i].along(TIME))
+        both(|i| self.position[i].slope[TIME])
     }
 
     #[inline(always)]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
-        both(|i| self.position[i].along(TIME) + self.flux[i] * per_porosity)
+        both(|i| self.position[i].slope[TIME] + self.flux[i] * per_porosity)
     }
 
     /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
@@ -192,7 +189,7 @@ impl States {
         let soil = &self.soil;
         let porosity = self.porosity.value;
         let still = [Four::all(0.0); 2];
-        let of_skeleton = || both(|i| self.position[i].bend[TIME][TIME]);
+        let of_skeleton = || both(|i| self.position[i].slope[TIME].slope[TIME]);
         let [of_grains, of_water] = match inertia {
             Inertia::Both => {
                 let velocity = self.water_velocity_slope();
@@ -215,8 +212,8 @@ impl States {
     /// (docs/theory.md, Eq. 27).
     #[inline(always)]
     pub fn source(&self) -> Four {
-        let storage =
-            self.porosity.value.over(Four::all(self.soil.water_bulk_modulus)) * self.pressure.slope[TIME];
+        let storage = self.porosity.value.over(Four::all(self.soil.water_bulk_modulus))
+            * self.pressure.value.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
     }
 }
@@ -233,7 +230,7 @@ impl State {
 
     /// Present place, m.
     pub fn position(&self) -> [f64; 2] {
-        both(|i| self.0.position[i].value.first())
+        both(|i| self.0.position[i].value.value.first())
     }
 
     /// Volume ratio `J`.
@@ -248,7 +245,7 @@ impl State {
 
     /// Pore pressure, Pa, compression positive.
     pub fn pressure(&self) -> f64 {
-        self.0.pressure.value.first()
+        self.0.pressure.value.value.first()
     }
 
     /// Effective Cauchy stress, Pa, tension positive.

@@ -2,7 +2,7 @@
 //! inverted motion: nothing of the arithmetic with derivatives is used, but the fields themselves.
 
 use super::*;
-use crate::manufactured::four::Four;
+use crate::manufactured::dual::Four;
 use crate::manufactured::motion::Motion;
 use crate::manufactured::motion_state::Inertia;
 use crate::parameters::MotionParameters;

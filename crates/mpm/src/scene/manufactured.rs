@@ -12,8 +12,8 @@ use crate::scene::definition::{
 use crate::wide::wide;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
-use oedometer_exact::manufactured::four::{Four, PLACES};
-use oedometer_exact::manufactured::model::ManufacturedModel;
+use oedometer_exact::manufactured::dual::{Four, PLACES};
+use oedometer_exact::manufactured::motion::ManufacturedModel;
 use oedometer_exact::manufactured::motion::{Motion, Spot, Spots};
 use oedometer_exact::manufactured::motion_state::Inertia;
 use oedometer_exact::parameters::MotionParameters;

@@ -28,7 +28,7 @@ use crate::scene::definition::{
 };
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
-use oedometer_exact::manufactured::model::ManufacturedModel;
+use oedometer_exact::manufactured::motion::ManufacturedModel;
 use oedometer_exact::manufactured::motion::Motion;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_soil::law::Law;
