@@ -16,7 +16,7 @@ pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
     (mean + (0.25 * (ss - ww) * (ss - ww) + sw_squared).sqrt()).sqrt()
 }
 
-/// Speed, m/s, of the undrained wave, water moving with the skeleton: `√((E_oed + Q)/ρ)`.
+/// Speed, m/s, of the undrained wave, in which water moves with the skeleton: `√((E_oed + Q)/ρ)`.
 pub fn undrained_wave_speed(soil: &Material) -> f64 {
     let n = soil.porosity;
     let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
@@ -31,7 +31,7 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
         Drag::Implicit | Drag::Centred => wave,
         Drag::Explicit => {
             let z = wave / (2.0 * drag::step_limit(soil));
-            // Rationalised: the difference of two large numbers where the drag rules.
+            // Rationalised: a difference of two large numbers where drag dominates.
             wave / ((1.0 + z * z).sqrt() + z)
         }
     }
@@ -41,9 +41,9 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
 /// frequency `ω² = 4 E_oed/(m h²)` of the shortest wave of the skeleton and its damping
 /// `c = γ_w/(k m)`.
 ///
-/// Water that cannot be compressed moves against the skeleton, `n (v_w − v_s) = −v_s`, in one
-/// dimension: inertia `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` a volume, taken at the end of
-/// the step. In more dimensions shear moves both as one and nothing damps it.
+/// In one dimension incompressible water moves against the skeleton, `n (v_w − v_s) = −v_s`: inertia
+/// `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` per volume, taken at the end of the step. In more dimensions shear moves
+/// both together and is not damped.
 pub fn semi_implicit_limit(soil: &Material, cell_size: f64, dimensions: usize) -> f64 {
     let n = soil.porosity;
     let per_length = 2.0 / cell_size;

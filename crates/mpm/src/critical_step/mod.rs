@@ -3,5 +3,4 @@
 pub mod formula;
 pub mod observed;
 pub mod predicted;
-pub mod spectral_radius;
-mod square;
+mod spectral_radius;

@@ -1,8 +1,7 @@
 //! The critical time step of a problem, predicted and observed.
 //!
-//! Predicted from the spectral radius of the step operator on the problem's own grid; observed by
-//! runs of the solver itself, which know nothing of the prediction, bisected between a step that runs
-//! and one that leaves.
+//! Predicted from the spectral radius of the step operator on the problem's own grid; observed in runs of the solver
+//! itself, independent of the prediction, by bisection between a step that runs and one that fails.
 
 use crate::body::Problem;
 use crate::critical_step::formula;
@@ -15,21 +14,21 @@ use crate::run::{Kernel, Observer, Schedule, TimeStepRule, run};
 use crate::time_limit::TimeLimit;
 use serde::{Deserialize, Serialize};
 
-/// Cells up to which the prediction is of the whole column; longer ones lose some of their middle.
+/// Cells up to which the prediction is for the whole column; longer ones are shortened in their middle.
 const WHOLE_COLUMN: usize = 24;
-/// Steps of a run that observes: growth of a seven hundredth a step shows.
+/// Steps of an observing run: growth of 1/700 per step shows.
 pub const OBSERVED_STEPS: u64 = 32_768;
-/// Bisections between a step that runs and one that leaves.
+/// Bisections between a step that runs and one that fails.
 pub const BISECTIONS: u32 = 24;
 /// Width of the last bracket, relative.
 const RESOLUTION: f64 = 1e-3;
-/// Strain, by the load, that linear stability is about: more would change what is observed.
+/// Strain under the load in a test of linear stability: a larger one would change the limit.
 const TINY_STRAIN: f64 = 1e-6;
-/// Growth a step that is seen in a plane, whatever a run shows: a doubling in ten thousand steps.
+/// Growth per step that counts as unstable in a plane, whether a run shows it or not: a doubling in ten thousand steps.
 const SLOWEST_SEEN: f64 = 6.9e-5;
-/// Growth a step that a run of so many steps shows: `ln(5·10^4)/32768`, from a share of the motion to a thousandfold of it.
+/// Growth per step that a run of so many steps shows: `ln(5·10^4)/32768`.
 const VISIBLE_GROWTH: f64 = 3.3e-4;
-/// Shares of the predicted step that must run and must leave.
+/// Shares of the predicted step that must run and must fail.
 pub const SHARES: [f64; 2] = [0.97, 1.03];
 
 /// One run at a share of the predicted step.
@@ -39,44 +38,42 @@ pub struct Probe {
     pub share: f64,
     /// Step, s.
     pub step: f64,
-    /// Spectral radius of the step operator: growth a step of what grows fastest; none above one
-    /// dimension.
+    /// Spectral radius of the step operator: the largest growth per step; none where the problem is too large.
     pub predicted_growth: Option<f64>,
     /// Steps taken.
     pub steps: u64,
-    /// Whether they reach the end of the scene.
+    /// Whether these steps reach the end of the scene.
     pub reaches_end: bool,
-    /// How it left, if it did.
+    /// How it failed, if it did.
     pub failure: Option<Failure>,
 }
 
 /// What is known of a problem's critical step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriticalStep {
-    /// From the spectral radius, s: beyond it something grows by a seven hundredth a step or more.
+    /// From the spectral radius, s: beyond it a mode grows by 1/700 per step or more.
     pub predicted: f64,
-    /// Where slower growth begins long before that, the step, s, from which on it does: no run of a few
-    /// thousand steps shows it, and a million steps can.
+    /// Step, s, from which on a mode grows more slowly, where that begins long before: no run of a few thousand steps
+    /// shows it, but a million steps can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creeping_from: Option<f64>,
-    /// The sentence that no limit is known, where something grows under any step; `predicted` is the formula's then.
+    /// Says that no limit is known, where a mode grows under any step; `predicted` is the formula's step then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unknown: Option<String>,
-    /// From runs, s; none where nothing left.
+    /// From runs, s; none where none failed.
     pub observed: Option<f64>,
     /// `h/c` with the fastest undamped wave, s.
     pub wave_limit: f64,
-    /// Limit of the explicit drag alone, s.
+    /// Limit of explicit drag alone, s.
     pub drag_limit: f64,
-    /// The safe formula of both, s.
+    /// The safe formula for both, s.
     pub combined_limit: f64,
     /// Runs at the shares 0.97 and 1.03 of the predicted step.
     pub probes: Vec<Probe>,
 }
 
 impl Probe {
-    /// Whether it ran below the predicted step, or left above it: a run that somebody or a time limit
-    /// stopped did neither.
+    /// Whether it ran below the predicted step, or failed above it; a run that was stopped or timed out did neither.
     pub fn is_as_predicted(&self) -> bool {
         match &self.failure {
             None => self.share < 1.0,
@@ -88,7 +85,7 @@ impl Probe {
 }
 
 impl CriticalStep {
-    /// Whether the runs on both sides of the prediction did as predicted; without either side, no.
+    /// Whether the runs on both sides of the prediction agree with it; false without a run on either side.
     pub fn probes_agree(&self) -> bool {
         let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
         has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
@@ -105,7 +102,7 @@ impl CriticalStep {
     }
 }
 
-/// The observer did not let the search go on.
+/// The observer stopped the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 
@@ -123,9 +120,9 @@ pub fn critical_step<const D: usize>(
 ) -> Result<CriticalStep, Stopped> {
     let soil = &problem.material;
     let mut problem = problem.clone();
-    // How it grows is the question, and not whether it may.
+    // Growth is to be observed, not refused.
     problem.is_bounded = false;
-    // A problem of finite strain is judged where it starts.
+    // A problem of finite strain is judged at its start.
     let tiny = TINY_STRAIN * soil.oedometric_modulus() / problem.pressure_scale.max(f64::MIN_POSITIVE);
     if problem.configuration.deforms() && tiny < 1.0 {
         problem = problem.scaled(tiny);
@@ -164,17 +161,16 @@ pub fn critical_step<const D: usize>(
     })
 }
 
-/// Largest step that runs, by bisection; none where no step near the prediction leaves. The search begins between the
-/// probes, which are runs that know nothing of the prediction either, and goes outwards where they leave and hold
-/// otherwise than it says.
+/// Largest step that runs, by bisection; none where no step near the prediction fails. The search begins between the probes
+/// and goes outwards where they contradict the prediction.
 fn observed_step<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
     probes: &[Probe],
     observer: Observer<'_>,
 ) -> Result<Option<f64>, Stopped> {
-    // What doubles in ten thousand steps shows in the eigenvalues of the step, where the problem is small enough for
-    // them, and in no run of a few ten thousand.
+    // Growth that doubles in ten thousand steps shows in the spectral radius, where the problem is small enough, but not
+    // in a run of a few ten thousand steps.
     let grows =
         |step: f64| whole_growth(problem, settings, step).is_some_and(|growth| growth > 1.0 + SLOWEST_SEEN);
     let runs = |step: f64| -> Result<bool, Stopped> {
@@ -184,7 +180,7 @@ fn observed_step<const D: usize>(
         leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
     };
     let [below, above] = probes else { return Ok(None) };
-    // A probe that left later than the runs of a search last did not leave by their measure.
+    // A probe that failed only after more steps than the runs of the search have did not fail by their measure.
     let held =
         |probe: &Probe| (probe.failure.is_none() || probe.steps > OBSERVED_STEPS) && !grows(probe.step);
     let (least, most) = (1e-3 * below.step, 1e3 * above.step);
@@ -193,7 +189,7 @@ fn observed_step<const D: usize>(
     while !low_runs {
         (high, high_runs) = (low, false);
         low *= 0.5;
-        // Written so that a prediction that is no number ends it.
+        // Written so that a prediction of NaN ends the search.
         let is_near = low >= least;
         if !is_near {
             return Ok(None);
@@ -223,7 +219,7 @@ fn observed_step<const D: usize>(
     Ok(Some(0.5 * (low + high)))
 }
 
-/// Runs a number of steps of a size: how many were taken, and how the run left.
+/// Runs a number of steps of a size; the steps taken, and how the run failed.
 fn leaves<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
@@ -241,7 +237,7 @@ fn leaves<const D: usize>(
         formulation: Formulation::VW,
         threads: 1,
         time_limit: TimeLimit::default(),
-        // A run that observes knows nothing of the prediction.
+        // An observing run must not depend on the prediction.
         critical_step: Some(step),
     };
     let outcome = run(problem.clone(), &schedule, observer);

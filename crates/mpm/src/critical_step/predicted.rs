@@ -9,11 +9,11 @@ use crate::method::{PressureIntegration, Recovery};
 use crate::state::grid::Grid;
 use std::fmt;
 
-/// Cells of the column on which the critical step of a run is computed.
+/// Cells of the column for which the critical step of a run is computed.
 const FEW_CELLS: usize = 12;
-/// Cells of the corner of a plane whose step operator is squared.
+/// Cells along each side of the corner of a plane whose step operator is squared.
 const MOST_ACROSS: usize = 8;
-/// Share of the formula's step at which the growth of what grows under any step is told.
+/// Share of the formula's step at which the growth of a mode that grows under any step is reported.
 const FAR_BELOW: f64 = 0.1;
 
 /// A predicted critical step, with what it was predicted from.
@@ -21,13 +21,13 @@ const FAR_BELOW: f64 = 0.1;
 pub struct Prediction<const D: usize> {
     /// Largest stable step, s; that of the formula where none is known.
     pub critical_step: f64,
-    /// What grows under any step, where something does: then no limit is known.
+    /// A mode that grows under any step, where there is one: then no limit is known.
     pub growing: Option<GrowingMode>,
     assembled: AssembledStep<D>,
     settings: ExplicitSettings,
 }
 
-/// What grows under any step that was tried.
+/// A mode that grows under any step that was tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowingMode {
     /// A step, s, far below the formula's.
@@ -37,7 +37,7 @@ pub struct GrowingMode {
 }
 
 impl fmt::Display for GrowingMode {
-    /// The sentence that a limit is unknown.
+    /// Says that the limit is unknown.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (step, rate) = (self.step, (self.growth - 1.0) / self.step);
         write!(out, "no limit is known: ")?;
@@ -49,8 +49,7 @@ impl fmt::Display for GrowingMode {
 }
 
 impl<const D: usize> Prediction<D> {
-    /// Largest step, s, under which nothing grows by more than `growth` a step; above one dimension the
-    /// critical one.
+    /// Largest step, s, under which no mode grows by more than `growth` per step; in a plane the critical step.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
         if D > 1 {
             return self.critical_step;
@@ -59,8 +58,7 @@ impl<const D: usize> Prediction<D> {
         spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
     }
 
-    /// Growth per step of what grows fastest under steps of a size, where the operator is small enough to
-    /// be known.
+    /// Largest growth per step of any mode under steps of a size; none where the operator is too large.
     pub fn growth(&self, step: f64) -> Option<f64> {
         spectral_radius::growth(&self.assembled, step, &self.settings)
     }
@@ -68,13 +66,13 @@ impl<const D: usize> Prediction<D> {
 
 /// Critical step, s, of the explicit integrator on a problem's initial configuration.
 ///
-/// Computed on the problem's own operators; a long column loses its middle, which moves the limit
-/// by less than a percent, a wide layer is cut to six by six.
+/// Computed from the problem's own operators. A long column is shortened in its middle, which changes the limit by less
+/// than a percent; a wide layer is cut to six by six cells.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
     predict_for_run(problem, settings).0
 }
 
-/// The same, with what grows under any step where something does.
+/// The critical step of [`predicted_critical_step`], and a mode that grows under any step where there is one.
 pub fn predict_for_run<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
@@ -83,8 +81,8 @@ pub fn predict_for_run<const D: usize>(
     (prediction.critical_step, prediction.growing)
 }
 
-/// Growth per step of what grows fastest under steps of a size, s, on the whole of a problem in a plane: by the
-/// eigenvalues of its own step, where it is small enough for them.
+/// Largest growth per step of any mode of a whole problem in a plane under steps of a size, s; none in one dimension and
+/// where the problem is too large.
 pub fn whole_growth<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
@@ -96,7 +94,7 @@ pub fn whole_growth<const D: usize>(
     spectral_radius::growth(&AssembledStep::new(&Body::new(one_layer(problem))), step, settings)
 }
 
-/// The prediction on at most so many cells.
+/// The prediction from at most so many cells.
 pub fn predict<const D: usize>(
     problem: &Problem<D>,
     settings: &ExplicitSettings,
@@ -118,18 +116,18 @@ pub fn predict<const D: usize>(
         step,
         growth: spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN),
     });
-    // A column's limit is asked for less growth than counts: what takes so long is no reason to know none.
+    // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
     let is_slow = |mode: &GrowingMode| mode.growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
     let growing = growing.filter(|mode| !is_slow(mode));
     Prediction { critical_step: found.unwrap_or(safe), growing, assembled, settings: *settings }
 }
 
-/// The problem in one layer, with as many points as the layer that has more of them: layers of equal points have the
-/// limit of one, and unequal ones a limit between those of one layer with the points of either. Where points move, cells
-/// press with what takes their one rate, and have its limit.
+/// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
+/// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
+/// constant pressure, and have the limit of that.
 fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut one = problem.clone();
-    // What acts from outside moves no limit.
+    // Forces from outside do not change the limit.
     one.forcing = None;
     let moves = one.configuration.moves_points();
     if one.water.is_some() && moves && one.method.pressure == PressureIntegration::Sri {
@@ -141,8 +139,8 @@ fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     one
 }
 
-/// The problem on so many cells of its lower corner, with the load on their top: the sides stay held,
-/// the top stays free.
+/// The problem on so many cells of its lower corner, with the load on their top: the sides stay fixed, the top stays
+/// free.
 fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
     let mut cut = problem.clone();
     let extent = most as f64 * problem.grid.cell_size;
@@ -159,8 +157,7 @@ fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
     cut
 }
 
-/// The problem with as many cells taken out of its middle as it has too many: base and surface, where
-/// it is special, stay as they are.
+/// The problem without the surplus cells of its middle: base and surface, where it is special, stay as they are.
 fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Problem<D> {
     let up = D - 1;
     let cell_size = problem.grid.cell_size;
