@@ -1,17 +1,17 @@
-//! A square matrix by its entries, row by row.
+//! A sparse square matrix, row by row.
 
 use std::sync::Arc;
 
-/// A square matrix over a fixed set of places, with those of the transposed matrix and of the diagonal among
-/// them: elimination fills them in anyway.
+/// A square matrix with a fixed pattern, which includes the diagonal and is symmetric: elimination fills those places in
+/// anyway.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix {
-    /// Its places, which matrices of one shape share.
+    /// The pattern, which matrices share.
     shape: Arc<Shape>,
     entries: Vec<f64>,
 }
 
-/// Places of entries.
+/// Where the entries are.
 #[derive(Debug, PartialEq)]
 struct Shape {
     /// Place of each unknown in space, m; zeros beyond the dimension.
@@ -23,7 +23,7 @@ struct Shape {
 }
 
 impl SparseMatrix {
-    /// Zeros at the places that `visit` tells; `positions` as `[unknown][component]`, m.
+    /// Zeros at the places `(row, column)` that `visit` lists; `positions` as `[unknown][component]`, m.
     ///
     /// # Panics
     /// Beyond 2³² unknowns, whose matrix no memory holds.
@@ -66,10 +66,15 @@ impl SparseMatrix {
         (starts[row], &columns[starts[row]..starts[row + 1]])
     }
 
-    /// Column of an entry.
-    #[inline]
-    pub fn column(&self, entry: usize) -> usize {
-        self.shape.columns[entry] as usize
+    /// Number of the entry at one of the places.
+    ///
+    /// # Panics
+    /// At any other place.
+    pub fn entry(&self, row: usize, column: usize) -> usize {
+        let (start, columns) = self.row(row);
+        let place = columns.partition_point(|other| (*other as usize) < column);
+        assert_eq!(columns[place] as usize, column, "a place of the pattern");
+        start + place
     }
 
     /// The entries, in the order of their numbers.
@@ -77,16 +82,19 @@ impl SparseMatrix {
         &self.entries
     }
 
+    /// The entries, to be changed.
+    pub fn entries_mut(&mut self) -> &mut [f64] {
+        &mut self.entries
+    }
+
     /// Adds to an entry, which must be one of the places.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
-        let (start, columns) = self.row(row);
-        let place = columns.partition_point(|other| (*other as usize) < column);
-        assert_eq!(columns[place] as usize, column);
-        self.entries[start + place] += value;
+        let entry = self.entry(row, column);
+        self.entries[entry] += value;
     }
 
     /// `rest ← rest − A values`.
-    pub fn take_product(&self, values: &[f64], rest: &mut [f64]) {
+    pub fn subtract_product(&self, values: &[f64], rest: &mut [f64]) {
         for (row, rest) in rest.iter_mut().enumerate().take(self.shape.positions.len()) {
             let (start, columns) = self.row(row);
             let entries = &self.entries[start..start + columns.len()];
@@ -95,10 +103,5 @@ impl SparseMatrix {
                 .zip(columns)
                 .fold(*rest, |rest, (a, column)| rest - a * values[*column as usize]);
         }
-    }
-
-    /// Sets every entry to zero.
-    pub fn clear(&mut self) {
-        self.entries.fill(0.0);
     }
 }

@@ -5,25 +5,26 @@
 //! extrapolated state has the extrapolated residual: no product with `K` is ever taken.
 
 use crate::body::Body;
-use crate::direct_solver::bordered::BorderedLu;
-use crate::implicit::linear_system::{LinearOperators, LinearSystem};
-use crate::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
+use crate::direct_solver::system::{Factors, SystemMatrix};
+use crate::implicit::linear_system::LinearSystem;
+use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
 use crate::run::profile::{Phase, enter};
-use crate::run::results::outcome::FailureKind;
 use crate::run::results::snapshot::Snapshot;
 use crate::run::run_plan::Plan;
 use crate::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::time_limit::TimeLimit;
 use oedometer_soil::tensor::Vector;
 
-/// A frozen body on its way through time.
+/// Stepper of a frozen body.
 pub struct LinearStepper<const D: usize> {
     /// The body at the start.
     start: Body<D>,
     /// Settlement of the start, m.
     settled: f64,
     system: LinearSystem<D>,
-    lu: BorderedLu,
+    /// The matrix of a step, and its factors.
+    matrix: SystemMatrix,
+    factors: Factors,
     time_limit: TimeLimit,
     /// Step size that the factors belong to, s.
     factored: Option<f64>,
@@ -34,12 +35,12 @@ pub struct LinearStepper<const D: usize> {
     increment: Vec<f64>,
     /// Increment of the first stage.
     first_increment: Vec<f64>,
-    /// State, residual and outflow at the start of the step, where it may be taken back.
+    /// State, residual and outflow at the start of the step, in case it is rejected.
     before: (Vec<f64>, Vec<f64>, f64),
     error_scales: ErrorScales,
     /// Factor of the last increment that makes it the rate of `x`, 1/s: one over `γΔt`.
     rate_scale: f64,
-    /// Relative flux that passed the surface, `∫ n (v_w − v_s) dt`, m.
+    /// Relative flux that has passed the surface, `∫ n (v_w − v_s) dt`, m.
     outflow: f64,
     work: Work,
 }
@@ -48,11 +49,12 @@ impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
     pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
         enter(Phase::Assembly);
-        let system = LinearSystem::of(LinearOperators::of(&start));
+        let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
-            lu: BorderedLu::of_shape(&system.fixed, plan.schedule.threads).within(plan.schedule.time_limit),
+            matrix: system.fixed.clone(),
+            factors: Factors::of_shape(&system.fixed, plan.schedule.threads, plan.schedule.time_limit),
             time_limit: plan.schedule.time_limit,
             factored: None,
             state: zero.clone(),
@@ -69,43 +71,37 @@ impl<const D: usize> LinearStepper<D> {
         }
     }
 
-    /// Factors the matrix of steps of `dt` seconds, where it is not that of the last ones.
+    /// Factors the matrix of steps of `dt` seconds, unless it is that of the last step.
     fn set_step(&mut self, dt: f64) -> Result<(), StepFailure> {
         if self.factored != Some(dt) {
-            // Few columns are factored without a look at the clock.
+            // A small factorisation does not look at the clock itself.
             if self.time_limit.is_over() {
                 return Err(StepFailure::out_of_time());
             }
             enter(Phase::Factors);
             let system = &self.system;
-            let factored = self.lu.factor_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
-            factored.map_err(|singular| {
-                if self.time_limit.is_over() {
-                    return StepFailure::out_of_time();
-                }
-                let reason =
-                    format!("the matrix of a step of {dt:.4e} s has no pivot in row {}", singular.row);
-                StepFailure { kind: FailureKind::Singular, reason }
-            })?;
+            self.matrix.set_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
+            let factored = self.factors.factor(&self.matrix);
+            factored.map_err(|singular| no_pivot("the matrix of a step", singular, self.time_limit))?;
             self.factored = Some(dt);
             self.work.factorisations += 1;
         }
         Ok(())
     }
 
-    /// Both stages of a step of the size last set; nothing is allocated.
+    /// Takes both stages of a step of the size last set; nothing is allocated.
     fn take_stages(&mut self, dt: f64) {
         enter(Phase::Solve);
         let stage = SDIRK_GAMMA * dt;
         let system = &self.system;
         let sites = &system.unknowns.pressure;
-        // After the first stage the state goes on to the start of the second, then to the end.
+        // After the first stage the state continues to the start of the second, after that to the end of the step.
         for share in [SECOND_STAGE, 1.0] {
             self.increment.copy_from_slice(&self.residual);
             for unknown in sites {
                 self.increment[*unknown] *= stage;
             }
-            self.lu.solve(&mut self.increment);
+            self.factors.solve(&mut self.increment);
             if share == SECOND_STAGE {
                 self.first_increment.copy_from_slice(&self.increment);
             }
@@ -126,7 +122,7 @@ impl<const D: usize> LinearStepper<D> {
         self.rate_scale = 1.0 / stage;
     }
 
-    /// One step, taken back where its error is larger than `most_error`; the error.
+    /// Takes one step, and takes it back where its error is larger than `most_error`; returns the error.
     fn step(&mut self, dt: f64, most_error: f64) -> Result<f64, StepFailure> {
         self.set_step(dt)?;
         if most_error == f64::INFINITY {

@@ -1,13 +1,13 @@
-//! A Newton iteration a stage: for finite strain, and for bodies with inertia.
+//! SDIRK2 with Newton's iteration for each stage: for finite strain, and for bodies with inertia.
 
 use crate::body::Body;
-use crate::direct_solver::bordered::{Bordered, BorderedLu};
+use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::implicit::guess::StageGuess;
 use crate::implicit::residual::StageStart;
-use crate::implicit::sdirk::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE};
 use crate::implicit::secants::Secants;
 use crate::implicit::tangent::Pattern;
 use crate::implicit::trial::{Skeleton, Trial};
+use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
 use crate::method::{PressureIntegration, Recovery};
 use crate::run::integrator::StepBound;
 use crate::run::profile::{Phase, enter};
@@ -19,51 +19,48 @@ use crate::run::watch::lost_point;
 use crate::time_limit::TimeLimit;
 use oedometer_soil::elementary;
 
-/// Iterations of a stage.
+/// Most iterations of a stage.
 const MOST_ITERATIONS: usize = 16;
-/// Times that a step is halved before the run is given up.
+/// Times that a step is halved before the run ends.
 const MOST_HALVINGS: u32 = 10;
-/// Error that an iteration may leave, over the size of the problem's strains.
+/// Error of an iteration, over the size of the problem's strains.
 const TOLERANCE: f64 = 1e-12;
-/// Ratio of an iteration's correction to the last one's that is taken for granted where none is known.
+/// Contraction, the ratio of successive corrections, that is assumed where none is known.
 const SLOW: f64 = 0.1;
-/// The same beyond which the tangent is made anew, whatever is left.
+/// Contraction beyond which the tangent is always renewed.
 const TOO_SLOW: f64 = 0.8;
-/// Iterations with the tangent that there is which are worth a new one: that costs a residual for each of its groups,
-/// and what corrections tell makes the next ones fewer than they look.
+/// Expected iterations with the old tangent that justify a new one, which costs a residual for each of its groups.
 const PATIENCE: f64 = 12.0;
-/// What a contraction is taken to grow by in a stage that ends without a second correction to tell it.
+/// Assumed growth of the contraction in a stage that ends after one correction, which does not show it.
 const UNSEEN_GROWTH: f64 = 2.0;
 
-/// What a stage lasts for and where it ends, in steps, and the share of its increment in the start of the next
-/// one, or in the step.
+/// Duration and end of a stage, in steps, and the share of its increment in the start of the next stage or in the step.
 type Stage = (f64, f64, f64);
-/// Those of SDIRK2.
+/// The stages of SDIRK2.
 const SDIRK_STAGES: &[Stage] = &[(SDIRK_GAMMA, SDIRK_GAMMA, SECOND_STAGE), (SDIRK_GAMMA, 1.0, 1.0)];
-/// That of backward Euler, for what is implicit beside an explicit skeleton.
+/// The stage of backward Euler, beside an explicit skeleton.
 const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 
-/// A body on its way through time.
+/// Stepper of a body by Newton's iteration.
 pub struct NewtonStepper<const D: usize> {
     trial: Trial<D>,
     pattern: Pattern,
-    tangent: Bordered,
-    lu: BorderedLu,
-    /// Threads that it may use, and the time.
+    tangent: SystemMatrix,
+    factors: Factors,
     threads: usize,
     time_limit: TimeLimit,
-    /// What corrections tell of the tangent beyond its factors.
+    /// Updates of the factors from the last corrections.
     secants: Secants,
     /// The last correction of the scaled unknowns.
     correction: Vec<f64>,
     /// Stage duration that the factors belong to, s.
     factored: Option<f64>,
-    /// Ratio of successive corrections: the last one within a stage, the first one from stage to stage.
+    /// Ratio of successive corrections: the last one of a stage, at the start of a stage the first one.
     contraction: f64,
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
-    /// Correction of the scaled unknowns that round-off makes: strains are differences of numbers near one, and a
-    /// displacement sums them up over as many cells.
+    /// Correction of the scaled unknowns by round-off: strains are differences of numbers near one, and a displacement sums
+    /// them over all cells.
     round_off: f64,
     error_scales: ErrorScales,
     stages: &'static [Stage],
@@ -97,7 +94,7 @@ impl<const D: usize> NewtonStepper<D> {
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
         let zero = vec![0.0; trial.unknowns.count];
         Self {
-            lu: BorderedLu::of_shape(&tangent, plan.schedule.threads).within(plan.schedule.time_limit),
+            factors: Factors::of_shape(&tangent, plan.schedule.threads, plan.schedule.time_limit),
             threads: plan.schedule.threads,
             time_limit: plan.schedule.time_limit,
             secants: Secants::default(),
@@ -125,7 +122,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
     }
 
-    /// A step, in halves where the iteration does not come to an end.
+    /// Takes a step, in halves where the iteration does not converge.
     fn step_within(&mut self, dt: f64, halvings: u32, most_error: f64) -> Result<f64, StepFailure> {
         match self.try_step(dt, most_error) {
             Err(failure) if halvings > 0 && failure.kind != FailureKind::Stopped => {
@@ -174,7 +171,7 @@ impl<const D: usize> NewtonStepper<D> {
         Ok(error)
     }
 
-    /// Estimated error of the step whose stages were solved last.
+    /// Estimated error of the step that was solved last.
     fn error(&self) -> f64 {
         if self.stages.len() == 1 {
             return 0.0;
@@ -185,14 +182,14 @@ impl<const D: usize> NewtonStepper<D> {
         })
     }
 
-    /// The load at a time, where it grows.
+    /// Applies the load of a time, where it grows.
     fn load_at(&mut self, time: f64) {
         if self.loading_time > 0.0 {
             self.trial.set_load_share((time / self.loading_time).min(1.0));
         }
     }
 
-    /// The first stage starts where the last step ended.
+    /// Starts the first stage where the last step ended.
     fn start_step(&mut self, stage: f64) {
         self.start.duration = stage;
         self.start.unknowns.clear();
@@ -203,7 +200,7 @@ impl<const D: usize> NewtonStepper<D> {
         self.guess.begin_step(stage);
     }
 
-    /// The second stage starts where the first one's rates lead.
+    /// Starts the second stage where the rates of the first lead.
     fn start_second_stage(&mut self) {
         let nodes = &self.trial.body.nodes;
         for (start, now) in [
@@ -219,8 +216,8 @@ impl<const D: usize> NewtonStepper<D> {
         }
     }
 
-    /// Solves a stage from its guess; where that leads nowhere and was a bold one, or the tangent is that of points in
-    /// other cells, once more without either.
+    /// Solves a stage from its guess. Where that fails with an extrapolated guess or a tangent of points in other cells, it
+    /// tries again with the last rate and a new tangent.
     fn solve_stage(&mut self, number: usize) -> Result<(), StepFailure> {
         self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
         let is_bold = !self.guess.is_plain(number)
@@ -236,7 +233,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
     }
 
-    /// Newton's iteration, with the tangent of an earlier state as long as it contracts well.
+    /// Newton's iteration with the tangent of an earlier state, as long as it converges well.
     fn iterate(&mut self) -> Result<(), StepFailure> {
         let mut last = f64::INFINITY;
         let mut first = None;
@@ -251,7 +248,7 @@ impl<const D: usize> NewtonStepper<D> {
             }
             enter(Phase::Solve);
             self.scratch.copy_from_slice(&self.residual);
-            self.lu.solve(&mut self.scratch);
+            self.factors.solve(&mut self.scratch);
             self.secants.apply(&mut self.scratch);
             if last.is_finite() && !renew {
                 self.secants.learn(&self.correction, &mut self.scratch);
@@ -260,7 +257,7 @@ impl<const D: usize> NewtonStepper<D> {
             let mut size: f64 = 0.0;
             for (state, correction) in self.state.iter_mut().zip(&self.scratch) {
                 *state -= correction;
-                // What is no number stays, and ends no iteration.
+                // NaN stays, and never ends the iteration.
                 let next = correction.abs();
                 size = if size > next || size.is_nan() { size } else { next };
             }
@@ -270,12 +267,12 @@ impl<const D: usize> NewtonStepper<D> {
                 first.get_or_insert(self.contraction);
             }
             if size * self.contraction <= self.tolerance * (1.0 - self.contraction) {
-                // The next stage begins without what this one's later corrections were told.
+                // The next stage begins without the updates of this one's later corrections.
                 self.contraction = first.unwrap_or((UNSEEN_GROWTH * self.contraction).min(SLOW));
                 return self.end_iteration(renew);
             }
             if size <= self.round_off && size >= SLOW * last {
-                // What round-off leaves, neither a new tangent nor smaller steps take away.
+                // Neither a new tangent nor smaller steps reduce round-off.
                 self.contraction = SLOW;
                 return self.end_iteration(renew);
             }
@@ -296,8 +293,7 @@ impl<const D: usize> NewtonStepper<D> {
         if self.time_limit.is_over() { Err(StepFailure::out_of_time()) } else { Ok(()) }
     }
 
-    /// Ends an iteration: where its tangent was just made, the nodes still have the velocities and the flux of the last
-    /// difference.
+    /// Ends an iteration. Where its tangent is new, the nodes still have the velocities and the flux of the last difference.
     fn end_iteration(&mut self, was_renewed: bool) -> Result<(), StepFailure> {
         if was_renewed {
             self.trial.residual(&self.state, &self.start, &mut self.residual)?;
@@ -316,9 +312,9 @@ impl<const D: usize> NewtonStepper<D> {
             &self.residual,
             &mut self.scratch,
             &mut self.tangent,
-            // Pores that a difference closes are open at the iterate itself.
+            // Pores that are closed by a perturbation are open at the iterate itself.
             |state, residual| {
-                // Differences that nobody will wait for are none.
+                // The run ends right after this.
                 if !time_limit.is_over() {
                     let _ = trial.residual(state, start, residual);
                 }
@@ -329,20 +325,14 @@ impl<const D: usize> NewtonStepper<D> {
         self.factored = Some(start.duration);
         enter(Phase::Factors);
         self.secants.clear();
-        self.lu.factor(&self.tangent).map_err(|singular| {
+        self.factors.factor(&self.tangent).map_err(|singular| {
             self.factored = None;
-            if self.time_limit.is_over() {
-                return StepFailure::out_of_time();
-            }
-            StepFailure {
-                kind: FailureKind::Singular,
-                reason: format!("the tangent has no pivot in row {}", singular.row),
-            }
+            no_pivot("the tangent", singular, self.time_limit)
         })
     }
 
-    /// A failure with what would be right, where the method is known to end so: in the plane, pressures that every
-    /// point has for itself leave modes that nothing holds once points have moved.
+    /// Adds advice to a failure of a method that is known to fail so: in the plane, pressures of the points' own leave modes
+    /// without stiffness once points have moved.
     fn with_remedy(&self, failure: StepFailure) -> StepFailure {
         let body = &self.trial.body;
         let is_known = D > 1
@@ -353,14 +343,14 @@ impl<const D: usize> NewtonStepper<D> {
             return failure;
         }
         let StepFailure { kind, reason } = failure;
-        let remedy = "in the plane a pressure of every point's own leaves its cell modes that nothing holds once points \
-                      have moved: take it by cells (GIMP-SRI, GIMP-SRI-patch), or weights on the initial \
-                      configuration (TL-GIMP)";
+        let remedy = "in the plane a pressure at every point leaves modes without stiffness once points have moved: use \
+                      pressures by cells (GIMP-SRI, GIMP-SRI-patch), or shape functions on the initial configuration \
+                      (TL-GIMP)";
         StepFailure { kind, reason: format!("{reason}; {remedy}") }
     }
 
-    /// Points that went on to other cells change which balances feel which unknowns. The factors that there are serve
-    /// on while they contract well, unless the unknowns themselves are others.
+    /// Points that moved to other cells change which balances depend on which unknowns. The factors are used as long as they
+    /// converge well, unless the unknowns themselves have changed.
     fn follow_structure(&mut self) {
         let (body, unknowns) = (&self.trial.body, &self.trial.unknowns);
         if self.pattern.is_of(body, unknowns) {
@@ -382,19 +372,19 @@ impl<const D: usize> NewtonStepper<D> {
         }
     }
 
-    /// Makes the pattern anew, with room for its factors.
+    /// Makes a new pattern, with room for its factors.
     fn renew_pattern(&mut self) {
         self.trial.unknowns.take_rows(&self.trial.body);
         self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
-        self.lu = BorderedLu::of_shape(&self.tangent, self.threads).within(self.time_limit);
+        self.factors = Factors::of_shape(&self.tangent, self.threads, self.time_limit);
         self.factored = None;
     }
 }
 
 impl<const D: usize> Stepper for NewtonStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, most_error: f64) -> Result<f64, StepFailure> {
-        // Smaller steps would hide that an explicit skeleton is beyond its limit.
+        // Smaller steps would hide that an explicit skeleton exceeds its limit.
         let halvings = if self.stages.len() == 1 { 0 } else { MOST_HALVINGS };
         (0..steps.count)
             .try_fold(0.0, |_, _| self.step_within(steps.dt, halvings, most_error))

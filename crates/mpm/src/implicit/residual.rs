@@ -1,5 +1,5 @@
-//! What the balances of a body leave at a trial state: the one residual of every nonlinear or inertial
-//! implicit step, made of the operators of the explicit one.
+//! The residual of the balances at a trial state, for every nonlinear or inertial implicit step, from the operators of
+//! the explicit step.
 
 use crate::drag::NodalDrag;
 use crate::implicit::trial::{Skeleton, Trial};
@@ -9,7 +9,7 @@ use crate::run::stepper::StepFailure;
 use crate::run::watch::pores_closed;
 use oedometer_soil::tensor::Vector;
 
-/// Where a stage starts: the unknowns' share that is known before it is solved.
+/// Where a stage starts: what is known before it is solved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StageStart<const D: usize> {
     /// `γ Δt`, s.
@@ -23,8 +23,8 @@ pub struct StageStart<const D: usize> {
 }
 
 impl<const D: usize> Trial<D> {
-    /// What the balances leave at increments of the unknowns, scaled: forces on the mixture that
-    /// nothing balances, and volume that a site gained beyond its storage.
+    /// Residual at increments of the unknowns, scaled: unbalanced forces on the mixture, and volume that a site gained
+    /// beyond its storage.
     ///
     /// # Errors
     /// [`StepFailure`] where the pores of a point are closed: there is no residual then.
@@ -49,8 +49,7 @@ impl<const D: usize> Trial<D> {
         }
     }
 
-    /// Nodal velocities of both phases at the end of the stage, and what is left of the mixture's
-    /// momentum.
+    /// Nodal velocities of both phases at the end of the stage, and the residual of the mixture's momentum balance.
     fn momentum(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         let per_duration = 1.0 / start.duration;
         residual.fill(0.0);
@@ -62,7 +61,7 @@ impl<const D: usize> Trial<D> {
             let drag = nodes.drag[node];
             let water_inertia = water_density * nodes.volume[node];
             let nodal_drag = NodalDrag { coefficient: drag, implicit: start.duration * drag };
-            // A skeleton whose motion is given does not give way to the water.
+            // The motion of the skeleton is given: the water does not change it.
             let balance = NodalBalance {
                 per_solid_mass: 0.0,
                 water_share: 0.0,
@@ -79,7 +78,7 @@ impl<const D: usize> Trial<D> {
                 let force = nodes.water_force[node][d];
                 let before = [start.solid_velocity[node][d], start.water_velocity[node][d]];
                 let water = match self.formulation {
-                    // An impermeable plate takes its water with it.
+                    // An impermeable plate carries the water along.
                     _ if is_tied => solid,
                     Formulation::QuasiStatic => solid + force / drag,
                     Formulation::UP => solid + (force - water_inertia * per_duration * solid_change) / drag,
@@ -109,7 +108,7 @@ impl<const D: usize> Trial<D> {
         }
     }
 
-    /// What is left of the mixture's volume at each site.
+    /// Residual of the mixture's volume balance at each site.
     fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         self.body.evaluate_volume_rates();
         let (body, unknowns) = (&self.body, &self.unknowns);

@@ -1,34 +1,31 @@
 //! The tangent of the residual, by differences of the residual itself.
 //!
-//! Unknowns that no balance feels together are moved together, in as many groups as the operators
-//! reach (Curtis, Powell & Reid 1974): about a dozen residuals in one dimension, whatever the
-//! number of cells. So the tangent is consistent with every law, configuration and continuity by
-//! construction: there is no second set of formulas that could disagree with the first.
+//! Unknowns that no balance contains together are perturbed together, in groups (Curtis, Powell & Reid 1974): about a dozen
+//! residuals in one dimension, for any number of cells. So the tangent is consistent with every law, configuration and
+//! continuity by construction: no second set of formulas could disagree with the first.
 
 use crate::body::Body;
-use crate::direct_solver::bordered::Bordered;
-use crate::implicit::unknown_groups::{Lists, groups_of};
+use crate::direct_solver::system::SystemMatrix;
 use crate::implicit::unknowns::Unknowns;
 use oedometer_soil::conductivity::ConductivityMean;
 
-/// Difference by which a scaled unknown is moved: the square root of the round-off leaves eight
-/// digits of a tangent whose unknowns are strains.
+/// Perturbation of a scaled unknown: about the square root of the round-off, which leaves eight digits of the tangent.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Room for what a point feels on a line.
+/// Usual number of unknowns that a point depends on in one dimension.
 const MOST_FELT: usize = 12;
 
-/// Where the operators' rows begin: what the pattern of the tangent depends on.
+/// Where the rows of the operators begin, on which the pattern of the tangent depends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Structure {
     basis: Vec<usize>,
     strain: Vec<usize>,
     cells: Vec<usize>,
-    /// Splines that end at the surface lose a node without any point's row beginning elsewhere.
+    /// Splines that end at the surface can lose a node although no row begins elsewhere.
     last_node: Option<usize>,
-    /// A domain that touches a face reaches the node beyond it without its row beginning elsewhere.
+    /// A domain that touches a face reaches the node beyond it although its row does not begin elsewhere.
     numbers: Vec<Option<usize>>,
-    /// Places of the pressures and their numbers.
+    /// Cells or points of the pressures, and their numbers.
     sites: Vec<usize>,
     pressures: Vec<usize>,
 }
@@ -47,24 +44,24 @@ impl Structure {
     }
 }
 
-/// Which balances feel which unknowns.
+/// Which balances depend on which unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     structure: Structure,
-    /// Rows that feel each unknown.
+    /// Rows that depend on each unknown.
     rows_of_column: Lists,
-    /// Unknowns that are moved together.
+    /// Unknowns that are perturbed together.
     groups: Vec<Vec<usize>>,
     /// Zeros in the shape of the tangent.
-    zeros: Bordered,
+    zeros: SystemMatrix,
 }
 
 impl Pattern {
     /// The pattern of a body on its present operators.
     pub fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
-        let columns_of_row = felt_unknowns(body, unknowns);
+        let columns_of_row = dependencies(body, unknowns);
         let rows_of_column = Lists::turned(&columns_of_row);
-        let zeros = Bordered::spanning(&unknowns.positions, unknowns.border, |visitor| {
+        let zeros = SystemMatrix::spanning(&unknowns.positions, unknowns.border, |visitor| {
             for (row, columns) in columns_of_row.iter().enumerate() {
                 for column in columns {
                     visitor(row, *column);
@@ -75,7 +72,7 @@ impl Pattern {
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
 
-    /// Whether it still is the pattern of a body; nothing is allocated.
+    /// Whether it is still the pattern of a body; nothing is allocated.
     pub fn is_of<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
         let known = &self.structure;
         known.basis == body.basis.first()
@@ -85,7 +82,7 @@ impl Pattern {
             && self.has_unknowns(unknowns)
     }
 
-    /// Whether its rows and columns still are those unknowns, whatever they feel.
+    /// Whether its rows and columns are still those unknowns, whatever depends on them.
     pub fn has_unknowns<const D: usize>(&self, unknowns: &Unknowns<D>) -> bool {
         let known = &self.structure;
         known.numbers == unknowns.displacement.as_flattened()
@@ -94,7 +91,7 @@ impl Pattern {
     }
 
     /// Zeros in the shape of the tangent.
-    pub fn zeros(&self) -> Bordered {
+    pub fn zeros(&self) -> SystemMatrix {
         self.zeros.clone()
     }
 
@@ -105,7 +102,7 @@ impl Pattern {
         state: &mut [f64],
         base: &[f64],
         scratch: &mut [f64],
-        tangent: &mut Bordered,
+        tangent: &mut SystemMatrix,
         mut residual: impl FnMut(&[f64], &mut [f64]),
     ) {
         tangent.clear();
@@ -124,8 +121,8 @@ impl Pattern {
     }
 }
 
-/// Unknowns that the balance of each unknown's row feels.
-fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<Vec<usize>> {
+/// Unknowns that each row depends on.
+fn dependencies<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<Vec<usize>> {
     let stride = body.grid.node_stride();
     let by_point: Vec<Vec<usize>> = (0..body.points.len())
         .map(|point| {
@@ -140,19 +137,19 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
             felt
         })
         .collect();
-    // Forces and drag of a node: of all points whose weights reach it.
+    // Forces and drag of a node depend on all points whose shape functions reach it.
     let mut by_node = vec![Vec::new(); body.nodes.len()];
     let first = body.basis.first();
     let parts = first.len() / by_point.len();
     let blocks_of = |point: usize| &first[point * parts..(point + 1) * parts];
     for (point, felt) in by_point.iter().enumerate() {
-        // Neighbours mostly feel the same, and need not say so twice.
+        // Neighbours mostly depend on the same unknowns: skip repetitions.
         if point == 0 || blocks_of(point) != blocks_of(point - 1) || *felt != by_point[point - 1] {
             body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
         }
     }
     if body.material.conductivity_mean == ConductivityMean::Chord {
-        feel_cells(body, &by_point, &mut by_node);
+        add_cell_means(body, &by_point, &mut by_node);
     }
     for (node, felt) in by_node.iter_mut().enumerate() {
         felt.extend(unknowns.displacement[node].into_iter().flatten());
@@ -170,7 +167,7 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
         row.sort_unstable();
         row.dedup();
     }
-    // Porosity and deformation of a site: of its points.
+    // Porosity and deformation of a site depend on its points.
     let is_by_cells = body.method.pressure.is_by_cells();
     for (point, felt) in by_point.iter().enumerate() {
         let place = if is_by_cells { body.cells.of_point[point] } else { point };
@@ -180,7 +177,7 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
             row.extend_from_slice(felt);
         }
     }
-    // Site that last felt each unknown: what neighbours feel alike is taken once.
+    // The last site that listed each unknown: each is listed once per site.
     let mut felt_by = vec![usize::MAX; unknowns.count];
     for (site, number) in unknowns.pressure.iter().enumerate() {
         let row = &mut rows[*number];
@@ -194,9 +191,9 @@ fn felt_unknowns<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<
     rows
 }
 
-/// Adds what the drag of a node feels by the means of the cells: all points of a cell with one that reaches
-/// the node.
-fn feel_cells<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_node: &mut [Vec<usize>]) {
+/// Adds what the drag of a node depends on through the cell means: all points of a cell with a point that reaches the
+/// node.
+fn add_cell_means<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_node: &mut [Vec<usize>]) {
     let mut by_cell = vec![Vec::new(); body.grid.cell_count()];
     for (cell, felt) in body.cells.of_point.iter().zip(by_point) {
         by_cell[*cell].extend_from_slice(felt);
@@ -216,6 +213,112 @@ fn feel_cells<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_node: 
             body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
                 by_node[node].extend_from_slice(&by_cell[*cell]);
             });
+        }
+    }
+}
+
+/// Puts each unknown into the first group in which no other shares a row with it.
+pub fn groups_of(rows_of_column: &Lists) -> Vec<Vec<usize>> {
+    let count = rows_of_column.count();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    // Groups that have an unknown in each row, one bit each, in so many words per row.
+    let (mut words, mut taken) = (1, vec![0_u64; count]);
+    let mut felt = vec![0_u64];
+    for column in 0..count {
+        felt.fill(0);
+        for row in rows_of_column.of(column) {
+            for (felt, taken) in felt.iter_mut().zip(&taken[row * words..]) {
+                *felt |= taken;
+            }
+        }
+        let free = felt.iter().position(|word| *word != u64::MAX);
+        let word = free.unwrap_or_else(|| {
+            taken = taken.chunks(words).flat_map(|row| row.iter().copied().chain([0])).collect();
+            words += 1;
+            felt.push(0);
+            words - 1
+        });
+        let bit = felt[word].trailing_ones() as usize;
+        for row in rows_of_column.of(column) {
+            taken[row * words + word] |= 1 << bit;
+        }
+        let group = word * u64::BITS as usize + bit;
+        if group == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[group].push(column);
+    }
+    groups
+}
+
+/// Lists of numbers in one allocation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lists {
+    /// Start of each list, and the end of the last.
+    starts: Vec<usize>,
+    items: Vec<usize>,
+}
+
+impl Lists {
+    /// Transposes lists: for each number the lists that contain it.
+    pub fn turned(lists: &[Vec<usize>]) -> Self {
+        let mut starts = vec![0; lists.len() + 1];
+        for item in lists.iter().flatten() {
+            starts[item + 1] += 1;
+        }
+        for item in 0..lists.len() {
+            starts[item + 1] += starts[item];
+        }
+        let (mut next, mut items) = (starts.clone(), vec![0; starts[lists.len()]]);
+        for (number, list) in lists.iter().enumerate() {
+            for item in list {
+                items[next[*item]] = number;
+                next[*item] += 1;
+            }
+        }
+        Self { starts, items }
+    }
+
+    /// Number of lists.
+    fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// One of the lists.
+    pub fn of(&self, number: usize) -> &[usize] {
+        &self.items[self.starts[number]..self.starts[number + 1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknowns_of_a_group_share_no_row_and_there_are_no_more_groups_than_a_row_feels() {
+        // Bands of a width, and for more groups than a word has bits a row that feels all.
+        for (count, reach, full) in [(40, 2, false), (150, 40, false), (70, 1, true)] {
+            let felt = |row: usize| row.saturating_sub(reach)..(row + reach + 1).min(count);
+            let mut columns: Vec<Vec<usize>> = (0..count).map(|row| felt(row).collect()).collect();
+            if full {
+                columns[count - 1] = (0..count).collect();
+            }
+            let rows = Lists::turned(&columns);
+            assert!(
+                columns
+                    .iter()
+                    .enumerate()
+                    .all(|(row, felt)| felt.iter().all(|one| rows.of(*one).contains(&row)))
+            );
+            let groups = groups_of(&rows);
+            assert_eq!(groups.len(), if full { count } else { 2 * reach + 1 });
+            assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), count, "each unknown once");
+            for (row, felt) in columns.iter().enumerate() {
+                for group in &groups {
+                    let shared = group.iter().filter(|one| felt.contains(one)).count();
+                    assert!(shared < 2, "row {row} feels {shared} of a group");
+                }
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
-//! A body that is moved to trial states about an anchored one, and ends a step at one of them.
+//! A body at trial states about an anchored state, and the end of a step at one of them.
 //!
-//! Within a step points never move: weights stay on the configuration of its start, and gradients are
-//! pushed forward from there.
+//! Points do not move within a step: shape functions stay on the configuration of its start, and gradients are pushed
+//! forward from there.
 
 use crate::body::Body;
 use crate::implicit::unknowns::Unknowns;
@@ -20,14 +20,14 @@ pub enum Skeleton {
     Implicit,
 }
 
-/// A body that is moved to trial states about an anchored one.
+/// A body at trial states about an anchored one.
 #[derive(Clone, Debug)]
 pub struct Trial<const D: usize> {
-    /// The body; its nodes hold what the last residual was made of.
+    /// The body; its nodes hold the quantities of the last residual.
     pub body: Body<D>,
     /// Numbering and scales.
     pub unknowns: Unknowns<D>,
-    /// Terms of the balances.
+    /// Which terms the balances have.
     pub formulation: Formulation,
     /// Time level of the effective stress.
     pub skeleton: Skeleton,
@@ -37,9 +37,9 @@ pub struct Trial<const D: usize> {
     pub start: Points<D>,
     /// Points of the anchored state.
     pub anchor: Points<D>,
-    /// Their deformation gradients, where points move since the start of the step.
+    /// Deformation gradients of the anchored state, from the start of the step where points move.
     pub(super) anchor_deformation: Vec<Tensor<D>>,
-    /// What a hyperelastic law wants beside them: their deformation from the start of the run to that of the step.
+    /// Deformation gradients from the start of the run to the start of the step, for hyperelastic laws.
     pub(super) carried: Vec<Tensor<D>>,
     /// Velocities of skeleton and water at the nodes in the anchored state, m/s.
     pub velocity: [Vec<Vector<D>>; 2],
@@ -80,30 +80,30 @@ impl<const D: usize> Trial<D> {
         trial
     }
 
-    /// Lets a share of the load act that was there at the start.
+    /// Applies a share of the full load.
     pub fn set_load_share(&mut self, share: f64) {
         let body = &mut self.body;
         body.surface.load = self.full_load * share;
         body.apply_loads();
     }
 
-    /// Begins a step at a time, s, where something acts on every point: finds who is at the centres of the cells.
+    /// Begins a step at a time, s: finds the points at the centres of the cells for body forces and sources.
     pub fn begin_step(&mut self, time: f64) {
         self.body.begin_forced_step(time);
         self.body.find_centres();
     }
 
-    /// Lets act what acts so many seconds after the start of the step.
+    /// Applies body forces and sources of so many seconds after the start of the step.
     pub fn act_later(&mut self, later: f64) {
         self.body.act_later(later);
     }
 
-    /// What passes the surface now, per area of it, m/s.
+    /// Relative flux through the surface now, per area, m/s.
     pub fn outflow(&self) -> f64 {
         self.body.outflow_of(&self.body.nodes.flux)
     }
 
-    /// Rate of the settlement now, m/s: the plate's where there is one, the mean of the surface elsewhere.
+    /// Rate of the settlement now, m/s: of the plate where there is one, else the mean of the surface.
     pub fn settlement_rate(&self) -> f64 {
         let (body, velocity) = (&self.body, &self.body.nodes.solid_velocity);
         match &body.plate {
@@ -116,7 +116,7 @@ impl<const D: usize> Trial<D> {
         }
     }
 
-    /// Makes the present state the one that increments count from.
+    /// Makes the present state the one that increments are measured from.
     fn anchor_here(&mut self) {
         self.anchor.clone_from(&self.body.points);
         let deformation = self.anchor.inverse_deformation.iter().map(|tensor| inverse(tensor).0);
@@ -144,8 +144,8 @@ impl<const D: usize> Trial<D> {
         }
     }
 
-    /// Pressures of the points from those at the sites: in place, and by the rows of a recovery that would have to
-    /// fit its fields anew.
+    /// Recovers the pressures of the points from those at the sites: in place, or by rows where the recovery would have to
+    /// refit its fields.
     fn take_pressures(&mut self, increments: &[f64]) {
         let (unknowns, scale) = (&self.unknowns, self.unknowns.scales.pressure);
         self.body.points.pressure.copy_from_slice(&self.anchor.pressure);
@@ -167,8 +167,8 @@ impl<const D: usize> Trial<D> {
         });
     }
 
-    /// Ends a step at increments of the unknowns, after so much flux through the surface, m: the points keep
-    /// the state, and where they move, the operators follow them.
+    /// Ends a step at increments of the unknowns, after so much flux through the surface, m. The points keep the state;
+    /// where they move, the operators are rebuilt.
     pub fn end_step(&mut self, increments: &[f64], flux: f64) {
         self.body.surface_flux += flux;
         self.move_to(increments);
@@ -212,7 +212,7 @@ impl<const D: usize> Trial<D> {
         self.anchor_here();
     }
 
-    /// Gives the points what their nodes gained in velocity (FLIP).
+    /// Adds the velocity increments of the nodes to the points (FLIP).
     fn accelerate_points(&mut self) {
         let body = &mut self.body;
         let stride = *body.grid.node_stride();
@@ -233,8 +233,8 @@ impl<const D: usize> Trial<D> {
         }
     }
 
-    /// Takes a point to its new place, with its domain, and forgets the step's deformation: the
-    /// next one starts from there.
+    /// Moves a point with its domain to its new position, and resets the deformation of the step: the next one starts
+    /// there.
     fn carry_point(&mut self, point: usize, moved: &Vector<D>) {
         let follows = self.body.method.domains_follow();
         let points = &mut self.body.points;

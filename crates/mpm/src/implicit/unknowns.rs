@@ -1,6 +1,7 @@
 //! The unknowns of an implicit step and their order: free components of the skeleton's
 //! displacement at the nodes, and pressures where the method takes them.
 
+use crate::assembled::stiffness::NodeBlocks;
 use crate::body::Body;
 use crate::method::PressureIntegration;
 use crate::operators::rigid_plate::NORMAL;
@@ -8,14 +9,14 @@ use crate::operators::volumetric::VolumetricRows;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Vector;
 
-/// Scales that make the unknowns and the equations pure numbers of like size.
+/// Scales that make unknowns and equations dimensionless and of similar size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Displacement of one, m: the cell.
+    /// Unit of displacement, m: the cell size.
     pub length: f64,
-    /// Pressure of one, Pa: the oedometric modulus.
+    /// Unit of pressure, Pa: the oedometric modulus.
     pub pressure: f64,
-    /// Force of one, N: that pressure on the face of a cell.
+    /// Unit of force, N: the unit pressure on the face of a cell.
     pub force: f64,
 }
 
@@ -32,25 +33,25 @@ impl Scales {
 /// direction of the grid: that keeps the band of the matrices narrow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknowns<const D: usize> {
-    /// Unknown of each component at each node, where it is free: one for all that go with a rigid plate, the last.
+    /// Unknown of each component of each node, where it is free. All nodes tied to a rigid plate share the last one.
     pub displacement: Vec<[Option<usize>; D]>,
     /// Unknown of each site.
     pub pressure: Vec<usize>,
-    /// `D` and `R` of the method: those of an earlier step where `has_old_rows`, but for their sites.
+    /// `D` and `R` of the method; the coefficients, but not the sites, are those of an earlier step where `has_old_rows`.
     pub rows: VolumetricRows<D>,
-    /// Whether the coefficients of the rows are to be made before somebody takes them.
+    /// Whether the coefficients of the rows have to be updated before they are used.
     has_old_rows: bool,
     /// Number of unknowns.
     pub count: usize,
-    /// Where each unknown before the border lies, `[unknown][component]`, m.
+    /// Position of each unknown before the border, `[unknown][component]`, m.
     pub positions: Vec<Vector<D>>,
-    /// Unknowns at the end that balances everywhere feel: that of a rigid plate.
+    /// Number of unknowns at the end that balances everywhere depend on: 1 with a rigid plate, else 0.
     pub border: usize,
     /// Scales of the unknowns and of their equations.
     pub scales: Scales,
 }
 
-/// What an unknown stands for, while they are sorted.
+/// What an unknown stands for, during sorting.
 #[derive(Clone, Copy)]
 enum UnknownKind {
     Displacement { node: usize, direction: usize },
@@ -58,24 +59,39 @@ enum UnknownKind {
 }
 
 impl<const D: usize> Unknowns<D> {
-    /// Numbers the unknowns of a body on its present operators.
+    /// Numbers displacements and pressures of a body on its present operators.
     pub fn of(body: &Body<D>) -> Self {
+        let rows = body.volumetric_rows();
+        let position = |site: &usize| match body.method.pressure {
+            PressureIntegration::Points => body.points.position[*site],
+            PressureIntegration::Sri | PressureIntegration::Mean => body.grid.cell_centre(*site),
+        };
+        let sites: Vec<Vector<D>> = rows.sites.iter().map(position).collect();
+        Self::numbered(body, rows, &sites)
+    }
+
+    /// Numbers the displacements of a body alone; `rows` are its volumetric operators.
+    pub fn of_displacements(body: &Body<D>, rows: VolumetricRows<D>) -> Self {
+        Self::numbered(body, rows, &[])
+    }
+
+    fn numbered(body: &Body<D>, rows: VolumetricRows<D>, sites: &[Vector<D>]) -> Self {
         let mut unknowns = Self {
             displacement: Vec::new(),
             pressure: Vec::new(),
-            rows: body.volumetric_rows(),
+            rows,
             has_old_rows: false,
             count: 0,
             positions: Vec::new(),
             border: usize::from(body.plate.is_some()),
             scales: Scales::of::<D>(&body.material, body.grid.cell_size),
         };
-        unknowns.number(body);
+        unknowns.number(body, sites);
         unknowns
     }
 
-    /// Follows a body whose points have moved on: what most steps leave as it was, numbers and sites, stays, and rows that
-    /// only a new tangent takes wait for it.
+    /// Follows a body whose points have moved. Most steps leave numbers and sites as they were; rows that only a new
+    /// tangent needs are updated with it.
     pub fn follow(&mut self, body: &Body<D>) {
         if !self.has_numbers_of(body) {
             *self = Self::of(body);
@@ -87,7 +103,7 @@ impl<const D: usize> Unknowns<D> {
         }
     }
 
-    /// Makes the rows anew where they are old.
+    /// Updates the rows where they are old.
     pub fn take_rows(&mut self, body: &Body<D>) {
         if self.has_old_rows {
             self.rows = body.volumetric_rows();
@@ -95,8 +111,8 @@ impl<const D: usize> Unknowns<D> {
         }
     }
 
-    /// Whether a body has the sites and free components that were numbered, at places that stay; one with a plate is
-    /// not looked at.
+    /// Whether a body still has the sites and free components that were numbered, at positions that do not change; false
+    /// with a plate.
     fn has_numbers_of(&self, body: &Body<D>) -> bool {
         body.method.pressure.is_by_cells()
             && body.plate.is_none()
@@ -109,19 +125,32 @@ impl<const D: usize> Unknowns<D> {
                 .all(|(numbers, free)| (0..D).all(|d| numbers[d].is_some() == (free[d] > 0.0)))
     }
 
-    fn number(&mut self, body: &Body<D>) {
-        let (grid, nodes, sites) = (&body.grid, &body.nodes, &self.rows.sites);
-        let site_position = |site: usize| match body.method.pressure {
-            PressureIntegration::Points => body.points.position[sites[site]],
-            PressureIntegration::Sri | PressureIntegration::Mean => grid.cell_centre(sites[site]),
-        };
+    /// Lists the entries of a matrix of blocks between nodes that are not zero: row, column and value.
+    pub fn visit_blocks(&self, blocks: &NodeBlocks<D>, mut visitor: impl FnMut(usize, usize, f64)) {
+        for (rows, blocks) in self.displacement.iter().zip(&blocks.rows) {
+            for (d, row) in rows.iter().enumerate() {
+                let Some(row) = row else { continue };
+                for (other, block) in blocks {
+                    for (column, value) in self.displacement[*other].iter().zip(&block[d]) {
+                        if let Some(column) = column.filter(|_| *value != 0.0) {
+                            visitor(*row, column, *value);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn number(&mut self, body: &Body<D>, sites: &[Vector<D>]) {
+        let (grid, nodes) = (&body.grid, &body.nodes);
         let mut sorted: Vec<(Vector<D>, UnknownKind)> = Vec::new();
         for node in 0..nodes.len() {
             for direction in (0..D).filter(|d| nodes.free[node][*d] > 0.0 && !body.is_tied(node, *d)) {
                 sorted.push((grid.node_position(node), UnknownKind::Displacement { node, direction }));
             }
         }
-        sorted.extend((0..sites.len()).map(|site| (site_position(site), UnknownKind::Pressure { site })));
+        let pressures = sites.iter().enumerate();
+        sorted.extend(pressures.map(|(site, position)| (*position, UnknownKind::Pressure { site })));
         let slowest = (0..D).max_by_key(|d| grid.cells[*d]).unwrap_or(0);
         let key = |place: &Vector<D>| {
             let mut key = *place;
