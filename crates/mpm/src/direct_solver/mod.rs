@@ -9,10 +9,44 @@ mod frontal;
 mod sparse_matrix;
 pub mod system;
 
+use crate::wide::wide;
+
+/// Independent partial sums of a dot product.
+const PARTS: usize = 16;
+
 /// A matrix that has no inverse to working precision. A factorisation that was given up because the time of the run was
 /// over ends with it too; the caller, who knows the time limit, tells the two apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Singular {
     /// The row without a pivot.
     pub row: usize,
+}
+
+/// Dot product by independent partial sums.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    wide!({
+        let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<PARTS>(), b.as_chunks::<PARTS>());
+        let mut sums = [0.0; PARTS];
+        for (a, b) in a.iter().zip(b) {
+            for part in 0..PARTS {
+                sums[part] += a[part] * b[part];
+            }
+        }
+        let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(a, b)| a * b).sum();
+        sums.iter().sum::<f64>() + rest
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_products_take_every_place() {
+        for count in [0, 1, PARTS - 1, PARTS, 5 * PARTS + 3] {
+            let numbers: Vec<f64> = (1..=count).map(|i| i as f64).collect();
+            let exact = count * (count + 1) * (2 * count + 1) / 6;
+            assert_eq!(dot(&numbers, &numbers), exact as f64, "{count}");
+        }
+    }
 }

@@ -5,10 +5,10 @@
 //! costs one more right-hand side: with `A w = c` the last unknown is `(g − rᵀ A⁻¹ f)/(d − rᵀ w)` (block elimination;
 //! Golub & Van Loan 2013, section 3.2).
 
-use crate::direct_solver::Singular;
 use crate::direct_solver::banded::{Banded, BandedLu};
 use crate::direct_solver::frontal::FrontalLu;
 use crate::direct_solver::sparse_matrix::SparseMatrix;
+use crate::direct_solver::{Singular, dot};
 use crate::time_limit::TimeLimit;
 
 /// Diagonals of a band beyond which a sparse factorisation is faster.
@@ -211,10 +211,6 @@ impl Factors {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
