@@ -19,7 +19,7 @@ pub(crate) mod watch;
 pub use schedule::{Kernel, Observer, Schedule, TimeStepRule};
 
 use crate::body::{Body, Problem};
-use crate::direct_solver::singular::Singular;
+use crate::direct_solver::Singular;
 use crate::double_point::stepper::DoublePointStepper;
 use crate::implicit::linear::LinearStepper;
 use crate::implicit::newton::NewtonStepper;
