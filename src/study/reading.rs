@@ -193,9 +193,8 @@ impl Mistakes<'_> {
                     self.of_value(&schema["items"], one, key);
                 }
             }
-            DeValue::String(word) if schema["enum"].is_array() => {
-                let names: Vec<&str> =
-                    schema["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            DeValue::String(word) if !names_of(schema).is_empty() => {
+                let names = names_of(schema);
                 if !names.contains(&word.as_ref()) {
                     let message = format!("no {key} is called `{}`", cut(word));
                     self.found.push(Diagnostic::at(value.span(), message, one_of(word, &names)));
@@ -246,6 +245,13 @@ impl Mistakes<'_> {
             help,
         ));
     }
+}
+
+/// The words that a schema allows, where it names them.
+fn names_of(schema: &Value) -> Vec<&str> {
+    let listed = schema["enum"].as_array().into_iter().flatten();
+    let described = schema["oneOf"].as_array().into_iter().flatten().map(|choice| &choice["const"]);
+    listed.chain(described).filter_map(Value::as_str).collect()
 }
 
 /// The kind of value that a schema describes.
