@@ -382,7 +382,7 @@ fn a_full_integration_that_ends_in_the_plane_names_the_remedy() {
         })
         .collect();
     assert!(!reasons.is_empty());
-    assert!(reasons.iter().all(|reason| reason.contains("take it by cells (GIMP-SRI")), "{reasons:?}");
+    assert!(reasons.iter().all(|reason| reason.contains("use pressures by cells (GIMP-SRI")), "{reasons:?}");
     assert_eq!(loaded_plane("TL-GIMP", [3.5e5, 1.0, 2e6], [8, 1], 0.14).status, RunStatus::Ok);
     assert_eq!(loaded_plane("GIMP-SRI", [2e5, 0.5, 1e7], [4, 2], 0.02).status, RunStatus::Ok);
 }
