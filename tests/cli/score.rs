@@ -190,7 +190,7 @@ fn meshes_that_stop_at_times_of_their_own_are_one_series() {
     let told = with(&["--below", "1"]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert!(told.out.contains("asymptotic") && told.out.contains("order 2.0"), "{}", told.out);
-    assert!(told.out.contains("times differ between the meshes, by up to 4.9e-6"), "{}", told.out);
+    assert!(told.out.contains("times differ between the meshes by up to 4.9e-6"), "{}", told.out);
     let told = with(&["--time-tolerance", "1e-7"]);
     assert!(told.out.contains("not-evaluable") && told.err.contains("time-missing"), "{}", told.err);
     assert_eq!(with(&["--time-tolerance", "1e-7", "--strict"]).code, 1);
