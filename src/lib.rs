@@ -37,7 +37,7 @@
 //!
 //! | equation | what it is | place |
 //! | :-- | :-- | :-- |
-//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/momentum.rs:accelerations` |
+//! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/drag/mod.rs:accelerations` |
 //! | 3, 5 | porosity | `crates/soil/src/material.rs:porosity_at` |
 //! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/body.rs:volume_rate` |
 //! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/conductivity.rs:conductivity` |
@@ -49,7 +49,7 @@
 //! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `crates/exact/src/mandel/sums.rs:sum`, `crates/exact/src/mandel/sums.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `crates/mpm/src/drag/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
-//! | 18 | rigid plate | `crates/mpm/src/operators/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
+//! | 18 | rigid plate | `crates/mpm/src/loaded_body.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
 //! | 19 | own weight, free water | `crates/mpm/src/weighing_body.rs:add_weight` |
 //! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |
 //! | 21 | domains of water points | `crates/mpm/src/double_point/water_points.rs:take_domains` |

@@ -1,10 +1,10 @@
 //! The discretised body: points, nodes and the operators that join them.
 
 use crate::forcing::{Forced, Forcing};
+use crate::loaded_body::RigidPlate;
 use crate::method::{Configuration, Method};
 use crate::operators::corners::{Domains, build_corners, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
-use crate::operators::rigid_plate::RigidPlate;
 use crate::operators::stencil::PointStencils;
 use crate::operators::strain_gradient::StrainOperator;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
@@ -31,13 +31,13 @@ pub struct Problem<const D: usize> {
     pub support: Support<D>,
     /// Points in their initial state.
     pub points: Points<D>,
-    /// Points of the water in their initial state, where it has a layer of its own.
+    /// Points of the water in their initial state, where it has points of its own.
     pub water: Option<Points<D>>,
     /// Soil.
     pub material: Material,
     /// Operators.
     pub method: Method,
-    /// Configuration of the weights.
+    /// Configuration of the shape functions.
     pub configuration: Configuration,
     /// Load on the surface, Pa.
     pub load: f64,
@@ -66,7 +66,7 @@ pub struct Problem<const D: usize> {
 }
 
 impl<const D: usize> Problem<D> {
-    /// The same problem with all loads, stresses and motions of its start times a factor.
+    /// Scales all loads, stresses and motions of the start by a factor.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.load *= factor;
@@ -105,9 +105,9 @@ pub struct Body<const D: usize> {
     pub stress_law: StressLaw,
     /// Operators.
     pub method: Method,
-    /// Configuration of the weights.
+    /// Configuration of the shape functions.
     pub configuration: Configuration,
-    /// Whether gradients are pushed forward from where the weights were built: on the initial
+    /// Whether gradients are pushed forward from where the shape functions were built: on the initial
     /// configuration always, and within an implicit step that moves points.
     pub is_pushed_forward: bool,
     /// Loaded surface.
@@ -266,7 +266,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Brings operators and masses up to the points' places and volumes: all of them where points
-    /// move, what follows the volumes where weights stay on the initial configuration.
+    /// move, what follows the volumes where shape functions stay on the initial configuration.
     pub fn follow_points(&mut self) {
         self.follow_places();
         if self.configuration.deforms() {

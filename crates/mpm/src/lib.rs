@@ -27,7 +27,6 @@ pub mod forcing;
 pub mod implicit;
 mod loaded_body;
 pub mod method;
-mod momentum;
 pub mod operators;
 mod probation;
 pub mod run;

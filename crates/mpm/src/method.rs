@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::LazyLock;
 
-/// Weights between points and nodes.
+/// Shape functions between points and nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// Piecewise linear hat functions: the original MPM.
@@ -115,7 +115,7 @@ impl Recovery {
     }
 }
 
-/// What remembers stress, pressure and volume while points move through the mesh.
+/// Where stress, pressure and volume are kept while points move through the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Memory {
     /// Each point, all that ever happened to it.
@@ -135,12 +135,12 @@ impl Memory {
     }
 }
 
-/// Configuration on which weights are built.
+/// Configuration on which shape functions are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Configuration {
-    /// Points move and weights follow them.
+    /// Points move and shape functions follow them.
     Updated,
-    /// Finite strain with weights that stay on the initial configuration: gradients are pushed
+    /// Finite strain with shape functions that stay on the initial configuration: gradients are pushed
     /// forward by the inverse deformation gradient.
     Total,
     /// Nothing moves: infinitesimal strain on the initial configuration.
@@ -166,7 +166,7 @@ impl Configuration {
 /// The four operators of a method; `configuration` is left to the scene where it is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Method {
-    /// Weights between points and nodes.
+    /// Shape functions between points and nodes.
     pub basis: Basis,
     /// Strain gradient for the effective stress.
     pub strain: StrainGradient,
@@ -174,10 +174,10 @@ pub struct Method {
     pub pressure: PressureIntegration,
     /// Way of the pressure increment back to the points; full integration needs none.
     pub recovery: Recovery,
-    /// What remembers the state while points move.
+    /// Where the state is kept while points move.
     #[serde(default, skip_serializing_if = "Memory::is_points")]
     pub memory: Memory,
-    /// Configuration of the weights, where the method insists on one.
+    /// Configuration of the shape functions, where the method insists on one.
     pub configuration: Option<Configuration>,
 }
 
@@ -211,9 +211,9 @@ static KNOWN: LazyLock<Vec<(Method, String)>> = LazyLock::new(|| {
     Method::names().into_iter().filter_map(with_method).collect()
 });
 
-/// Prefix of the names of methods with weights on the initial configuration.
+/// Prefix of the names of methods with shape functions on the initial configuration.
 const TOTAL_PREFIX: &str = "TL-";
-/// Suffix of the names of methods whose cells remember.
+/// Suffix of the names of methods with the cell-averaged projection.
 const CELLS_SUFFIX: &str = "-cells";
 
 impl Method {
@@ -233,7 +233,7 @@ impl Method {
     }
 
     /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
-    /// weights on the initial configuration, or with the suffix `-cells` for cells that remember.
+    /// shape functions on the initial configuration, or with the suffix `-cells` for the cell-averaged projection.
     pub fn named(name: &str) -> Option<Self> {
         if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
             let method = Self::named(bare).filter(|method| method.can_move())?;
@@ -301,7 +301,7 @@ impl Method {
         matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
     }
 
-    /// Whether the weights follow moving points, given the scene's own choice.
+    /// Whether the shape functions follow moving points, given the scene's own choice.
     pub fn configuration_or(&self, scene: Configuration) -> Configuration {
         self.configuration.unwrap_or(scene)
     }

@@ -1,9 +1,9 @@
 //! Constraints on the rows of a frozen step, as grid arrays have them: rows that go together under a rigid plate
-//! (`operators::rigid_plate`), and rows where the water slides past a skeleton that the base holds (`Nodes::sliding`).
+//! (`loaded_body`), and rows where the water slides past a skeleton that the base holds (`Nodes::sliding`).
 
 use crate::assembled::state::{FrozenState, MARGIN, SOLID, WATER};
 use crate::body::Body;
-use crate::operators::rigid_plate::NORMAL;
+use crate::loaded_body::NORMAL;
 use oedometer_soil::tensor::Vector;
 
 /// Rows of one velocity along the plate's normal; none where there is no plate.

@@ -9,9 +9,8 @@ use crate::assembled::state::{
     Displacements, FIELDS, FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes,
 };
 use crate::body::Body;
-use crate::drag::NodalDrag;
+use crate::drag::{NodalBalance, NodalDrag};
 use crate::explicit::ExplicitSettings;
-use crate::momentum::NodalBalance;
 use crate::operators::volumetric::VolumetricRows;
 use crate::run::profile::{Phase, enter};
 use crate::wide::wide;

@@ -80,7 +80,7 @@ impl<const D: usize> DoublePoint<D> {
         };
         let presses_by_cells = moves && method.pressure == PressureIntegration::Sri;
         let sites = if method.pressure.is_by_cells() { body.grid.cell_count() } else { count };
-        let mut layers = Self {
+        let mut double = Self {
             basis: method.basis.stencils(count),
             cells: Cells::new(&body.grid, count),
             recovery: RecoveryOperator::of(method, &body.grid, count),
@@ -97,9 +97,9 @@ impl<const D: usize> DoublePoint<D> {
             water,
             body,
         };
-        layers.build_water_operators();
-        layers.map_water();
-        layers
+        double.build_water_operators();
+        double.map_water();
+        double
     }
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
@@ -290,14 +290,14 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_moves_equal_layers_are_one_to_round_off() {
+    fn where_nothing_moves_equal_sets_are_one_to_round_off() {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         let names =
             ["MPM", "GIMP", "GIMP-SRI", "GC-SRI-patch", "GIMP-SRI-nodal", "GIMP-mean", "VP", "GC-Bbar-patch"];
         for name in names.into_iter().chain(["GIMP-null-space"]) {
             for scene in [SceneKind::SingleMode, SceneKind::Terzaghi] {
-                let layers = |of_water| solved::<1>(problem(scene, name, [3, of_water], 1.0), implicit, 0.01);
-                assert_same(&layers(0), &layers(3), name);
+                let sets = |of_water| solved::<1>(problem(scene, name, [3, of_water], 1.0), implicit, 0.01);
+                assert_same(&sets(0), &sets(3), name);
             }
         }
         for settings in [
@@ -305,21 +305,21 @@ mod tests {
             ExplicitSettings { mapping_back: false, ..implicit },
             ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..implicit },
         ] {
-            let layers = |of_water| {
+            let sets = |of_water| {
                 solved::<1>(
                     problem(SceneKind::SingleMode, "GIMP-SRI-patch", [2, of_water], 1.0),
                     settings,
                     0.01,
                 )
             };
-            assert_same(&layers(0), &layers(2), "settings");
+            assert_same(&sets(0), &sets(2), "settings");
         }
         // In the plane too, from an undrained start under a cosine.
         for name in ["GIMP-SRI-patch", "GIMP"] {
-            let layers = |of_water| {
+            let sets = |of_water| {
                 solved::<2>(problem(SceneKind::CosineLayer, name, [2, of_water], 1.0), implicit, 1e-3)
             };
-            assert_same(&layers(0), &layers(2), name);
+            assert_same(&sets(0), &sets(2), name);
         }
     }
 
@@ -346,21 +346,21 @@ mod tests {
             let outcome = solved::<1>(problem(SceneKind::XieLeo, name, [4, 4], 2e5), implicit, 0.15);
             assert_eq!(outcome.status, RunStatus::Ok, "{name}");
             let last = &outcome.snapshots[1];
-            let layers = last.totals.double_point.expect("two sets of points");
+            let double = last.totals.double_point.expect("two sets of points");
             // Grains and water are incompressible: what left are the pores that were lost.
             let lost = last.settlement / 0.3;
-            assert!(layers.water_left > 0.05 && layers.water_points < 20, "{name} {layers:?}");
-            assert!((layers.water_left - lost).abs() < 5e-3, "{name}: {} for {lost}", layers.water_left);
-            assert!((layers.water_volume / layers.pore_volume - 1.0).abs() < 5e-3, "{name}: {layers:?}");
+            assert!(double.water_left > 0.05 && double.water_points < 20, "{name} {double:?}");
+            assert!((double.water_left - lost).abs() < 5e-3, "{name}: {} for {lost}", double.water_left);
+            assert!((double.water_volume / double.pore_volume - 1.0).abs() < 5e-3, "{name}: {double:?}");
             // Consolidation begins at the load, the first front overshoots it, and nothing burst on the way.
-            assert!((1.9e5..2.8e5).contains(&layers.largest_pressure), "{name}: {layers:?}");
+            assert!((1.9e5..2.8e5).contains(&double.largest_pressure), "{name}: {double:?}");
             assert!(last.totals.internal_force_imbalance < 1e-12, "{name}");
             assert!((last.totals.solid_mass / outcome.start.totals.solid_mass - 1.0).abs() < 1e-12, "{name}");
         }
     }
 
     #[test]
-    fn a_plane_column_of_two_layers_is_the_column() {
+    fn a_plane_column_of_two_sets_is_the_column() {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         // The domains of CPDI's skeleton could turn, and the water's keep their axes.
         for method in ["GIMP-SRI-patch", "CPDI-SRI-patch"] {
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn an_implicit_run_in_two_layers_ends_with_a_sentence() {
+    fn an_implicit_run_of_two_sets_ends_with_a_sentence() {
         let schedule = Schedule {
             outputs: vec![1e-3],
             history: Vec::new(),

@@ -1,4 +1,4 @@
-//! What a snapshot tells of two layers: the skeleton at its own points, the pressure at those of the water.
+//! What a snapshot tells of double-point MPM: the skeleton at its own points, the pressure at those of the water.
 
 use crate::double_point::DoublePoint;
 use crate::run::results::snapshot::{Means, Snapshot, Totals, WaterSamples, WaterTotals};
@@ -6,7 +6,7 @@ use crate::state::points::Points;
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
 
-/// What a run of two layers counts from.
+/// The state that a run counts from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoublePointStart<const D: usize> {
     points: Points<D>,
@@ -15,13 +15,13 @@ pub struct DoublePointStart<const D: usize> {
 
 impl<const D: usize> DoublePointStart<D> {
     /// The present state as the start.
-    pub fn of(layers: &DoublePoint<D>) -> Self {
-        Self { points: layers.body.points.clone(), compression: layers.water_compression() }
+    pub fn of(double: &DoublePoint<D>) -> Self {
+        Self { points: double.body.points.clone(), compression: double.water_compression() }
     }
 }
 
 impl<const D: usize> DoublePoint<D> {
-    /// Samples both layers at `time`. Beside the skeleton's stress stands the pressure of the nearest water point; the
+    /// Samples both sets of points at `time`. Beside the skeleton's stress stands the pressure of the nearest water point; the
     /// pressures themselves, with the initial places of the soil that the water is in, are the water's samples.
     pub fn snapshot(&self, time: f64, settlement: f64, start: &DoublePointStart<D>) -> Snapshot {
         let mut body = self.body.clone();
@@ -113,14 +113,14 @@ impl<const D: usize> DoublePoint<D> {
     }
 
     fn unbalanced_force(&self) -> f64 {
-        let mut layers = self.clone();
-        layers.map_forces();
-        let nodes = &layers.body.nodes;
+        let mut double = self.clone();
+        double.map_forces();
+        let nodes = &double.body.nodes;
         let forces = nodes.mixture_force.iter().flatten().zip(nodes.free.iter().flatten());
         forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
     }
 
-    /// Sum of the internal forces of both layers over the sum of their sizes: each layer's weights are a partition
+    /// Sum of the internal forces of both sets over the sum of their sizes: the shape functions of each are a partition
     /// of unity on whatever share of its domains counts.
     fn internal_force_imbalance(&self) -> f64 {
         let (points, water, stride) = (&self.body.points, &self.water, self.body.grid.node_stride());

@@ -1,4 +1,4 @@
-//! The explicit step of two layers on its way through time.
+//! The explicit step of double-point MPM as the driver takes it.
 
 use crate::body::Body;
 use crate::double_point::DoublePoint;
@@ -15,9 +15,9 @@ use crate::run::watch::lost_point;
 use crate::state::points::Points;
 use oedometer_soil::tensor::Tensor;
 
-/// Two layers that go by explicit steps.
+/// Two sets of points that go by explicit steps.
 pub struct DoublePointStepper<const D: usize> {
-    layers: DoublePoint<D>,
+    double: DoublePoint<D>,
     start: DoublePointStart<D>,
     initial_height: f64,
     /// Settlement of the start, m.
@@ -42,14 +42,14 @@ impl<const D: usize> DoublePointStepper<D> {
     ) -> Self {
         let displacement = is_settled.then(|| body.nodes.displacement.clone());
         let load = GrowingLoad::of(&body, plan.loading_time);
-        let mut layers = DoublePoint::new(body, lattice, gradient);
+        let mut double = DoublePoint::new(body, lattice, gradient);
         if let Some(displacement) = displacement {
-            layers.compress_by(&displacement);
+            double.compress_by(&displacement);
         }
         let mut stepper = Self {
-            start: DoublePointStart::of(&layers),
-            initial_settlement: layers.body.settlement(plan.initial_height),
-            layers,
+            start: DoublePointStart::of(&double),
+            initial_settlement: double.body.settlement(plan.initial_height),
+            double,
             initial_height: plan.initial_height,
             settings: plan.schedule.settings,
             step_follows: !matches!(plan.schedule.rule, TimeStepRule::Seconds(_)),
@@ -57,7 +57,7 @@ impl<const D: usize> DoublePointStepper<D> {
             load,
             largest_pressure: 0.0,
         };
-        stepper.load.act_at(&mut stepper.layers.body, 0.0);
+        stepper.load.act_at(&mut stepper.double.body, 0.0);
         stepper
     }
 }
@@ -66,14 +66,14 @@ impl<const D: usize> Stepper for DoublePointStepper<D> {
     fn advance(&mut self, steps: &EqualSteps, _most_error: f64) -> Result<f64, StepFailure> {
         for step in 0..steps.count {
             if self.load.grows() {
-                self.load.act_at(&mut self.layers.body, steps.time_after(step));
+                self.load.act_at(&mut self.double.body, steps.time_after(step));
             }
             let kick = self.rhythm.kick(steps.dt, &self.settings);
-            self.layers.kick_and_drift(kick, steps.dt, &self.settings);
+            self.double.kick_and_drift(kick, steps.dt, &self.settings);
         }
         // A burst may ring down again before the next output.
         self.largest_pressure =
-            self.layers.water.pressure.iter().fold(self.largest_pressure, |largest, pressure| {
+            self.double.water.pressure.iter().fold(self.largest_pressure, |largest, pressure| {
                 if largest > pressure.abs() || largest.is_nan() { largest } else { pressure.abs() }
             });
         Ok(0.0)
@@ -84,42 +84,42 @@ impl<const D: usize> Stepper for DoublePointStepper<D> {
     }
 
     fn step_reduction(&self) -> Option<f64> {
-        step_reduction(&self.layers.body, self.step_follows)
+        step_reduction(&self.double.body, self.step_follows)
     }
 
     fn settlement(&self) -> f64 {
-        self.layers.body.settlement(self.initial_height)
+        self.double.body.settlement(self.initial_height)
     }
 
     fn largest_velocity(&self) -> Option<f64> {
-        Some(self.layers.body.largest_velocity())
+        Some(self.double.body.largest_velocity())
     }
 
     fn energy(&mut self, _dt: f64) -> Option<(Energy, bool)> {
-        let layers = &self.layers;
+        let double = &self.double;
         if self.load.grows() {
             return None;
         }
-        let water = &layers.water;
+        let water = &double.water;
         let water = (0..water.pressure.len())
             .map(|point| (water.porosity[point] * water.volume_inside(point), water.pressure[point]));
         let settlement = self.settlement() - self.initial_settlement;
-        Some((layers.body.energy(settlement, water)?, layers.body.configuration.deforms()))
+        Some((double.body.energy(settlement, water)?, double.body.configuration.deforms()))
     }
 
     fn unbalanced_force(&self) -> Option<f64> {
-        (self.settings.flip >= 1.0).then(|| self.layers.body.largest_accelerating_force())
+        (self.settings.flip >= 1.0).then(|| self.double.body.largest_accelerating_force())
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        let body = &self.layers.body;
+        let body = &self.double.body;
         if body.configuration.deforms() { lost_point(body) } else { None }
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
-        let mut snapshot = self.layers.snapshot(time, self.settlement(), &self.start);
-        if let Some(layers) = &mut snapshot.totals.double_point {
-            layers.largest_pressure = self.largest_pressure;
+        let mut snapshot = self.double.snapshot(time, self.settlement(), &self.start);
+        if let Some(double) = &mut snapshot.totals.double_point {
+            double.largest_pressure = self.largest_pressure;
         }
         snapshot
     }

@@ -201,17 +201,17 @@ mod tests {
     #[test]
     fn a_water_point_is_as_large_as_the_pores_it_fills_where_it_is() {
         let soil = Material::default();
-        let mut layers = moving_column::<1>("GIMP", [2, 2], 1.0, &soil);
-        layers.water.slope.fill([3e4]);
-        let halves = layers.water.half_length.clone();
+        let mut double = moving_column::<1>("GIMP", [2, 2], 1.0, &soil);
+        double.water.slope.fill([3e4]);
+        let halves = double.water.half_length.clone();
         // Soil that lost a sixth of its pores below, and none of them on top.
-        let height = layers.body.grid.cell_size * 5.0;
+        let height = double.body.grid.cell_size * 5.0;
         let porosity = |place: f64| soil.porosity * (1.0 + 0.2 * (place / height - 1.0));
-        for node in 0..layers.body.nodes.len() {
-            layers.body.nodes.porosity[node] = porosity(layers.body.grid.node_position(node)[0]);
+        for node in 0..double.body.nodes.len() {
+            double.body.nodes.porosity[node] = porosity(double.body.grid.node_position(node)[0]);
         }
-        layers.follow_water();
-        let water = &layers.water;
+        double.follow_water();
+        let water = &double.water;
         for point in 0..water.len() {
             // Constant density: the pressure of the start is that of the load, a part in ten thousand of K_w.
             let pores = water.mass[point] / soil.water_density;
@@ -226,24 +226,24 @@ mod tests {
     }
 
     /// Water domains keep their axes. That is right where those of the skeleton do: in the only scene in which two
-    /// layers move, a column.
+    /// sets move, a column.
     #[test]
-    fn nothing_turns_where_two_layers_move_in_the_plane() {
+    fn nothing_turns_where_two_sets_move_in_the_plane() {
         let soil = Material { hydraulic_conductivity: 1e-3, ..Material::default() };
-        let mut layers = moving_column::<2>("CPDI-SRI-patch", [2, 2], 2e5, &soil);
+        let mut double = moving_column::<2>("CPDI-SRI-patch", [2, 2], 2e5, &soil);
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         for _ in 0..300 {
-            layers.kick_and_drift(4e-5, 4e-5, &settings);
+            double.kick_and_drift(4e-5, 4e-5, &settings);
         }
-        let domains = layers.body.domains.as_ref().expect("domains that could turn");
-        let settled = layers.body.settlement(1.0);
+        let domains = double.body.domains.as_ref().expect("domains that could turn");
+        let settled = double.body.settlement(1.0);
         assert!(settled > 1e-4, "{settled}");
         for [along, up] in &domains.half_edges {
             let turned = along[1].abs().max(up[0].abs());
             assert!(turned < 1e-12 * along[0], "{along:?} {up:?}");
         }
         // Each reaches as far across as the skeleton's.
-        let widths = layers.water.half_length.iter().map(|half| half[0]);
+        let widths = double.water.half_length.iter().map(|half| half[0]);
         for (width, [along, _]) in widths.zip(&domains.half_edges) {
             assert!((width / along[0] - 1.0).abs() < 1e-12, "{width} {along:?}");
         }

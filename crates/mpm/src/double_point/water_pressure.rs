@@ -34,8 +34,8 @@ impl<const D: usize> DoublePoint<D> {
         body.nodes.take_flux();
         body.surface_flux += dt * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
         let bulk_modulus = body.material.water_bulk_modulus;
-        self.evaluate_water_sites(|layers, place, porosity| {
-            let rate = layers.body.volume_rate(porosity, |field| layers.divergence_at(place, field));
+        self.evaluate_water_sites(|double, place, porosity| {
+            let rate = double.body.volume_rate(porosity, |field| double.divergence_at(place, field));
             -dt * bulk_modulus / porosity * rate
         });
         self.recover_pressure();
@@ -47,8 +47,8 @@ impl<const D: usize> DoublePoint<D> {
     /// Compresses the water by a displacement of skeleton and water together, m, `[node][component]`.
     pub(crate) fn compress_by(&mut self, displacement: &[Vector<D>]) {
         let bulk_modulus = self.body.material.water_bulk_modulus;
-        self.evaluate_water_sites(|layers, place, porosity| {
-            -bulk_modulus / porosity * layers.divergence_at(place, displacement)
+        self.evaluate_water_sites(|double, place, porosity| {
+            -bulk_modulus / porosity * double.divergence_at(place, displacement)
         });
         self.recover_pressure();
     }
@@ -210,7 +210,7 @@ impl<const D: usize> DoublePoint<D> {
     /// Gives the points of every cell the slope of the rates around it, and what its pressure then lacks of the cell's
     /// own increment: the sums of before stand at the first places of a cell's.
     pub(crate) fn keep_cell_rates(&mut self) {
-        self.take_slopes(|layers, cell| layers.cells.is_occupied(cell).then(|| layers.site_values[cell]));
+        self.take_slopes(|double, cell| double.cells.is_occupied(cell).then(|| double.site_values[cell]));
         for (slope, cell) in self.water.slope.iter_mut().zip(&self.cells.of_point) {
             for d in 0..D {
                 slope[d] += self.slopes[*cell][d];
@@ -232,14 +232,14 @@ mod tests {
     #[test]
     fn a_uniform_pressure_presses_by_cells_as_by_points() {
         for method in ["GIMP-SRI", "GIMP-SRI-patch"] {
-            let mut layers = with_water_shifted(method, 3);
-            assert!(layers.presses_by_cells);
-            layers.water.pressure.fill(3e4);
-            layers.map_forces();
-            let by_cells = layers.body.nodes.water_force.clone();
-            layers.presses_by_cells = false;
-            layers.map_forces();
-            for (by_cells, by_points) in by_cells.iter().zip(&layers.body.nodes.water_force) {
+            let mut double = with_water_shifted(method, 3);
+            assert!(double.presses_by_cells);
+            double.water.pressure.fill(3e4);
+            double.map_forces();
+            let by_cells = double.body.nodes.water_force.clone();
+            double.presses_by_cells = false;
+            double.map_forces();
+            for (by_cells, by_points) in by_cells.iter().zip(&double.body.nodes.water_force) {
                 // The undrained start has shortened the column by a part in a hundred thousand.
                 assert!((by_cells[0] - by_points[0]).abs() < 1.0, "{by_cells:?} {by_points:?}");
             }
@@ -249,14 +249,14 @@ mod tests {
 
     #[test]
     fn forces_are_the_adjoint_of_the_one_rate_of_a_cell() {
-        let mut layers = with_water_shifted("GIMP-SRI", 3);
-        for (point, pressure) in layers.water.pressure.iter_mut().enumerate() {
+        let mut double = with_water_shifted("GIMP-SRI", 3);
+        for (point, pressure) in double.water.pressure.iter_mut().enumerate() {
             *pressure = 1e4 * (1.0 + point as f64 * point as f64);
         }
-        layers.body.nodes.external_force.fill([0.0]);
-        layers.map_forces();
-        let work = |field: &[[f64; 1]], layers: &DoublePoint<1>| -> f64 {
-            layers
+        double.body.nodes.external_force.fill([0.0]);
+        double.map_forces();
+        let work = |field: &[[f64; 1]], double: &DoublePoint<1>| -> f64 {
+            double
                 .body
                 .nodes
                 .water_force
@@ -266,18 +266,18 @@ mod tests {
                 .sum()
         };
         // A velocity that dilates one cell alone: its points' mean pressure does the work.
-        let cell = layers.cells.of_point[7];
-        let node = layers.body.cells.first_node(cell);
-        let mut field = vec![[0.0]; layers.body.nodes.len()];
+        let cell = double.cells.of_point[7];
+        let node = double.body.cells.first_node(cell);
+        let mut field = vec![[0.0]; double.body.nodes.len()];
         field[node + 1..].fill([1.0]);
-        let own: Vec<usize> = (0..layers.water.len()).filter(|w| layers.cells.of_point[*w] == cell).collect();
-        let volume: f64 = own.iter().map(|point| layers.water.volume_inside(*point)).sum();
+        let own: Vec<usize> = (0..double.water.len()).filter(|w| double.cells.of_point[*w] == cell).collect();
+        let volume: f64 = own.iter().map(|point| double.water.volume_inside(*point)).sum();
         let mean: f64 = own
             .iter()
-            .map(|point| layers.water.volume_inside(*point) * layers.water.pressure[*point])
+            .map(|point| double.water.volume_inside(*point) * double.water.pressure[*point])
             .sum::<f64>()
             / volume;
-        let found = work(&field, &layers);
+        let found = work(&field, &double);
         assert!((found / mean - 1.0).abs() < 1e-9, "{found} for {mean}: a full cell dilates by its face");
     }
 
@@ -285,20 +285,20 @@ mod tests {
     fn a_line_of_pressures_presses_with_its_value_in_the_middle() {
         // Of a single point too, wherever in its cell it lies.
         for of_water in [1, 3] {
-            let mut layers = with_water_shifted("GIMP-SRI-patch", of_water);
-            assert!(layers.keeps_cell_rates);
-            for (pressure, place) in layers.water.pressure.iter_mut().zip(&layers.water.place) {
+            let mut double = with_water_shifted("GIMP-SRI-patch", of_water);
+            assert!(double.keeps_cell_rates);
+            for (pressure, place) in double.water.pressure.iter_mut().zip(&double.water.place) {
                 *pressure = 1e4 + 2e4 * place[0];
             }
-            layers.water.slope.fill([2e4]);
-            layers.sum_cell_pressures(0);
-            let cell = layers.cells.of_point[2 * of_water];
-            let [pressed, volume, ..] = layers.cell_sums[cell];
+            double.water.slope.fill([2e4]);
+            double.sum_cell_pressures(0);
+            let cell = double.cells.of_point[2 * of_water];
+            let [pressed, volume, ..] = double.cell_sums[cell];
             // The third cell of five of a column of a metre.
             assert!((pressed / volume - (1e4 + 2e4 * 0.5)).abs() < 1e-6, "{}", pressed / volume);
-            let held: f64 = (0..layers.water.len())
-                .filter(|point| layers.cells.of_point[*point] == cell)
-                .map(|point| layers.water.volume_inside(point))
+            let held: f64 = (0..double.water.len())
+                .filter(|point| double.cells.of_point[*point] == cell)
+                .map(|point| double.water.volume_inside(point))
                 .sum();
             assert!((volume / held - 1.0).abs() < 1e-12);
         }
@@ -307,33 +307,33 @@ mod tests {
     #[test]
     fn a_cell_takes_its_own_rate_and_its_points_the_slope_of_their_patch() {
         for of_water in [1, 3] {
-            let mut layers = with_water_shifted("GIMP-SRI-patch", of_water);
+            let mut double = with_water_shifted("GIMP-SRI-patch", of_water);
             // A flux whose divergence grows with the height.
-            let grid = &layers.body.grid;
+            let grid = &double.body.grid;
             let heights: Vec<f64> =
-                (0..layers.body.nodes.len()).map(|node| grid.node_position(node)[0]).collect();
+                (0..double.body.nodes.len()).map(|node| grid.node_position(node)[0]).collect();
             for (node, height) in heights.iter().enumerate() {
                 let velocity = [-1e-9 * height * height];
-                (layers.body.nodes.solid_velocity[node], layers.body.nodes.water_velocity[node]) =
+                (double.body.nodes.solid_velocity[node], double.body.nodes.water_velocity[node]) =
                     (velocity, velocity);
             }
-            layers.sum_cell_pressures(0);
-            let before = layers.cell_sums.clone();
-            let pressures = layers.water.pressure.clone();
-            layers.update_pressure(1e-3);
-            layers.sum_cell_pressures(0);
-            for cell in layers.cells.of_point.clone() {
-                let ([one, volume, ..], [two, ..]) = (before[cell], layers.cell_sums[cell]);
-                let (found, rate) = ((two - one) / volume, layers.site_values[cell]);
+            double.sum_cell_pressures(0);
+            let before = double.cell_sums.clone();
+            let pressures = double.water.pressure.clone();
+            double.update_pressure(1e-3);
+            double.sum_cell_pressures(0);
+            for cell in double.cells.of_point.clone() {
+                let ([one, volume, ..], [two, ..]) = (before[cell], double.cell_sums[cell]);
+                let (found, rate) = ((two - one) / volume, double.site_values[cell]);
                 assert!(rate > 0.0 && (found / rate - 1.0).abs() < 1e-6, "{found} for {rate}");
             }
             // −Δt (K_w/n) ∇·v has the slope 2e-9 Δt K_w/n over the height, at n = 0.3: in what a point carries, and
             // from one point to another.
-            let slope = layers.water.slope[2 * of_water][0];
+            let slope = double.water.slope[2 * of_water][0];
             assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
-            let of = |point: usize| layers.water.pressure[point] - pressures[point];
+            let of = |point: usize| double.water.pressure[point] - pressures[point];
             let (low, high) = if of_water == 1 { (1, 2) } else { (6, 8) };
-            let slope = (of(high) - of(low)) / (layers.water.place[high][0] - layers.water.place[low][0]);
+            let slope = (of(high) - of(low)) / (double.water.place[high][0] - double.water.place[low][0]);
             assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
         }
     }

@@ -13,9 +13,8 @@ pub(crate) use crate::explicit::nodes_to_points::Motion;
 pub use crate::explicit::scheme::ExplicitSettings;
 
 use crate::body::Body;
-use crate::drag::NodalDrag;
+use crate::drag::{NodalBalance, NodalDrag};
 use crate::method::Memory;
-use crate::momentum::NodalBalance;
 use crate::operators::recovery::points_in_cells;
 use crate::run::profile::{Phase, enter};
 

@@ -1,9 +1,8 @@
 //! The residual of the balances at a trial state, for every nonlinear or inertial implicit step, from the operators of
 //! the explicit step.
 
-use crate::drag::NodalDrag;
+use crate::drag::{NodalBalance, NodalDrag};
 use crate::implicit::trial::{Skeleton, Trial};
-use crate::momentum::NodalBalance;
 use crate::run::integrator::Formulation;
 use crate::run::stepper::StepFailure;
 use crate::run::watch::pores_closed;

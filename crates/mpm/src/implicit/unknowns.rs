@@ -3,8 +3,8 @@
 
 use crate::assembled::stiffness::NodeBlocks;
 use crate::body::Body;
+use crate::loaded_body::NORMAL;
 use crate::method::PressureIntegration;
-use crate::operators::rigid_plate::NORMAL;
 use crate::operators::volumetric::VolumetricRows;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Vector;

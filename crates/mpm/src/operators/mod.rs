@@ -1,10 +1,9 @@
 //! The operators of a method, each sparse between points, nodes and cell centres: shape functions, strain gradient,
-//! divergence, recovery, surface load, rigid plate, self-weight.
+//! divergence, recovery, surface load.
 
 pub mod basis;
 pub mod corners;
 pub mod recovery;
-pub mod rigid_plate;
 pub mod sparse_rows;
 pub mod stencil;
 pub mod strain_gradient;

@@ -51,8 +51,8 @@ impl<const D: usize> DoublePoint<D> {
             let [pressed, volume, pressure, fading] = &mut self.cell_sums[cell];
             (*pressure, *fading) = (*pressed / *volume, share);
         }
-        self.take_slopes(|layers, cell| {
-            let [_, volume, pressure, _] = layers.cell_sums[cell];
+        self.take_slopes(|double, cell| {
+            let [_, volume, pressure, _] = double.cell_sums[cell];
             (volume > 0.0).then_some(pressure)
         });
         let water = &mut self.water;
@@ -96,60 +96,60 @@ mod tests {
 
     #[test]
     fn what_points_carry_beyond_their_line_fades_and_cells_press_as_before() {
-        let mut layers = with_water_shifted("GIMP-SRI-patch", 3);
+        let mut double = with_water_shifted("GIMP-SRI-patch", 3);
         let line = |place: f64| 1e4 + 2e4 * place;
-        for (pressure, place) in layers.water.pressure.iter_mut().zip(&layers.water.place) {
+        for (pressure, place) in double.water.pressure.iter_mut().zip(&double.water.place) {
             *pressure = line(place[0]);
         }
-        layers.water.slope.fill([2e4]);
+        double.water.slope.fill([2e4]);
         // Three points of one cell off their line, one of them in its slope too.
         let odd = [(6, 50.0), (7, -100.0), (8, 50.0)];
         for (point, off) in odd {
-            layers.water.pressure[point] += off;
+            double.water.pressure[point] += off;
         }
-        layers.water.slope[7] = [2.6e4];
-        layers.sum_cell_pressures(0);
-        let before = layers.cell_sums.clone();
+        double.water.slope[7] = [2.6e4];
+        double.sum_cell_pressures(0);
+        let before = double.cell_sums.clone();
         // Through a quarter of a cell: e² a cell is to first order a half of it.
-        layers.body.nodes.water_velocity.fill([-0.01]);
-        layers.fade_beyond_lines(5.0);
-        layers.sum_cell_pressures(0);
-        for cell in layers.cells.of_point.clone() {
-            let ([one, ..], [two, ..]) = (before[cell], layers.cell_sums[cell]);
+        double.body.nodes.water_velocity.fill([-0.01]);
+        double.fade_beyond_lines(5.0);
+        double.sum_cell_pressures(0);
+        for cell in double.cells.of_point.clone() {
+            let ([one, ..], [two, ..]) = (before[cell], double.cell_sums[cell]);
             assert!((two / one - 1.0).abs() < 1e-12, "{two} for {one}");
         }
         // The slope of one of three points moves what their cell presses with, and so the line that they fade to.
-        let moved = 6e3 * (0.5 - layers.water.place[7][0]) / 3.0;
+        let moved = 6e3 * (0.5 - double.water.place[7][0]) / 3.0;
         for (point, off) in odd {
-            let left = layers.water.pressure[point] - line(layers.water.place[point][0]);
+            let left = double.water.pressure[point] - line(double.water.place[point][0]);
             assert!((left - 0.5 * (off + moved)).abs() < 0.01, "{left} of {off}");
         }
-        let slope = layers.water.slope[7][0];
+        let slope = double.water.slope[7][0];
         assert!((slope - 2.3e4).abs() < 1.0, "{slope}");
         // Where no water goes, nothing fades.
-        let pressures = layers.water.pressure.clone();
-        layers.body.nodes.water_velocity.fill([0.0]);
-        layers.fade_beyond_lines(5.0);
-        assert_eq!(layers.water.pressure, pressures);
+        let pressures = double.water.pressure.clone();
+        double.body.nodes.water_velocity.fill([0.0]);
+        double.fade_beyond_lines(5.0);
+        assert_eq!(double.water.pressure, pressures);
     }
 
     #[test]
     fn a_surface_ends_the_middle_of_its_cell_and_the_lines_through_it() {
-        let mut layers = with_water_shifted("GIMP-SRI-patch", 3);
-        let top = *layers.cells.of_point.last().expect("points");
-        let (grid, surface) = (layers.body.grid.clone(), 0.9);
+        let mut double = with_water_shifted("GIMP-SRI-patch", 3);
+        let top = *double.cells.of_point.last().expect("points");
+        let (grid, surface) = (double.body.grid.clone(), 0.9);
         assert!((middle_of(&grid, top, surface)[0] - 0.85).abs() < 1e-12);
         assert!((middle_of(&grid, top - 1, surface)[0] - 0.7).abs() < 1e-12);
         // Values that lie on a line in those middles, and no value above.
-        for cell in layers.cells.occupied() {
-            layers.middles[cell] = middle_of(&grid, cell, surface);
+        for cell in double.cells.occupied() {
+            double.middles[cell] = middle_of(&grid, cell, surface);
         }
-        layers.take_slopes(|_, cell| (cell <= top).then(|| 3.0 * middle_of(&grid, cell, surface)[0]));
+        double.take_slopes(|_, cell| (cell <= top).then(|| 3.0 * middle_of(&grid, cell, surface)[0]));
         for cell in [top, top - 1, top - 2] {
-            let [slope] = layers.slopes[cell];
+            let [slope] = double.slopes[cell];
             assert!((slope - 3.0).abs() < 1e-9, "{slope}");
         }
-        layers.take_slopes(|_, cell| (cell == top).then_some(1.0));
-        assert_eq!(layers.slopes[top], [0.0]);
+        double.take_slopes(|_, cell| (cell == top).then_some(1.0));
+        assert_eq!(double.slopes[top], [0.0]);
     }
 }

@@ -3,7 +3,7 @@
 use crate::body::Problem;
 use crate::critical_step::formula;
 use crate::drag;
-use crate::operators::rigid_plate::NORMAL;
+use crate::loaded_body::NORMAL;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
 
 /// Settlements over their scale that no scene reaches.

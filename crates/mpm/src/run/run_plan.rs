@@ -46,7 +46,7 @@ pub struct Plan<'a> {
     pub unknown_limit: Option<UnknownLimit>,
     /// Step sizes as far as they are known before.
     pub sizes: StepSizes,
-    /// Material points, of all layers.
+    /// Material points, of skeleton and water.
     pub points: usize,
     /// Grid nodes, ghosts included.
     pub nodes: usize,

@@ -1,4 +1,4 @@
-//! The material points: one layer that carries skeleton and water, moving with the skeleton.
+//! The material points: they carry skeleton and water and move with the skeleton.
 
 use oedometer_soil::tensor::{Tensor, Vector, identity};
 
@@ -24,7 +24,7 @@ pub struct Points<const D: usize> {
     pub inverse_deformation: Vec<Tensor<D>>,
     /// Velocity of the skeleton, m/s.
     pub solid_velocity: Vec<Vector<D>>,
-    /// Velocity of the pore water, m/s; none where the water has a layer of points of its own.
+    /// Velocity of the pore water, m/s; none where the water has points of its own.
     pub water_velocity: Vec<Vector<D>>,
     /// Effective Cauchy stress, Pa, tension positive.
     pub effective_stress: Vec<Tensor<D>>,

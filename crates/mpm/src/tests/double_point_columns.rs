@@ -1,4 +1,4 @@
-//! Columns in two layers of points for the tests of `crates/mpm/src/layers/`, which may not import scenes outside of tests.
+//! Columns of two sets of points for the tests of `crates/mpm/src/double_point/`, which may not import scenes outside of tests.
 
 use crate::body::Body;
 use crate::double_point::DoublePoint;
@@ -24,22 +24,22 @@ pub(crate) fn moving_column<const D: usize>(
     let method = Method::named(method).expect("a known method");
     let mut problem =
         column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, of_skeleton).expect("a column");
-    let lattice = problem.water.take().expect("a layer of water");
+    let lattice = problem.water.take().expect("water points");
     let gradient = problem.initial_gradient;
     DoublePoint::new(Body::new(problem), &lattice, &gradient)
 }
 
 /// A column whose water points all lie somewhat higher than their lattice; so many a cell, four of the skeleton.
 pub(crate) fn with_water_shifted(method: &str, of_water: usize) -> DoublePoint<1> {
-    let mut layers = moving_column::<1>(method, [4, of_water], 2e5, &Material::default());
-    let count = layers.water.len();
-    for place in &mut layers.water.place[..count - 1] {
+    let mut double = moving_column::<1>(method, [4, of_water], 2e5, &Material::default());
+    let count = double.water.len();
+    for place in &mut double.water.place[..count - 1] {
         place[0] += 0.02;
     }
     // The topmost domain holds what is left of the column.
-    layers.water.place[count - 1][0] += 0.01;
-    layers.water.reach[count - 1][0] -= 0.01;
-    layers.water.share[count - 1] = 1.0 - 0.02 / (0.2 / of_water as f64);
-    layers.build_water_operators();
-    layers
+    double.water.place[count - 1][0] += 0.01;
+    double.water.reach[count - 1][0] -= 0.01;
+    double.water.share[count - 1] = 1.0 - 0.02 / (0.2 / of_water as f64);
+    double.build_water_operators();
+    double
 }

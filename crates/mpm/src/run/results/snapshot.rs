@@ -24,13 +24,13 @@ pub struct Samples {
     /// What a second dimension adds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneSamples>,
-    /// What a layer of water points adds: `pressure` is then that of the nearest of them.
+    /// What water points add: `pressure` is then that of the nearest of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub water: Option<WaterSamples>,
 }
 
 impl Samples {
-    /// Pressures, Pa, and the volumes that they stand for, m^D: of the water's own layer where there is one.
+    /// Pressures, Pa, and the volumes that they stand for, m^D: of the water's own points where there are such.
     pub fn pressures(&self) -> (&[f64], &[f64]) {
         match &self.water {
             Some(water) => (&water.pressure, &water.volume),
@@ -39,7 +39,7 @@ impl Samples {
     }
 }
 
-/// The pressure where the water has a layer of points of its own.
+/// The pressure where the water has points of its own.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WaterSamples {
     /// Initial height above the base of the soil that is there now, m.
@@ -114,12 +114,12 @@ pub struct Totals {
     /// Largest nodal velocity of either phase, m/s.
     #[serde(default)]
     pub largest_velocity: f64,
-    /// Pores and water, where both are counted apart: in two layers of points that move.
+    /// Pores and water, where both are counted apart: in double-point MPM, where points move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub double_point: Option<WaterTotals>,
 }
 
-/// Pores and water of two layers.
+/// Pores and water of double-point MPM.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WaterTotals {
     /// Volume of the pores, `Σ n_s V_s`, m^D.
