@@ -58,7 +58,9 @@ impl Making {
     fn words(&self, results: &[StudyResults<'_>]) -> String {
         let mut origins = Origins::default();
         let records: Vec<_> = results.iter().flat_map(|one| one.records).collect();
-        records.iter().for_each(|record| origins.add(&record.provenance));
+        for record in &records {
+            origins.add(&record.provenance);
+        }
         let program = origins.main().map_or_else(String::new, program_of);
         let several = origins.several_programs().map_or_else(String::new, |programs| {
             format!(" The records are of more than one program: {programs}.")
@@ -212,7 +214,7 @@ fn verdict(results: &[StudyResults<'_>]) -> Callout {
         results.iter().filter(|one| !one.passes()).map(|one| one.study.name.as_str()).collect();
     let met = match judged {
         0 => "No expectations".to_owned(),
-        _ => format!("{} of {judged} expectations met", sum(|one| one.met())),
+        _ => format!("{} of {judged} expectations met", results.iter().map(StudyResults::met).sum::<usize>()),
     };
     let (studies, runs) = (count_of(results.len(), "study", "studies"), sum(|one| one.records.len()));
     let mut text = format!("**{met}** in {studies} of {runs} runs.");

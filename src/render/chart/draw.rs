@@ -37,6 +37,9 @@ const BAR: (f64, f64) = (18.0, 16.0);
 /// Tick, gap to its label, and room for the words of an upright axis, px.
 const BESIDE: f64 = 10.0 + 1.4 * LABEL.size;
 
+/// Rectangles of the colour bar.
+const STEPS: i32 = 120;
+
 /// A figure laid out, in pixels.
 pub(super) struct Layout {
     pub size: Px,
@@ -135,7 +138,7 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
             let reason = match (x.visible(a), y.visible(b)) {
                 (Ok(_), Ok(_)) => continue,
                 // The first reason that hides the point altogether; lines are cut at the frame without a word.
-                (Err(Reason::Outside), Err(other)) | (Err(other), _) | (Ok(_), Err(other)) => other,
+                (Err(Reason::Outside) | Ok(_), Err(other)) | (Err(other), _) => other,
             };
             if reason == Reason::Outside && !has_markers(series) {
                 continue;
@@ -275,7 +278,6 @@ impl Chart {
             .margin_bottom(units(size.1 - plot.bottom))
             .set_label_area_size(LabelAreaPosition::Right, units(label_room))
             .build_cartesian_2d(0.0..1.0, bar.for_plotters(false))?;
-        const STEPS: i32 = 120;
         chart.draw_series((0..STEPS).map(|step| {
             let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
             let (low, high) = (share(step), share(step + 1));

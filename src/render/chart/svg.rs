@@ -143,7 +143,9 @@ pub(super) fn scripted(text: &str) -> String {
         };
         // A script right after another climbs back with a space of no width.
         out.extend(climb.into_iter().flat_map(|back| [back, '\u{200b}', MARKS[4].0]));
-        out += &format!("{start}{words}{}", MARKS[4].0);
+        out.push(start);
+        out.push_str(&words);
+        out.push(MARKS[4].0);
         climb = Some(back);
     }
     out

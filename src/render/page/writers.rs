@@ -104,7 +104,7 @@ fn html_mark(section: &Section) -> String {
 
 /// The paragraphs of a lightly marked text.
 fn html_text(text: &str) -> String {
-    paragraphs(text).iter().map(|paragraph| format!("<p>{}</p>\n", to_html(paragraph))).collect()
+    paragraphs(text).iter().fold(String::new(), |out, paragraph| out + "<p>" + &to_html(paragraph) + "</p>\n")
 }
 
 fn html_callout(mood: Mood, text: &str) -> String {

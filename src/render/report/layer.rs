@@ -91,9 +91,11 @@ fn figure(
     });
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
     let largest = largest_of(values);
-    let beyond = (largest > reach)
-        .then(|| format!(" Values reach {}, beyond the common scale.", number::number(largest)))
-        .unwrap_or_default();
+    let beyond = if largest > reach {
+        format!(" Values reach {}, beyond the common scale.", number::number(largest))
+    } else {
+        String::new()
+    };
     let caption = match oscillation {
         None => format!("Theory at T_v = {time_factor}. All these fields share one scale."),
         Some(index) => {
