@@ -117,6 +117,30 @@ pub enum ExactError {
         /// `L/H`.
         ratio: f64,
     },
+    /// Reloading softer than first loading.
+    #[error(
+        "the modulus of reloading, {reload} Pa, is below that of first loading, {virgin} Pa: a soil that remembers is \
+         stiffer below its preconsolidation"
+    )]
+    ReloadModulus {
+        /// `E₂`, Pa.
+        reload: f64,
+        /// `E₁`, Pa.
+        virgin: f64,
+    },
+    /// A load that never makes the soil yield, or makes it yield at once.
+    #[error(
+        "no yield front runs through the column: the preconsolidation {preconsolidation} Pa must lie between the \
+         effective stress of the undrained start, {start} Pa, and that of the end, {end} Pa"
+    )]
+    NoYieldFront {
+        /// `σ'_pc`, Pa.
+        preconsolidation: f64,
+        /// `σ'_0 + q − p_0`, Pa.
+        start: f64,
+        /// `σ'_0 + q`, Pa.
+        end: f64,
+    },
     /// A numerical reference that does not settle under refinement.
     #[error(
         "the large-strain reference did not converge: two resolutions still differ by {difference} \

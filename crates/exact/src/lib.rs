@@ -31,6 +31,7 @@ pub mod exact_error;
 #[doc(hidden)]
 pub mod field_values;
 pub mod large_strain;
+pub mod layered;
 pub mod mandel;
 pub mod manufactured;
 #[doc(hidden)]
@@ -41,6 +42,7 @@ pub mod reference;
 pub mod single_mode;
 pub mod terzaghi;
 pub mod xie_leo;
+pub mod yield_front;
 
 pub use crate::exact_error::{ExactError, normal};
 pub use crate::field_values::{Accuracy, FieldValues};

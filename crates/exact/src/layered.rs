@@ -1,0 +1,563 @@
+//! Consolidation of a column of layers: small strain, compressible water, drained top, impermeable base.
+//!
+//! With the storage `S = 1/E_oed + n/K_w` and the mobility `κ = k/γ_w` of each layer,
+//!
+//! ```text
+//! S ∂p/∂t = ∂/∂y (κ ∂p/∂y)     p and κ ∂p/∂y continuous     p(y, 0) = q/(E_oed S)
+//! ```
+//!
+//! Two independent ways: the eigenfunctions of the whole column (Schiffman & Stein 1970), and the Laplace transform
+//! with the admittances of the layers, inverted on Talbot's contour. The series serves from the time on at which
+//! [`MOST_MODES`] modes hold the rest below round-off, the transform before that; tests hold the two to each other.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::Complex;
+
+use crate::cosine_layer::talbot::{NODES, contour};
+use crate::exact_error::{ExactError, held_within, normal, positive};
+use crate::field_values::{Accuracy, FieldValues};
+use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
+
+/// Modes beyond which the transform takes over.
+const MOST_MODES: usize = 1000;
+/// What the modes left out may add to the pressure over the load.
+const NEGLIGIBLE: f64 = 1e-17;
+/// What the inversion of the transform may be off by, over the load: more than twice the worst seen beside the series.
+const INVERSION_ERROR: f64 = 1e-12;
+
+/// A layer of soil, from the base up one of several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Layer {
+    /// Height of its lower face above the base, m.
+    bottom: f64,
+    /// Thickness, m.
+    thickness: f64,
+    /// Oedometric modulus `E_oed`, Pa.
+    modulus: f64,
+    /// `S = 1/E_oed + n/K_w`, 1/Pa.
+    storage: f64,
+    /// `κ = k/γ_w`, m²/(Pa s).
+    mobility: f64,
+}
+
+impl Layer {
+    /// Pressure of the undrained start over the load, `1/(E_oed S)`.
+    fn undrained(&self) -> f64 {
+        1.0 / (self.modulus * self.storage)
+    }
+
+    /// `√(S/κ)`: the wave number of a mode that decays by `e^{−t}`, √s/m.
+    fn slowness(&self) -> f64 {
+        (self.storage / self.mobility).sqrt()
+    }
+
+    /// `√(S κ)`: flux over pressure of such a mode.
+    fn admittance(&self) -> f64 {
+        (self.storage * self.mobility).sqrt()
+    }
+}
+
+/// One eigenfunction: `R cos(θ + μ(y − bottom))` in each layer.
+#[derive(Clone, Debug)]
+struct Mode {
+    /// Rate of decay `λ`, 1/s.
+    rate: f64,
+    /// Share of the initial pressure over the load in this mode.
+    coefficient: f64,
+    /// Amplitude `R` and phase `θ` at the bottom of each layer.
+    waves: Vec<(f64, f64)>,
+}
+
+/// A column of layers under a load that acts at once.
+#[derive(Clone, Debug)]
+pub struct LayeredColumn {
+    layers: Vec<Layer>,
+    height: f64,
+    load: f64,
+    modes: Vec<Mode>,
+}
+
+impl LayeredColumn {
+    /// The column of `layers`, thickness in m and soil of each from the base up, under `load` Pa.
+    ///
+    /// # Errors
+    /// When there is no layer, or a thickness, the load or a soil is impossible.
+    pub fn new(load: f64, layers: &[(f64, Material)]) -> Result<Self, ExactError> {
+        let mut bottom = 0.0;
+        let mut stack = Vec::with_capacity(layers.len());
+        for &(thickness, soil) in layers {
+            let modulus = normal("oedometric modulus of a layer", soil.oedometric_modulus())?;
+            let storage = 1.0 / modulus + soil.porosity / soil.water_bulk_modulus;
+            let mobility = soil.hydraulic_conductivity / soil.unit_weight_of_water();
+            stack.push(Layer {
+                bottom,
+                thickness: normal("thickness of a layer", thickness)?,
+                modulus,
+                storage: normal("storage of a layer", storage)?,
+                mobility: normal("mobility of the water in a layer", mobility)?,
+            });
+            bottom += thickness;
+        }
+        let mut column = Self {
+            layers: stack,
+            height: positive("height", bottom)?,
+            load: normal("load", load)?,
+            modes: Vec::new(),
+        };
+        column.modes = (0..MOST_MODES).map(|index| column.mode(index)).collect();
+        Ok(column)
+    }
+
+    /// Height `H`, m.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// Settlement long after, `q Σ t/E_oed`, m.
+    pub fn final_settlement(&self) -> f64 {
+        self.load * self.layers.iter().map(|layer| layer.thickness / layer.modulus).sum::<f64>()
+    }
+
+    /// Pressure, effective stress and displacement at the height `y` above the base, `seconds` after the load.
+    ///
+    /// On a face between two layers it is the fields of the lower one; only the start's pressure jumps there.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite, or `y` outside of the column.
+    pub fn fields(&self, seconds: f64, y: f64) -> Result<FieldValues, ExactError> {
+        let state = self.at(seconds)?;
+        let y = held_within(y, self.height).ok_or(ExactError::OutsideLayer { y, height: self.height })?;
+        let pressure = state.pressure(y);
+        Ok(FieldValues {
+            pressure: self.load * pressure,
+            effective_stress: self.load * (pressure - 1.0),
+            displacement: -self.load * state.shortening(y),
+        })
+    }
+
+    /// Settlement of the top, downward positive, m.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite.
+    pub fn settlement(&self, seconds: f64) -> Result<f64, ExactError> {
+        Ok(self.load * self.at(seconds)?.shortening(self.height))
+    }
+
+    /// Terms used at a time, and what the others may add to the pressure over the load.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite.
+    pub fn accuracy(&self, seconds: f64) -> Result<Accuracy, ExactError> {
+        Ok(match self.at(seconds)?.form {
+            Form::Start => Accuracy::of(0, 0.0),
+            Form::Series { terms, .. } => Accuracy::of(terms, self.tail(seconds, terms)),
+            Form::Transform(_) => Accuracy::of(NODES / 2, INVERSION_ERROR),
+        })
+    }
+
+    /// The column at one time, by the way that is exact there.
+    fn at(&self, seconds: f64) -> Result<State<'_>, ExactError> {
+        if !(seconds.is_finite() && seconds >= 0.0) {
+            return Err(ExactError::TimeFactor(seconds));
+        }
+        let form = if seconds == 0.0 {
+            Form::Start
+        } else if self.tail(seconds, MOST_MODES) <= NEGLIGIBLE {
+            // The bound falls with the number of modes.
+            let mut terms = MOST_MODES;
+            while terms > 1 && self.tail(seconds, terms / 2) <= NEGLIGIBLE {
+                terms /= 2;
+            }
+            Form::Series { terms, seconds }
+        } else {
+            Form::Transform(self.transform(seconds))
+        };
+        Ok(State { column: self, form })
+    }
+
+    /// Bound on the pressure over the load of all modes from `terms` on.
+    ///
+    /// A mode's coefficient is at most `‖p₀‖/‖Z‖` (Bessel), and `|Z| ≤ √(λ Σ t/κ) ‖Z‖`, for `Z` vanishes at the top and
+    /// `∫ κ Z'² = λ ‖Z‖²`, norms with the weight `S`. Root `m` is at least `(m + 1 − n/2)π/Σ t√(S/κ)` in a stack of `n`
+    /// layers: a face moves the phase by less than a right angle.
+    fn tail(&self, seconds: f64, terms: usize) -> f64 {
+        let sum = |of: fn(&Layer) -> f64| self.layers.iter().map(of).sum::<f64>();
+        let resistance = sum(|layer| layer.thickness / layer.mobility);
+        let span = sum(|layer| layer.thickness * layer.slowness());
+        let energy = sum(|layer| layer.storage * layer.thickness * layer.undrained() * layer.undrained());
+        let first = (terms as f64 + 1.0 - 0.5 * self.layers.len() as f64) * PI / span;
+        if first * first * seconds < 1.0 {
+            // Terms rise before they fall: no bound by the integral.
+            return f64::INFINITY;
+        }
+        // Σ x e^{−x²t} over the roots x, PI/span apart: at most the first term and the integral behind it.
+        let first_term = first * elementary::exp(-first * first * seconds);
+        let rest = elementary::exp(-first * first * seconds) * span / (2.0 * PI * seconds);
+        (resistance * energy).sqrt() * (first_term + rest)
+    }
+
+    /// Phase of the wave of `√λ = root` at the top, and amplitude and phase at each bottom; the base's is 1 and 0.
+    fn waves(&self, root: f64) -> (f64, Vec<(f64, f64)>) {
+        let mut waves = Vec::with_capacity(self.layers.len());
+        let (mut amplitude, mut phase) = (1.0, 0.0_f64);
+        let mut below: Option<&Layer> = None;
+        for layer in &self.layers {
+            if let Some(below) = below {
+                // p = R cos θ and κ ∂p/∂y = −√(λSκ) R sin θ are continuous; the quadrant of θ stays.
+                let (sine, cosine) = (elementary::sin(phase), elementary::cos(phase));
+                let turned = below.admittance() / layer.admittance() * sine;
+                let turns = 2.0 * PI * (phase / (2.0 * PI)).round();
+                let mut within = atan2(turned, cosine);
+                let reduced = phase - turns;
+                if within - reduced > PI {
+                    within -= 2.0 * PI;
+                } else if within - reduced < -PI {
+                    within += 2.0 * PI;
+                }
+                amplitude *= elementary::hypot(turned, cosine);
+                phase = turns + within;
+            }
+            waves.push((amplitude, phase));
+            phase += root * layer.slowness() * layer.thickness;
+            below = Some(layer);
+        }
+        (phase, waves)
+    }
+
+    /// Mode `index`: its phase at the drained top is `(index + ½)π`, and grows with the root.
+    fn mode(&self, index: usize) -> Mode {
+        let wanted = (index as f64 + 0.5) * PI;
+        let span: f64 = self.layers.iter().map(|layer| layer.thickness * layer.slowness()).sum();
+        let margin = FRAC_PI_2 * self.layers.len() as f64;
+        let (mut low, mut high) = ((wanted - margin).max(0.0) / span, (wanted + margin) / span);
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.waves(middle).0 < wanted { low = middle } else { high = middle }
+        }
+        let root = 0.5 * (low + high);
+        let waves = self.waves(root).1;
+        let (mut start, mut norm) = (0.0, 0.0);
+        for (layer, &(amplitude, phase)) in self.layers.iter().zip(&waves) {
+            let number = root * layer.slowness();
+            let turned = number * layer.thickness;
+            start += amplitude / layer.modulus * sine_step(phase, turned) / number;
+            norm += layer.storage
+                * amplitude
+                * amplitude
+                * (0.5 * layer.thickness + 0.25 * sine_step(2.0 * phase, 2.0 * turned) / number);
+        }
+        Mode { rate: root * root, coefficient: start / norm, waves }
+    }
+
+    /// The transform of the pressure over the load on Talbot's contour for one time.
+    fn transform(&self, seconds: f64) -> Vec<Image> {
+        contour(NODES).map(|(z, weight)| Image::of(&self.layers, z / seconds, weight / seconds)).collect()
+    }
+
+    /// The layer at a height; the lower one on a face.
+    fn layer_at(&self, y: f64) -> usize {
+        self.layers.iter().rposition(|layer| y > layer.bottom).unwrap_or(0)
+    }
+}
+
+/// `sin(phase + turn) − sin(phase)` without cancellation.
+fn sine_step(phase: f64, turn: f64) -> f64 {
+    2.0 * elementary::cos(phase + 0.5 * turn) * elementary::sin(0.5 * turn)
+}
+
+/// The angle of the point `(x, y)` in (−π, π].
+fn atan2(y: f64, x: f64) -> f64 {
+    let angle = elementary::atan(y / x);
+    if x >= 0.0 {
+        angle
+    } else if y >= 0.0 {
+        angle + PI
+    } else {
+        angle - PI
+    }
+}
+
+/// The column at one time.
+struct State<'a> {
+    column: &'a LayeredColumn,
+    form: Form,
+}
+
+/// How the state is known.
+enum Form {
+    /// The undrained start.
+    Start,
+    /// The first `terms` modes at `seconds`.
+    Series { terms: usize, seconds: f64 },
+    /// The transform, one image per node of the contour.
+    Transform(Vec<Image>),
+}
+
+impl State<'_> {
+    /// Pressure over the load at the height `y`.
+    fn pressure(&self, y: f64) -> f64 {
+        let column = self.column;
+        let at = column.layer_at(y);
+        let layer = &column.layers[at];
+        let above = y - layer.bottom;
+        match &self.form {
+            Form::Start if y >= column.height => 0.0,
+            Form::Start => layer.undrained(),
+            Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
+                let (amplitude, phase) = mode.waves[at];
+                amplitude * elementary::cos(phase + root * layer.slowness() * above)
+            }),
+            Form::Transform(images) => images.iter().map(|image| image.pressure(layer, at, above)).sum(),
+        }
+    }
+
+    /// Shortening of the column between the base and the height `y` per load, m/Pa: `∫ (1 − p/q)/E_oed dy`.
+    fn shortening(&self, y: f64) -> f64 {
+        let column = self.column;
+        let mut total = 0.0;
+        for (at, layer) in column.layers.iter().enumerate() {
+            let above = (y - layer.bottom).min(layer.thickness);
+            if above <= 0.0 {
+                break;
+            }
+            let pressure = match &self.form {
+                Form::Start => layer.undrained() * above,
+                Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
+                    let (amplitude, phase) = mode.waves[at];
+                    let number = root * layer.slowness();
+                    amplitude * sine_step(phase, number * above) / number
+                }),
+                Form::Transform(images) => images.iter().map(|image| image.integral(layer, at, above)).sum(),
+            };
+            total += (above - pressure) / layer.modulus;
+        }
+        total
+    }
+
+    /// Sum over the modes of what `of` gives for each and its root, with its share and its decay; the small ones first.
+    fn over_modes(&self, terms: usize, seconds: f64, of: impl Fn(&Mode, f64) -> f64) -> f64 {
+        let modes = self.column.modes[..terms].iter().rev();
+        modes
+            .map(|mode| mode.coefficient * elementary::exp(-mode.rate * seconds) * of(mode, mode.rate.sqrt()))
+            .sum()
+    }
+}
+
+/// The transform of the pressure over the load at one node of the contour: in layer `i` it is `1/(E_oed S s)` and a
+/// part that is known by its values on both faces.
+struct Image {
+    /// Laplace variable `s`, 1/s.
+    s: Complex<f64>,
+    /// Weight of the node.
+    weight: Complex<f64>,
+    /// That part on the lower and the upper face of each layer.
+    faces: Vec<[Complex<f64>; 2]>,
+}
+
+impl Image {
+    /// Upward the flux is `Y w + j` of the part `w` (`Y = j = 0` at the base), downward the values follow from `p = 0`
+    /// at the top.
+    fn of(layers: &[Layer], s: Complex<f64>, weight: Complex<f64>) -> Self {
+        let zero = Complex::new(0.0, 0.0);
+        let root = elementary::sqrt_complex(s);
+        let (mut admittance, mut flux, mut steady_below) = (zero, zero, zero);
+        // Per layer: its Y and j at the bottom.
+        let mut below = Vec::with_capacity(layers.len());
+        for layer in layers {
+            let steady = Complex::new(layer.undrained(), 0.0) / s;
+            // The part above a face is `steady_below − steady` more than the one below it.
+            flux += admittance * (steady - steady_below);
+            steady_below = steady;
+            below.push((admittance, flux));
+            let [own, tangent, secant] = Self::of_layer(layer, root);
+            let share = (own + admittance * tangent).inv() * own;
+            let next = (own * tangent + admittance) * share;
+            flux = flux * secant * share;
+            admittance = next;
+        }
+        let mut faces = vec![[zero; 2]; layers.len()];
+        // Pressure on the face above: zero at the top.
+        let mut pressure_above = zero;
+        for (at, layer) in layers.iter().enumerate().rev() {
+            let steady = Complex::new(layer.undrained(), 0.0) / s;
+            let [own, tangent, secant] = Self::of_layer(layer, root);
+            let (admittance, flux) = below[at];
+            let top = pressure_above - steady;
+            let bottom = (top * secant - flux * tangent / own) * own / (own + admittance * tangent);
+            faces[at] = [bottom, top];
+            pressure_above = bottom + steady;
+        }
+        Self { s, weight, faces }
+    }
+
+    /// `κμ`, `tanh μt` and `1/cosh μt` of a layer.
+    fn of_layer(layer: &Layer, root: Complex<f64>) -> [Complex<f64>; 3] {
+        let turned = root * (layer.slowness() * layer.thickness);
+        let fall = elementary::exp_complex(-turned);
+        let one = Complex::new(1.0, 0.0);
+        let under = (one + fall * fall).inv();
+        [root * layer.admittance(), -elementary::exp_m1_complex(-2.0 * turned) * under, 2.0 * fall * under]
+    }
+
+    /// What this node adds to the pressure over the load `above` m over the bottom of layer `at`.
+    fn pressure(&self, layer: &Layer, at: usize, above: f64) -> f64 {
+        let steady = Complex::new(layer.undrained(), 0.0) / self.s;
+        let [bottom, top] = self.faces[at];
+        let shape = |from: f64| sinh_ratio(self.number(layer), from, layer.thickness);
+        (self.weight * (steady + bottom * shape(layer.thickness - above) + top * shape(above))).re
+    }
+
+    /// What this node adds to the pressure's integral from the bottom of layer `at` to `above` m over it.
+    fn integral(&self, layer: &Layer, at: usize, above: f64) -> f64 {
+        let steady = Complex::new(layer.undrained(), 0.0) / self.s;
+        let [bottom, top] = self.faces[at];
+        let number = self.number(layer);
+        // ∫ sinh μ(t − y)/sinh μt and ∫ sinh μy/sinh μt over (0, above).
+        let full = cosh_ratio(number, layer.thickness, layer.thickness);
+        let lower = full - cosh_ratio(number, layer.thickness - above, layer.thickness);
+        let upper = cosh_ratio(number, above, layer.thickness) - cosh_ratio(number, 0.0, layer.thickness);
+        (self.weight * (steady * above + (bottom * lower + top * upper) / number)).re
+    }
+
+    /// `μ = √(sS/κ)`.
+    fn number(&self, layer: &Layer) -> Complex<f64> {
+        elementary::sqrt_complex(self.s) * layer.slowness()
+    }
+}
+
+/// `sinh μa/sinh μb` for `0 ≤ a ≤ b`.
+fn sinh_ratio(number: Complex<f64>, a: f64, b: f64) -> Complex<f64> {
+    elementary::exp_complex(number * (a - b)) * elementary::exp_m1_complex(-2.0 * a * number)
+        / elementary::exp_m1_complex(-2.0 * b * number)
+}
+
+/// `cosh μa/sinh μb` for `0 ≤ a ≤ b`.
+fn cosh_ratio(number: Complex<f64>, a: f64, b: f64) -> Complex<f64> {
+    let one = Complex::new(1.0, 0.0);
+    elementary::exp_complex(number * (a - b)) * (one + elementary::exp_complex(-2.0 * a * number))
+        / -elementary::exp_m1_complex(-2.0 * b * number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::ColumnParameters;
+    use crate::terzaghi::Terzaghi;
+
+    fn soil(modulus: f64, conductivity: f64, porosity: f64) -> Material {
+        Material {
+            youngs_modulus: modulus,
+            hydraulic_conductivity: conductivity,
+            porosity,
+            ..Material::default()
+        }
+    }
+
+    /// The three columns of the table: name, thickness and soil of each layer from the base up.
+    fn columns() -> [(&'static str, Vec<(f64, Material)>); 3] {
+        let seed = Material::default();
+        [
+            ("clay-over-sand", vec![(0.5, seed), (0.5, soil(1e6, 1e-6, 0.3))]),
+            ("sand-over-clay", vec![(0.5, soil(1e6, 1e-6, 0.3)), (0.5, seed)]),
+            ("sandwich", vec![(0.3, soil(1e7, 1e-4, 0.3)), (0.4, soil(5e5, 1e-7, 0.5)), (0.3, seed)]),
+        ]
+    }
+
+    #[test]
+    fn pressures_and_settlements_match_forty_digits() {
+        let seconds_per_time_factor = ColumnParameters::default().time(1.0);
+        for (name, layers) in columns() {
+            let column = LayeredColumn::new(1.0, &layers).unwrap();
+            let rows: Vec<Vec<&str>> = include_str!("../tests/reference/layered.csv")
+                .lines()
+                .map(|line| line.split(',').collect::<Vec<_>>())
+                .filter(|row| row[0] == name)
+                .collect();
+            assert_eq!(rows.len(), 24);
+            for row in rows {
+                let [time_factor, y, pressure, settlement] =
+                    [1, 2, 3, 4].map(|cell| row[cell].parse::<f64>().unwrap());
+                let seconds = time_factor * seconds_per_time_factor;
+                let found = column.fields(seconds, y).unwrap().pressure;
+                assert!((found - pressure).abs() < 1e-13, "{row:?}: {found}");
+                let found = column.settlement(seconds).unwrap() / column.final_settlement();
+                assert!((found - settlement).abs() < 1e-13, "{row:?}: {found}");
+                assert!(column.accuracy(seconds).unwrap().bound() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_series_and_the_transform_agree_wherever_both_hold() {
+        for (name, layers) in columns() {
+            let column = LayeredColumn::new(1.0, &layers).unwrap();
+            let slowest = 1.0 / column.modes[0].rate;
+            for share in [1e-4, 1e-3, 0.02, 0.3, 2.0] {
+                let seconds = share * slowest;
+                if column.tail(seconds, MOST_MODES) > NEGLIGIBLE {
+                    continue;
+                }
+                let series = State { column: &column, form: Form::Series { terms: MOST_MODES, seconds } };
+                let transform = State { column: &column, form: Form::Transform(column.transform(seconds)) };
+                for step in 0..=20_u8 {
+                    let y = f64::from(step) / 20.0;
+                    let difference = series.pressure(y) - transform.pressure(y);
+                    assert!(difference.abs() < INVERSION_ERROR, "{name} {share} {y}: {difference:e}");
+                    let difference =
+                        (series.shortening(y) - transform.shortening(y)) / column.final_settlement();
+                    assert!(difference.abs() < INVERSION_ERROR, "{name} {share} {y}: {difference:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn layers_of_one_soil_are_terzaghis_column_at_early_and_late_times() {
+        let seed = ColumnParameters { load: 3e3, ..ColumnParameters::default() };
+        let terzaghi = Terzaghi::compressible(&seed).unwrap();
+        let soil = Material::default();
+        let column = LayeredColumn::new(3e3, &[(0.2, soil), (0.5, soil), (0.3, soil)]).unwrap();
+        for time_factor in [0.0, 1e-9, 1e-6, 1e-4, 0.01, 0.3, 2.0, 30.0] {
+            let seconds = seed.time(time_factor);
+            for y in [0.0, 0.1, 0.2, 0.69, 0.9, 0.999, 1.0] {
+                let expected = terzaghi.fields(time_factor, 1.0 - y).unwrap();
+                let found = column.fields(seconds, y).unwrap();
+                let difference = (found.pressure - expected.pressure) / 3e3;
+                assert!(difference.abs() < 1e-12, "{time_factor} {y}: {difference:e}");
+                let difference = (found.displacement - expected.displacement) / seed.final_settlement();
+                assert!(difference.abs() < 1e-12, "{time_factor} {y}: {difference:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn pressure_and_flux_are_continuous_and_the_start_is_undrained() {
+        let layers = [(0.3, soil(3e7, 1e-8, 0.2)), (0.7, soil(1e6, 1e-4, 0.4))];
+        let column = LayeredColumn::new(1.0, &layers).unwrap();
+        let seconds = 0.01 / column.modes[0].rate;
+        let step = 1e-6;
+        let slope = |from: f64| {
+            let at = |y: f64| column.fields(seconds, y).unwrap().pressure;
+            (at(from + step) - at(from)) / step
+        };
+        let (below, above) = (slope(0.3 - step) * 1e-8, slope(0.3 + 1e-12) * 1e-4);
+        assert!((below / above - 1.0).abs() < 1e-3, "{below:e} {above:e}");
+        let start = column.fields(0.0, 0.1).unwrap().pressure;
+        let coupling = layers[0].1.coupling_modulus();
+        assert!((start - coupling / (coupling + layers[0].1.oedometric_modulus())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn impossible_layers_are_refused() {
+        assert!(LayeredColumn::new(1.0, &[]).is_err());
+        assert!(LayeredColumn::new(1.0, &[(0.0, Material::default())]).is_err());
+        assert!(LayeredColumn::new(f64::NAN, &[(1.0, Material::default())]).is_err());
+        let column = LayeredColumn::new(1.0, &[(1.0, Material::default())]).unwrap();
+        assert!(column.fields(-1.0, 0.5).is_err() && column.fields(1.0, 1.1).is_err());
+    }
+}

@@ -1,0 +1,317 @@
+//! A soil that yields: a front of yielding moves into a column that drains at its top.
+//!
+//! The soil has the oedometric modulus `E₁` where the effective stress is at its largest value so far and beyond the
+//! preconsolidation, and `E₂ > E₁` below. Undrained it stays elastic; as water leaves, places yield from the top on.
+//! With `S_j = 1/E_j + n/K_w`, `c_j = k/(γ_w S_j)` and depth `z`, for a half-space
+//!
+//! ```text
+//! z < λ√t   p = p_y erf(z/2√(c₁t))/erf(a)                   a = λ/2√c₁
+//! z > λ√t   p = p_0 − (p_0 − p_y) erfc(z/2√(c₂t))/erfc(b)   b = λ/2√c₂
+//! λ         p_y exp(−a²)/(erf(a)√c₁) = (p_0 − p_y) exp(−b²)/(erfc(b)√c₂)
+//! ```
+//!
+//! Stefan's problem of two phases without latent heat (Neumann; Carslaw & Jaeger 1959, section 11.2), for stress and
+//! strain are continuous at the front. It is a column's as long as the base has not heard of the top.
+
+use core::f64::consts::PI;
+
+use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal, positive};
+use crate::field_values::{Accuracy, FieldValues};
+use oedometer_soil::elementary::{erf, erfc, exp};
+
+/// A column of a soil that yields, under a load that acts at once. SI; stresses here are compression positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldingColumn {
+    /// Height of the column, m.
+    pub height: f64,
+    /// Load `q`, Pa.
+    pub load: f64,
+    /// Effective stress `σ'_0` before the load, Pa.
+    pub initial_stress: f64,
+    /// Largest effective stress so far, `σ'_pc`, Pa.
+    pub preconsolidation: f64,
+    /// Oedometric modulus `E₁` of first loading, Pa.
+    pub virgin_modulus: f64,
+    /// Oedometric modulus `E₂` of unloading and reloading, Pa.
+    pub reload_modulus: f64,
+    /// Porosity `n`.
+    pub porosity: f64,
+    /// Bulk modulus `K_w` of the water, Pa.
+    pub water_bulk_modulus: f64,
+    /// `κ = k/γ_w`, m²/(Pa s).
+    pub mobility: f64,
+}
+
+/// The exact solution of a [`YieldingColumn`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YieldFront {
+    column: YieldingColumn,
+    /// `√c₁` and `√c₂`, m/√s.
+    speeds: [f64; 2],
+    /// Pressure `p_0` of the undrained start, Pa.
+    start: f64,
+    /// Pressure `p_y` at which a place yields, Pa.
+    yielding: f64,
+    /// `λ`, m/√s.
+    front: f64,
+}
+
+impl YieldFront {
+    /// The front of a column.
+    ///
+    /// # Errors
+    /// When a parameter is impossible, the modulus of reloading below that of first loading, or the stress at the end
+    /// not beyond the preconsolidation, so that nothing yields, or the undrained start beyond it already.
+    pub fn new(column: YieldingColumn) -> Result<Self, ExactError> {
+        let virgin = normal("oedometric modulus of first loading", column.virgin_modulus)?;
+        let reload = normal("oedometric modulus of reloading", column.reload_modulus)?;
+        if reload < virgin {
+            return Err(ExactError::ReloadModulus { reload, virgin });
+        }
+        positive("height", column.height)?;
+        let load = normal("load", column.load)?;
+        if !(column.initial_stress.is_finite() && column.initial_stress >= 0.0) {
+            return Err(ExactError::NotPositive { quantity: "initial stress", value: column.initial_stress });
+        }
+        let preconsolidation = positive("preconsolidation", column.preconsolidation)?;
+        let of_water = column.porosity / positive("bulk modulus of the water", column.water_bulk_modulus)?;
+        let mobility = normal("mobility of the water", column.mobility)?;
+        let [storage, elastic_storage] = [1.0 / virgin + of_water, 1.0 / reload + of_water];
+        let speeds = [(mobility / storage).sqrt(), (mobility / elastic_storage).sqrt()];
+        let start = load / (reload * elastic_storage);
+        let end = column.initial_stress + load;
+        let yielding = end - preconsolidation;
+        if yielding <= 0.0 || yielding >= start {
+            return Err(ExactError::NoYieldFront { preconsolidation, start: end - start, end });
+        }
+        let mut solution = Self { column, speeds, start, yielding, front: 0.0 };
+        solution.front = solution.found_front();
+        Ok(solution)
+    }
+
+    /// `λ` by bisection: water arrives at the front faster than it leaves while the front is near the top.
+    fn found_front(&self) -> f64 {
+        let surplus = |a: f64| {
+            let b = a * self.speeds[0] / self.speeds[1];
+            let leaves = self.yielding * exp(-a * a) / (erf(a) * self.speeds[0]);
+            leaves - (self.start - self.yielding) * exp(-b * b) / (erfc(b) * self.speeds[1])
+        };
+        // The flux that leaves falls from infinity to nothing, the one that arrives rises.
+        let (mut low, mut high) = (0.0, 26.0);
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return 2.0 * self.speeds[0] * middle;
+            }
+            if surplus(middle) > 0.0 { low = middle } else { high = middle }
+        }
+    }
+
+    /// Depth of the front, m.
+    pub fn front_depth(&self, seconds: f64) -> f64 {
+        self.front * seconds.sqrt()
+    }
+
+    /// Water that has left through the top, m³ per m².
+    pub fn water_out(&self, seconds: f64) -> f64 {
+        let a = self.front / (2.0 * self.speeds[0]);
+        let root = (seconds / PI).sqrt();
+        2.0 * self.column.mobility * self.yielding * root / (erf(a) * self.speeds[0])
+    }
+
+    /// Pressure at a depth in m, Pa.
+    fn pressure(&self, seconds: f64, depth: f64) -> f64 {
+        if seconds == 0.0 {
+            return if depth == 0.0 { 0.0 } else { self.start };
+        }
+        let [first, second] = self.speeds;
+        let root = seconds.sqrt();
+        if depth < self.front_depth(seconds) {
+            self.yielding * erf(depth / (2.0 * first * root)) / erf(self.front / (2.0 * first))
+        } else {
+            let reached = erfc(depth / (2.0 * second * root)) / erfc(self.front / (2.0 * second));
+            self.start - (self.start - self.yielding) * reached
+        }
+    }
+
+    /// `∫ (p_0 − p) dz` from a depth to far below, Pa m.
+    fn lost_pressure(&self, seconds: f64, depth: f64) -> f64 {
+        let [first, second] = self.speeds;
+        let root = seconds.sqrt();
+        if root == 0.0 {
+            return 0.0;
+        }
+        let front = self.front_depth(seconds);
+        // ∫ erfc from x on, and ∫ erf from 0 to x.
+        let tail = |x: f64| exp(-x * x) / PI.sqrt() - x * erfc(x);
+        let risen = |x: f64| x * erf(x) - (1.0 - exp(-x * x)) / PI.sqrt();
+        let below = depth.max(front);
+        let (length, scale) = (2.0 * second * root, self.front / (2.0 * second));
+        let elastic = (self.start - self.yielding) * length * tail(below / length) / erfc(scale);
+        if depth >= front {
+            return elastic;
+        }
+        let (length, scale) = (2.0 * first * root, self.front / (2.0 * first));
+        let held = self.yielding * length * (risen(front / length) - risen(depth / length)) / erf(scale);
+        elastic + self.start * (front - depth) - held
+    }
+
+    /// Shortening of all below a depth in the column, m, from before the load on.
+    fn shortening_below(&self, seconds: f64, depth: f64) -> f64 {
+        let Self { column, start, yielding, .. } = *self;
+        let elastic = (column.load - start) / column.reload_modulus * (column.height - depth);
+        let base = self.lost_pressure(seconds, column.height);
+        let front = self.front_depth(seconds);
+        if depth >= front {
+            return elastic + (self.lost_pressure(seconds, depth) - base) / column.reload_modulus;
+        }
+        // Above the front the stress rose by p_0 − p_y elastically and by the rest at the virgin modulus.
+        let at_front = self.lost_pressure(seconds, front);
+        let yielded = self.lost_pressure(seconds, depth) - at_front - (start - yielding) * (front - depth);
+        elastic
+            + (at_front - base + (start - yielding) * (front - depth)) / column.reload_modulus
+            + yielded / column.virgin_modulus
+    }
+
+    /// Pressure, effective stress with the initial one, and displacement since before the load, at the relative depth
+    /// `zeta`, `seconds` after the load.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite, or `zeta` outside [0, 1].
+    pub fn fields(&self, seconds: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let seconds = checked_time_factor(seconds)?;
+        let depth = checked_depth(zeta)? * self.column.height;
+        let pressure = self.pressure(seconds, depth);
+        Ok(FieldValues {
+            pressure,
+            effective_stress: pressure - self.column.load - self.column.initial_stress,
+            displacement: -self.shortening_below(seconds, depth),
+        })
+    }
+
+    /// Settlement of the top, downward positive, since before the load, m.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite.
+    pub fn settlement(&self, seconds: f64) -> Result<f64, ExactError> {
+        Ok(self.shortening_below(checked_time_factor(seconds)?, 0.0))
+    }
+
+    /// Settlement long after, when all of the column has yielded, m.
+    pub fn final_settlement(&self) -> f64 {
+        let Self { column, yielding, .. } = self;
+        let strain = (column.load - yielding) / column.reload_modulus + yielding / column.virgin_modulus;
+        column.height * strain
+    }
+
+    /// What the base, which a half-space does not have, may change of the pressure over the load: what an image of
+    /// the elastic part adds, twice.
+    ///
+    /// # Errors
+    /// When `seconds` is negative or not finite.
+    pub fn accuracy(&self, seconds: f64) -> Result<Accuracy, ExactError> {
+        let seconds = checked_time_factor(seconds)?;
+        if seconds == 0.0 {
+            return Ok(Accuracy::of(1, 0.0));
+        }
+        let second = 2.0 * self.speeds[1];
+        let reached = erfc(self.column.height / (second * seconds.sqrt())) / erfc(self.front / second);
+        Ok(Accuracy::of(1, (2.0 * reached * (self.start - self.yielding) / self.column.load).min(1.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn column(
+        [virgin, reload, conductivity, porosity, initial, preconsolidation]: [f64; 6],
+    ) -> YieldingColumn {
+        YieldingColumn {
+            height: 1.0,
+            load: 1e5,
+            initial_stress: initial,
+            preconsolidation,
+            virgin_modulus: virgin,
+            reload_modulus: reload,
+            porosity,
+            water_bulk_modulus: 2.2e9,
+            mobility: conductivity / 9810.0,
+        }
+    }
+
+    #[test]
+    fn pressures_fronts_and_flows_match_thirty_digits() {
+        let columns = [
+            ("stiff-until-yield", column([1.2e6, 1.2e7, 1e-7, 0.5, 2e4, 6e4])),
+            ("late-yield", column([1.2e6, 6e6, 1e-8, 0.4, 0.0, 9e4])),
+            ("early-yield", column([2e6, 1e7, 1e-8, 0.4, 3e4, 3.1e4])),
+        ];
+        for (name, column) in columns {
+            let solution = YieldFront::new(column).unwrap();
+            let rows: Vec<Vec<&str>> = include_str!("../tests/reference/yield_front.csv")
+                .lines()
+                .map(|line| line.split(',').collect::<Vec<_>>())
+                .filter(|row| row[0] == name)
+                .collect();
+            assert_eq!(rows.len(), 14);
+            for row in rows {
+                let [seconds, depth, pressure, front, out] =
+                    [1, 2, 3, 4, 5].map(|cell| row[cell].parse::<f64>().unwrap());
+                let found = solution.fields(seconds, depth).unwrap().pressure;
+                assert!((found - pressure).abs() < 1e-12 * column.load, "{row:?}: {found}");
+                assert!((solution.front_depth(seconds) / front - 1.0).abs() < 1e-12, "{row:?}");
+                assert!((solution.water_out(seconds) / out - 1.0).abs() < 1e-12, "{row:?}");
+                assert!(solution.accuracy(seconds).unwrap().bound() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_settlement_is_the_water_that_left_less_what_the_water_gave_back() {
+        let column = column([1.2e6, 6e6, 1e-8, 0.4, 2e4, 6e4]);
+        let solution = YieldFront::new(column).unwrap();
+        let undrained = solution.settlement(0.0).unwrap();
+        for seconds in [1.0, 30.0, 400.0] {
+            let lost = solution.lost_pressure(seconds, 0.0) - solution.lost_pressure(seconds, 1.0);
+            let expected = solution.water_out(seconds) - column.porosity / column.water_bulk_modulus * lost;
+            let found = solution.settlement(seconds).unwrap() - undrained;
+            assert!((found / expected - 1.0).abs() < 1e-11, "{seconds}: {found:e} {expected:e}");
+            // The displacement's slope is the strain of the stress at the place.
+            for depth in [0.3 * solution.front_depth(seconds), 2.0 * solution.front_depth(seconds)] {
+                let step = 1e-6;
+                let at = |depth: f64| solution.fields(seconds, depth).unwrap().displacement;
+                let strain = (at(depth + step) - at(depth - step)) / (2.0 * step);
+                let stress = column.load - solution.pressure(seconds, depth);
+                let elastic = stress.min(column.preconsolidation - column.initial_stress);
+                let expected = elastic / 6e6 + (stress - elastic) / 1.2e6;
+                assert!((strain / expected - 1.0).abs() < 1e-6, "{seconds} {depth}: {strain:e} {expected:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_moduli_are_terzaghis_half_space() {
+        let column = column([2e6, 2e6, 1e-8, 0.4, 3e4, 8e4]);
+        let solution = YieldFront::new(column).unwrap();
+        let seconds: f64 = 120.0;
+        let speed = solution.speeds[0];
+        for depth in [0.0, 0.01, 0.05, 0.2] {
+            let expected = solution.start * erf(depth / (2.0 * speed * seconds.sqrt()));
+            let found = solution.fields(seconds, depth).unwrap().pressure;
+            assert!((found - expected).abs() < 1e-12 * column.load);
+        }
+    }
+
+    #[test]
+    fn columns_without_a_front_are_refused_in_sentences() {
+        let refused = |values| YieldFront::new(column(values)).unwrap_err().to_string();
+        assert!(refused([2e6, 1e6, 1e-8, 0.4, 3e4, 8e4]).contains("below that of first loading"));
+        // Never reached, and reached by the undrained start.
+        assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 1.4e5]).contains("yield"));
+        assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 3.0e4]).contains("yield"));
+        // The front has reached the base long ago.
+        let solution = YieldFront::new(column([2e6, 4e6, 1e-6, 0.4, 3e4, 8e4])).unwrap();
+        assert!(solution.accuracy(1e4).unwrap().bound() > 0.1);
+    }
+}
