@@ -125,6 +125,7 @@ mod case;
 mod cli;
 mod foreign;
 mod golden;
+mod history;
 mod import;
 mod judge;
 mod measure;

@@ -17,8 +17,8 @@ pub mod time_notes;
 pub mod trust;
 
 use crate::cli::commands::{
-    accept, check, completions, exact, explain, list, merge, new, plan, records, report, run, schema, score,
-    solve, spread, stability,
+    accept, bisect, check, compare, completions, exact, explain, history, list, merge, new, plan, records,
+    report, run, schema, score, solve, spread, stability,
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
@@ -64,6 +64,12 @@ enum Command {
     New(new::Arguments),
     /// Show where the error of a case comes from and what changed
     Explain(explain::Arguments),
+    /// Compare two states of studies: folders of records or git revisions
+    Compare(compare::Arguments),
+    /// Show golden values over the commits that changed them
+    History(history::Arguments),
+    /// Find the commit that moved the results of a study
+    Bisect(bisect::Arguments),
     /// Measure the scatter of results that should be equal
     Spread(spread::Arguments),
     /// Print the JSON Schema of study files, records, mappings or case files
@@ -129,6 +135,9 @@ fn run(command: Command) -> anyhow::Result<Exit> {
         Command::List(arguments) => list::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::History(arguments) => history::run(&arguments),
+        Command::Bisect(arguments) => bisect::run(&arguments),
         Command::Spread(arguments) => spread::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments, self::command()),

@@ -75,7 +75,9 @@ fn inputs(table: &str) -> String {
         _ => SceneKind::Terzaghi,
     };
     let seed = Case::seed(Task::Solve, scene);
-    let rows = Key::of(table).map(|key| {
+    // A sweep takes the keys of the other tables too, which have them on the same page.
+    let is_own = |key: &&Key| table != "sweep" || key.tables.len() == 1 || key.name == "cells";
+    let rows = Key::of(table).filter(is_own).map(|key| {
         let left_out = match key.name {
             "method" | "cells" => "must be given".to_owned(),
             "time_step" => "the integrator's own".to_owned(),

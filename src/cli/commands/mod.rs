@@ -1,10 +1,13 @@
 //! The subcommands, one file each.
 
 pub mod accept;
+pub mod bisect;
 pub mod check;
+pub mod compare;
 pub mod completions;
 pub mod exact;
 pub mod explain;
+pub mod history;
 pub mod list;
 pub mod merge;
 pub mod new;

@@ -1,0 +1,257 @@
+//! `oedometer bisect`: the commit from which on the results of a study are others.
+//!
+//! Drives `git bisect` in a work tree of its own. A commit is bad where values that moved between the good and the
+//! bad one have moved; one that cannot be built or run, or has none of these values, is skipped.
+
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::stream::{print_data, say};
+use crate::golden::compare::{Change, Difference, compare};
+use crate::golden::difference_groups::groups_of;
+use crate::golden::is_counter;
+use crate::golden::parts;
+use crate::history::repository::{Commit, Repository};
+use crate::history::state::{State, StudyState};
+use crate::render::tables::golden_changes::sentence;
+use crate::study::name::name_of;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Arguments of `bisect`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Examples:\n  oedometer bisect studies/gate.toml --good v1.0 --bad HEAD --allow-solvers\n  \
+                        oedometer bisect gate --good v1.0 --bad HEAD --build 'make' --run './solver-study {out}'"
+)]
+pub struct Arguments {
+    /// Study file, or its name: it is looked for in each commit
+    #[arg(value_name = "STUDY")]
+    study: String,
+    /// A revision with the results as they should be
+    #[arg(long, value_name = "A")]
+    good: String,
+    /// A revision with the other results
+    #[arg(long, value_name = "B")]
+    bad: String,
+    /// Command that runs the study in the folder of each commit and leaves its records in `{out}`; `oedometer run` of
+    /// this program where none is given
+    #[arg(long, value_name = "COMMAND")]
+    run: Option<String>,
+    /// Command that builds what is run; where it fails the commit is skipped
+    #[arg(long, value_name = "COMMAND")]
+    build: Option<String>,
+    /// Let the study start the solvers that it attaches, in every commit
+    #[arg(long)]
+    allow_solvers: bool,
+}
+
+/// Values of a commit, or why it has none.
+type Tried = Result<StudyState, String>;
+
+/// Searches, and prints the commit with what moved.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let usage = |error: &dyn std::fmt::Display| Ended::usage(error.to_string());
+    let here = std::env::current_dir()?;
+    let repository = Repository::around(&here).map_err(|error| usage(&error))?;
+    let [good, bad] = [&arguments.good, &arguments.bad].map(|named| repository.commit(named));
+    let (good, bad) = (good.map_err(|error| usage(&error))?, bad.map_err(|error| usage(&error))?);
+    let trial = Trial::new(arguments, &repository, &bad)?;
+    let ended = search(&trial, &good, &bad);
+    trial.clean();
+    let found = ended?;
+    print_data(&found)?;
+    Ok(Exit::Pass)
+}
+
+/// The report of the search.
+fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<String> {
+    let ends = |commit: &Commit, which: &str| {
+        trial.values_at(commit).map_err(|reason| {
+            Ended::with(
+                Exit::CaseFailed,
+                format!("the {which} commit {} has no results: {reason}", commit.short()),
+            )
+        })
+    };
+    let right = ends(good, "good")?;
+    let wrong = ends(bad, "bad")?;
+    let moved = moved_values(&right, &wrong);
+    if moved.is_empty() {
+        return Err(Ended::with(
+            Exit::NothingSelected,
+            format!(
+                "nothing moved between {} and {}: there is nothing to search for",
+                good.short(),
+                bad.short()
+            ),
+        ));
+    }
+    say!("{} values moved between {} and {}", moved.len(), good.short(), bad.short());
+    let mut skipped = Vec::new();
+    let mut told = trial.git(&["bisect", "start", "--no-checkout", &bad.hash, &good.hash])?;
+    loop {
+        if let Some(hash) = told.lines().find_map(|line| line.strip_suffix(" is the first bad commit")) {
+            return report(trial, &right, hash, &skipped);
+        }
+        if told.contains("only 'skip'ped commits left") {
+            let list =
+                told.lines().filter(|line| line.len() == 40).map(|hash| &hash[..8]).collect::<Vec<_>>();
+            let reason = format!(
+                "the commits that are left cannot be tried, one of them is the first bad one: {}",
+                list.join(", ")
+            );
+            return Err(Ended::with(Exit::IncompleteMerge, reason));
+        }
+        let commit = trial.repository.commit(trial.git(&["rev-parse", "BISECT_HEAD"])?.trim())?;
+        let word = match trial.values_at(&commit) {
+            Ok(values) => match moved_like(&right, &values, &moved) {
+                Some(true) => "bad",
+                Some(false) => "good",
+                None => skip(&mut skipped, &commit, "it has none of the values that moved"),
+            },
+            Err(reason) => skip(&mut skipped, &commit, &reason),
+        };
+        say!("{} {word}: {}", commit.short(), commit.subject);
+        told = trial.git(&["bisect", word, &commit.hash])?;
+    }
+}
+
+fn skip(skipped: &mut Vec<String>, commit: &Commit, reason: &str) -> &'static str {
+    skipped.push(format!("{} {}: {reason}", commit.short(), commit.subject));
+    "skip"
+}
+
+/// Values that differ beyond their tolerance: those that got worse, or all where none did.
+fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
+    let both = |one: &Difference| one.golden.is_some() && one.found.is_some();
+    let moved: Vec<Difference> =
+        compare(&right.golden, &wrong.golden.values).into_iter().filter(both).collect();
+    let is_worse = |one: &&Difference| {
+        if is_counter(parts(&one.name).1) { one.found > one.golden } else { one.change == Change::Moved }
+    };
+    let worse: Vec<Difference> = moved.iter().filter(is_worse).cloned().collect();
+    if worse.is_empty() { moved } else { worse }
+}
+
+/// Whether any of the values has moved from the right ones in the direction that it had gone at the bad commit; `None`
+/// where none of them is there.
+fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Option<bool> {
+    let there = moved.iter().filter_map(|one| Some((one, *here.golden.values.get(&one.name)?)));
+    let has_moved = |(one, value): (&Difference, f64)| {
+        let (Some(before), Some(after)) = (one.golden, one.found) else { return false };
+        let tolerance = right.golden.tolerance(&one.name, before.abs().max(value.abs()));
+        !((value - before).abs() <= tolerance) && ((value > before) == (after > before) || value.is_nan())
+    };
+    there.map(has_moved).reduce(|any, one| any || one)
+}
+
+/// The first bad commit, what moved there, and what was skipped.
+fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String]) -> anyhow::Result<String> {
+    let commit = trial.repository.commit(hash)?;
+    let mut text = format!("{} {} {}\n", commit.hash, commit.date, commit.subject);
+    if let Ok(values) = trial.values_at(&commit) {
+        let differences = compare(&right.golden, &values.golden.values);
+        for group in groups_of(&differences, right.golden.values.keys().map(String::as_str)) {
+            writeln!(text, "  {}", sentence(&group))?;
+            if let (Some(before), Some(after)) = (group.worst.golden, group.worst.found) {
+                writeln!(text, "    {before:e} -> {after:e}")?;
+            }
+        }
+    }
+    for line in skipped {
+        writeln!(text, "  skipped {line}")?;
+    }
+    Ok(text)
+}
+
+/// A work tree of its own in which commits are tried one after the other.
+struct Trial<'a> {
+    arguments: &'a Arguments,
+    repository: &'a Repository,
+    folder: PathBuf,
+}
+
+impl<'a> Trial<'a> {
+    fn new(arguments: &'a Arguments, repository: &'a Repository, first: &Commit) -> anyhow::Result<Self> {
+        let folder = std::env::temp_dir().join(format!("oedometer-bisect-{}", std::process::id()));
+        let tree = folder.join("tree");
+        let place = tree.to_string_lossy();
+        repository.run(&["worktree", "add", "--detach", "--quiet", &place, &first.hash])?;
+        Ok(Self { arguments, repository, folder })
+    }
+
+    fn tree(&self) -> PathBuf {
+        self.folder.join("tree")
+    }
+
+    fn git(&self, words: &[&str]) -> anyhow::Result<String> {
+        Ok(Repository::around(&self.tree())?.run(words)?)
+    }
+
+    /// Removes the work tree; the user's own is never touched.
+    fn clean(&self) {
+        let place = self.tree();
+        let _ = self.repository.run(&["worktree", "remove", "--force", &place.to_string_lossy()]);
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+
+    /// Checks a commit out, builds and runs it, and reads its records.
+    fn values_at(&self, commit: &Commit) -> Tried {
+        let said = |error: anyhow::Error| error.to_string();
+        self.git(&["checkout", "--quiet", "--force", "--detach", &commit.hash]).map_err(said)?;
+        let out = self.folder.join("out");
+        let _ = std::fs::remove_dir_all(&out);
+        if let Some(build) = &self.arguments.build {
+            self.shell(build, &out).map_err(|reason| format!("the build failed: {reason}"))?;
+        }
+        let study = self.study_file()?;
+        match &self.arguments.run {
+            Some(command) => self.shell(command, &out)?,
+            None => self.run_here(&study, &out)?,
+        }
+        let mut state = State::of_records(&out).map_err(|error| error.to_string())?;
+        let name = name_of(&study).to_owned();
+        state.studies.remove(&name).ok_or_else(|| format!("there are no records of `{name}`"))
+    }
+
+    /// The study in this commit: where it is named, or by its name anywhere.
+    fn study_file(&self) -> Result<String, String> {
+        let named = &self.arguments.study;
+        if self.tree().join(named).is_file() {
+            return Ok(named.clone());
+        }
+        let name = name_of(named);
+        let listed = self.git(&["ls-files", &format!("{name}.toml"), &format!("*/{name}.toml")]);
+        let listed = listed.map_err(|error| error.to_string())?;
+        listed.lines().next().map(str::to_owned).ok_or_else(|| format!("it has no study `{named}`"))
+    }
+
+    /// Runs the study by this program. Cases that fail leave records, and are told by the values that are missing.
+    fn run_here(&self, study: &str, out: &Path) -> Result<(), String> {
+        let program = std::env::current_exe().map_err(|error| error.to_string())?;
+        let mut command = Command::new(program);
+        command.args(["run", study, "--out"]).arg(out);
+        if self.arguments.allow_solvers {
+            command.arg("--allow-solvers");
+        }
+        ended(command.current_dir(self.tree()))
+    }
+
+    fn shell(&self, line: &str, out: &Path) -> Result<(), String> {
+        let line = line.replace("{out}", &out.to_string_lossy());
+        let mut command = if cfg!(windows) { Command::new("cmd") } else { Command::new("sh") };
+        command.arg(if cfg!(windows) { "/C" } else { "-c" }).arg(line);
+        ended(command.current_dir(self.tree()))
+    }
+}
+
+/// Runs a command to its end; its last words where it fails.
+fn ended(command: &mut Command) -> Result<(), String> {
+    let output = command.stdin(Stdio::null()).output().map_err(|error| error.to_string())?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    let last = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
+    Err(format!("{}: {}", output.status, last.trim()))
+}

@@ -1,0 +1,82 @@
+//! `oedometer compare`: two states of studies beside each other, accuracy and cost apart.
+
+use crate::cli::commands::check::GOLDEN;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::stream::{print_data, say};
+use crate::history::comparison::{StudyComparison, compare_states};
+use crate::history::repository::Repository;
+use crate::history::state::State;
+use crate::render::history_tables::comparison_tables;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `compare`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Examples:\n  oedometer compare HEAD~1 HEAD\n  oedometer compare out-before out-after terzaghi-mesh"
+)]
+pub struct Arguments {
+    /// State before: a folder of results that `run --out` wrote, or a git revision with golden values
+    #[arg(value_name = "A")]
+    before: String,
+    /// State after
+    #[arg(value_name = "B")]
+    after: String,
+    /// Names of the studies; all that both states have where none is named
+    #[arg(value_name = "STUDY")]
+    studies: Vec<String>,
+    /// Folder of the golden values in the repository
+    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
+    golden: PathBuf,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    format: TableFormat,
+}
+
+/// Reads both states, compares and prints; exit code 1 where something got worse.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let before = state_of(&arguments.before, &arguments.golden)?;
+    let after = state_of(&arguments.after, &arguments.golden)?;
+    let (found, notes) = compare_states(&before, &after, &arguments.studies);
+    for note in &notes {
+        say!("{note}");
+    }
+    if found.is_empty() {
+        return Err(Ended::with(
+            Exit::NothingSelected,
+            format!("{} and {} have no study in common", before.name, after.name),
+        ));
+    }
+    if arguments.format == TableFormat::Json {
+        print_data(&json_of(&found)?)?;
+    } else {
+        print_tables(&comparison_tables(&found, [&before.name, &after.name]), arguments.format)?;
+    }
+    let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
+    say!("{} of {} studies got worse", regressed.len(), found.len());
+    Ok(if regressed.is_empty() { Exit::Pass } else { Exit::VerdictFailed })
+}
+
+/// A state as it is named: a folder, or a revision of the repository around the current folder.
+pub fn state_of(named: &str, golden: &Path) -> anyhow::Result<State> {
+    let usage = |error: &dyn std::fmt::Display| Ended::usage(error.to_string());
+    let folder = Path::new(named);
+    if folder.is_dir() {
+        return State::of_records(folder).map_err(|error| usage(&error));
+    }
+    let (repository, folder) = repository_with(golden)?;
+    State::of_revision(&repository, named, &folder).map_err(|error| usage(&error))
+}
+
+/// The repository around the current folder, and the path of its golden values from the root.
+pub fn repository_with(golden: &Path) -> anyhow::Result<(Repository, String)> {
+    let here = std::env::current_dir()?;
+    let repository = Repository::around(&here).map_err(|error| Ended::usage(error.to_string()))?;
+    let root = repository.root().canonicalize()?;
+    let whole = here.canonicalize()?.join(golden);
+    let inside = whole.strip_prefix(&root).map_err(|_| {
+        Ended::usage(format!("{} lies outside the repository {}", whole.display(), root.display()))
+    })?;
+    let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
+    Ok((repository, folder))
+}

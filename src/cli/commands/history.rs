@@ -1,0 +1,55 @@
+//! `oedometer history`: golden values over the commits that changed them; nothing is run.
+
+use crate::cli::commands::check::GOLDEN;
+use crate::cli::commands::compare::repository_with;
+use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::stream::{print_data, say};
+use crate::history::timeline::timelines;
+use crate::render::history_tables::{timeline_summary, timeline_table};
+use std::path::PathBuf;
+
+/// Arguments of `history`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  oedometer history\n  oedometer history terzaghi-mesh --format csv")]
+pub struct Arguments {
+    /// Names of the studies; all with golden values where none is named, one row each
+    #[arg(value_name = "STUDY")]
+    studies: Vec<String>,
+    /// Folder of the golden values in the repository
+    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
+    golden: PathBuf,
+    /// Output format; csv and json have every commit of every study
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    format: TableFormat,
+}
+
+/// Reads the history and prints it.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+    let (repository, folder) = repository_with(&arguments.golden)?;
+    if repository.is_shallow() {
+        say!(
+            "the clone is shallow: commits before its first one are not shown; `git fetch --unshallow` brings them"
+        );
+    }
+    let (lines, notes) = timelines(&repository, &folder, &arguments.studies)
+        .map_err(|error| Ended::usage(error.to_string()))?;
+    if let [first, rest @ ..] = notes.as_slice() {
+        say!(
+            "{first}{}",
+            if rest.is_empty() { String::new() } else { format!(", and {} more files", rest.len()) }
+        );
+    }
+    if lines.is_empty() {
+        let what = format!("no commit has golden values of these studies in {folder}/");
+        return Err(Ended::with(Exit::NothingSelected, what));
+    }
+    match arguments.format {
+        TableFormat::Json => print_data(&json_of(&lines)?)?,
+        TableFormat::Table | TableFormat::Markdown if arguments.studies.is_empty() => {
+            print_tables(&[timeline_summary(&lines)], arguments.format)?;
+        }
+        format => print_tables(&[timeline_table(&lines)], format)?,
+    }
+    Ok(Exit::Pass)
+}

@@ -1,0 +1,139 @@
+//! Golden values over the commits that changed them.
+
+use crate::golden::case_changes::case_changes;
+use crate::golden::compare::compare;
+use crate::golden::{GoldenFile, is_counter, parts};
+use crate::history::comparison::{StudyComparison, Trend};
+use crate::history::repository::{Commit, GitError, Repository};
+use crate::history::state::{StudyState, golden_name, unreadable};
+use oedometer_soil::elementary;
+use std::collections::BTreeMap;
+
+/// Errors below this are round-off: their ratios say nothing.
+const ROUND_OFF: f64 = 1e-12;
+
+/// One commit that changed a study's golden values.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct Step {
+    /// The commit.
+    #[serde(flatten)]
+    pub commit: Commit,
+    /// The reason that the golden file gives.
+    pub reason: String,
+    /// Values of the file.
+    pub values: usize,
+    /// Geometric mean of the errors over those of the first file, chained over the values that neighbours share.
+    pub error_index: f64,
+    /// The same of the work counters.
+    pub work_index: f64,
+    /// Values that moved beyond the tolerance of the file before.
+    pub moved: usize,
+    /// Values that came or went.
+    pub unpaired: usize,
+    /// Largest relative change of an error.
+    pub largest_change: f64,
+    /// Where the errors went.
+    pub accuracy: Trend,
+    /// Where the work went.
+    pub cost: Trend,
+}
+
+/// A study's golden values over time.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct Timeline {
+    /// The study.
+    pub study: String,
+    /// The commits that changed its file, the first one first.
+    pub steps: Vec<Step>,
+}
+
+/// The timelines of the golden files in a folder of a repository, and what was passed over.
+///
+/// # Errors
+/// When git fails.
+pub(crate) fn timelines(
+    repository: &Repository,
+    folder: &str,
+    only: &[String],
+) -> Result<(Vec<Timeline>, Vec<String>), GitError> {
+    let commits = repository.changes_below(folder)?;
+    let mut files = Vec::new();
+    for (commit, paths) in &commits {
+        for path in paths {
+            let Some(study) = golden_name(path, folder) else { continue };
+            if only.is_empty() || only.iter().any(|name| name == study) {
+                files.push((study, commit, format!("{}:{path}", commit.hash)));
+            }
+        }
+    }
+    let objects: Vec<String> = files.iter().map(|(.., object)| object.clone()).collect();
+    let texts = repository.texts(&objects)?;
+    let mut lines: BTreeMap<&str, (Vec<Step>, Option<GoldenFile>)> = BTreeMap::new();
+    let mut notes = Vec::new();
+    for (study, commit, object) in &files {
+        // A commit that deleted the file has no text.
+        let Some(text) = texts.get(object) else { continue };
+        match GoldenFile::from_text(text) {
+            Ok(golden) => {
+                let (steps, before) = lines.entry(study).or_default();
+                steps.push(Step::of(commit, steps.last(), before.as_ref(), &golden));
+                *before = Some(golden);
+            }
+            Err(reason) => {
+                notes.push(unreadable(commit, object.split_once(':').map_or("", |(_, path)| path), &reason))
+            }
+        }
+    }
+    let timeline = |(study, (steps, _)): (&str, _)| Timeline { study: study.to_owned(), steps };
+    Ok((lines.into_iter().map(timeline).collect(), notes))
+}
+
+impl Step {
+    fn of(commit: &Commit, last: Option<&Self>, before: Option<&GoldenFile>, golden: &GoldenFile) -> Self {
+        let mut step = Self {
+            commit: commit.clone(),
+            reason: golden.reason.clone(),
+            values: golden.values.len(),
+            error_index: last.map_or(1.0, |last| last.error_index),
+            work_index: last.map_or(1.0, |last| last.work_index),
+            moved: 0,
+            unpaired: 0,
+            largest_change: 0.0,
+            accuracy: Trend::Same,
+            cost: Trend::Same,
+        };
+        let Some(before) = before else { return step };
+        let is_error = |name: &str| parts(name).1.contains(" T_v=") && !parts(name).1.starts_with("water");
+        step.error_index *= mean_ratio(before, golden, |name| is_error(name));
+        step.work_index *= mean_ratio(before, golden, |name| is_counter(parts(name).1));
+        let differences = compare(before, &golden.values);
+        let paired = |one: &&_| -> bool {
+            let one: &crate::golden::compare::Difference = one;
+            one.golden.is_some() && one.found.is_some()
+        };
+        step.moved = differences.iter().filter(paired).count();
+        step.unpaired = differences.len() - step.moved;
+        let errors = differences.iter().filter(|one| is_error(&one.name));
+        step.largest_change = errors.filter_map(|one| one.relative_change()).fold(0.0, f64::max);
+        let state = |golden: &GoldenFile| StudyState {
+            golden: golden.clone(),
+            inputs: None,
+            seconds: BTreeMap::new(),
+        };
+        if !case_changes(&differences).is_empty() {
+            let found = StudyComparison::of(&golden.study, &state(before), &state(golden));
+            (step.accuracy, step.cost) = (found.accuracy, found.cost);
+        }
+        step
+    }
+}
+
+/// Geometric mean of the ratios of what both files have.
+fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&str) -> bool) -> f64 {
+    let ratios = before.values.iter().filter(|(name, _)| is_meant(name)).filter_map(|(name, value)| {
+        let (before, after) = (value.abs(), after.values.get(name)?.abs());
+        (before > ROUND_OFF && after > ROUND_OFF).then(|| elementary::ln(after / before))
+    });
+    let (sum, count) = ratios.fold((0.0, 0_u32), |(sum, count), ratio| (sum + ratio, count + 1));
+    if count == 0 { 1.0 } else { elementary::exp(sum / f64::from(count)) }
+}
