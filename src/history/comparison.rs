@@ -1,8 +1,8 @@
 //! Two states beside each other: inputs that differ first, then accuracy and cost, apart.
 
-use crate::golden::case_changes::{CaseChange, case_changes};
-use crate::golden::compare::{Change, Difference, compare};
-use crate::golden::difference_groups::{DifferenceGroup, groups_of};
+use crate::golden::compare::{
+    CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
+};
 use crate::golden::{is_counter, parts};
 use crate::history::state::{Inputs, State, StudyState};
 use std::collections::{BTreeMap, BTreeSet};

@@ -2,8 +2,8 @@
 
 use crate::case::Case;
 use crate::case::tier::Tier;
+use crate::golden::GoldenFile;
 use crate::golden::references::REFERENCES;
-use crate::golden::{GoldenFile, values_of};
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::Record;
 use crate::record::store::RecordStore;
@@ -132,11 +132,6 @@ impl StudyState {
             inputs: Some(inputs.collect()),
             seconds: seconds.collect(),
         }
-    }
-
-    /// Only the values of records, for a state whose tolerances do not count.
-    pub fn values(records: &[Record]) -> BTreeMap<String, f64> {
-        values_of(records)
     }
 }
 

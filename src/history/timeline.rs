@@ -1,7 +1,6 @@
 //! Golden values over the commits that changed them.
 
-use crate::golden::case_changes::case_changes;
-use crate::golden::compare::compare;
+use crate::golden::compare::{Difference, case_changes, compare};
 use crate::golden::{GoldenFile, is_counter, parts};
 use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::repository::{Commit, GitError, Repository};
@@ -107,10 +106,7 @@ impl Step {
         step.error_index *= mean_ratio(before, golden, |name| is_error(name));
         step.work_index *= mean_ratio(before, golden, |name| is_counter(parts(name).1));
         let differences = compare(before, &golden.values);
-        let paired = |one: &&_| -> bool {
-            let one: &crate::golden::compare::Difference = one;
-            one.golden.is_some() && one.found.is_some()
-        };
+        let paired = |one: &&Difference| one.golden.is_some() && one.found.is_some();
         step.moved = differences.iter().filter(paired).count();
         step.unpaired = differences.len() - step.moved;
         let errors = differences.iter().filter(|one| is_error(&one.name));

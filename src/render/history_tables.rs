@@ -1,8 +1,10 @@
-//! Results over time as tables: two states of studies, and golden values over commits.
+//! Results over time as tables and pages: two states of studies, and golden values over commits.
 
-use crate::history::comparison::{StudyComparison, Trend};
-use crate::history::timeline::Timeline;
+use crate::history::comparison::{Arrow, StudyComparison, Trend};
+use crate::history::timeline::{Step, Timeline};
+use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::number;
+use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::summary;
 
@@ -143,4 +145,116 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
         rows,
     )
     .note("Indices: geometric mean of the errors, and of the work, over those of the first golden file.")
+}
+
+/// Arrows of one study drawn before the rest is only in the table.
+const MOST_ARROWS: usize = 40;
+
+/// Two states as a page: the tables, and each case as an arrow in the plane of cost and error.
+pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Page {
+    let moved = |one: &&StudyComparison| !one.groups.is_empty();
+    let mut sections = vec![Section {
+        heading: "What changed".to_owned(),
+        id: "changes".to_owned(),
+        blocks: comparison_tables(found, names).into_iter().map(Block::Table).collect(),
+        ..Section::default()
+    }];
+    let figures: Vec<Block> = found.iter().filter(moved).filter_map(arrows_of).map(Block::Figure).collect();
+    if !figures.is_empty() {
+        sections.push(Section {
+            heading: "Error and cost of each case".to_owned(),
+            id: "arrows".to_owned(),
+            blocks: figures,
+            ..Section::default()
+        });
+    }
+    let worse = found.iter().filter(|one| one.is_regression()).count();
+    Page {
+        title: format!("{} → {}", names[0], names[1]),
+        lead: format!("{worse} of {} studies got worse.", found.len()),
+        sections,
+        is_wide: true,
+        filter: Some("study".to_owned()),
+        ..Page::default()
+    }
+}
+
+/// The cases of a study that moved, each a line from its state before to a marker at its state after.
+fn arrows_of(one: &StudyComparison) -> Option<Figure> {
+    let is_drawable = |arrow: &&Arrow| {
+        let [before, after] = [arrow.before, arrow.after];
+        before != after
+            && [before.0, before.1, after.0, after.1].iter().all(|value| *value > 0.0 && value.is_finite())
+    };
+    let arrows: Vec<&Arrow> = one.arrows.iter().filter(is_drawable).take(MOST_ARROWS).collect();
+    if arrows.is_empty() {
+        return None;
+    }
+    let mut chart = Chart::new(
+        format!("{}: cases that moved", one.study),
+        ChartAxis::log10("point updates (–)"),
+        ChartAxis::log10("error of the pressure at the last output (–)"),
+    );
+    for arrow in &arrows {
+        chart.series.push(Series::new("", vec![arrow.before, arrow.after]).style(Style::Line).slot(0));
+    }
+    let ends = arrows.iter().map(|arrow| arrow.after).collect();
+    let starts = arrows.iter().map(|arrow| arrow.before).collect();
+    chart.series.push(Series::new("before", starts).style(Style::Markers).slot(1));
+    chart.series.push(Series::new("after", ends).style(Style::Markers).slot(2));
+    let caption = format!(
+        "{} of {} cases moved; to the left is cheaper, down is better.",
+        arrows.len(),
+        one.arrows.len()
+    );
+    Some(Figure::new(format!("arrows-{}", one.study), chart, caption))
+}
+
+/// Golden values over time as a page: a figure and the commits per study.
+pub(crate) fn timeline_page(lines: &[Timeline]) -> Page {
+    let summary = Section {
+        heading: "Studies".to_owned(),
+        id: "studies".to_owned(),
+        blocks: vec![Block::Table(timeline_summary(lines))],
+        ..Section::default()
+    };
+    let of_study = |line: &Timeline| {
+        let mut blocks = Vec::new();
+        if line.steps.len() > 1 {
+            blocks.push(Block::Figure(timeline_figure(line)));
+        }
+        blocks.push(Block::Table(timeline_table(std::slice::from_ref(line))));
+        Section { heading: line.study.clone(), id: line.study.clone(), blocks, ..Section::default() }
+    };
+    Page {
+        title: "Golden values over time".to_owned(),
+        lead: "Errors and work of each study over the commits that changed its golden values.".to_owned(),
+        sections: std::iter::once(summary).chain(lines.iter().map(of_study)).collect(),
+        filter: Some("study".to_owned()),
+        ..Page::default()
+    }
+}
+
+/// Error and work of a study over the commits of its golden file.
+fn timeline_figure(line: &Timeline) -> Figure {
+    let points = |index: fn(&Step) -> f64| {
+        line.steps.iter().enumerate().map(|(at, step)| (at as f64 + 1.0, index(step))).collect::<Vec<_>>()
+    };
+    let chart = Chart::new(
+        format!("{}: golden values over commits", line.study),
+        ChartAxis::linear("commit that changed the golden values (number)"),
+        ChartAxis::log10("index, 1 at the first commit (–)"),
+    )
+    .with(Series::new("errors", points(|step| step.error_index)).style(Style::LineAndMarkers))
+    .with(Series::new("work", points(|step| step.work_index)).style(Style::LineAndMarkers));
+    let steps = line.steps.iter().enumerate().skip(1).filter(|(_, step)| step.moved > 0);
+    let told: Vec<String> = steps
+        .map(|(at, step)| format!("{}: `{}` {}", at + 1, step.commit.short(), step.commit.subject))
+        .collect();
+    let caption = if told.is_empty() {
+        "No value moved.".to_owned()
+    } else {
+        format!("Values moved at {}.", told.join("; "))
+    };
+    Figure::new(format!("history-{}", line.study), chart, caption)
 }

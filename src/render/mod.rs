@@ -6,7 +6,7 @@ mod chart;
 pub mod checks;
 mod error;
 pub mod escape;
-mod history_tables;
+pub(crate) mod history_tables;
 mod number;
 pub mod page;
 pub mod report;

@@ -14,7 +14,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Complex;
 
-use crate::cosine_layer::talbot::{NODES, contour};
+use crate::cosine_layer::{NODES, talbot_contour};
 use crate::exact_error::{ExactError, held_within, normal, positive};
 use crate::field_values::{Accuracy, FieldValues};
 use oedometer_soil::elementary;
@@ -256,7 +256,9 @@ impl LayeredColumn {
 
     /// The transform of the pressure over the load on Talbot's contour for one time.
     fn transform(&self, seconds: f64) -> Vec<Image> {
-        contour(NODES).map(|(z, weight)| Image::of(&self.layers, z / seconds, weight / seconds)).collect()
+        talbot_contour(NODES)
+            .map(|(z, weight)| Image::of(&self.layers, z / seconds, weight / seconds))
+            .collect()
     }
 
     /// The layer at a height; the lower one on a face.

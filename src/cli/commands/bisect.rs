@@ -5,14 +5,12 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::{print_data, say};
-use crate::golden::compare::{Change, Difference, compare};
-use crate::golden::difference_groups::groups_of;
-use crate::golden::is_counter;
-use crate::golden::parts;
+use crate::golden::compare::{Change, Difference, compare, groups_of};
+use crate::golden::{is_counter, parts};
 use crate::history::repository::{Commit, Repository};
 use crate::history::state::{State, StudyState};
 use crate::render::tables::golden_changes::sentence;
-use crate::study::name::name_of;
+use crate::study::shipped::name_of;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

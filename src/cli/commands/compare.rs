@@ -1,13 +1,15 @@
 //! `oedometer compare`: two states of studies beside each other, accuracy and cost apart.
 
 use crate::cli::commands::check::GOLDEN;
+use crate::cli::destination::write_document;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
 use crate::history::state::State;
-use crate::render::history_tables::comparison_tables;
+use crate::render::history_tables::{comparison_page, comparison_tables};
+use crate::render::page::render_html;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `compare`.
@@ -28,6 +30,9 @@ pub struct Arguments {
     /// Folder of the golden values in the repository
     #[arg(long, value_name = "DIR", default_value = GOLDEN)]
     golden: PathBuf,
+    /// Write a page with figures
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -51,6 +56,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         print_data(&json_of(&found)?)?;
     } else {
         print_tables(&comparison_tables(&found, [&before.name, &after.name]), arguments.format)?;
+    }
+    if let Some(page) = &arguments.page {
+        write_document(page, &render_html(&comparison_page(&found, [&before.name, &after.name]))?)?;
     }
     let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
     say!("{} of {} studies got worse", regressed.len(), found.len());

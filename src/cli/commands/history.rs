@@ -2,11 +2,13 @@
 
 use crate::cli::commands::check::GOLDEN;
 use crate::cli::commands::compare::repository_with;
+use crate::cli::destination::write_document;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
 use crate::history::timeline::timelines;
-use crate::render::history_tables::{timeline_summary, timeline_table};
+use crate::render::history_tables::{timeline_page, timeline_summary, timeline_table};
+use crate::render::page::render_html;
 use std::path::PathBuf;
 
 /// Arguments of `history`.
@@ -19,6 +21,9 @@ pub struct Arguments {
     /// Folder of the golden values in the repository
     #[arg(long, value_name = "DIR", default_value = GOLDEN)]
     golden: PathBuf,
+    /// Write a page with figures
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<PathBuf>,
     /// Output format; csv and json have every commit of every study
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -50,6 +55,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_tables(&[timeline_summary(&lines)], arguments.format)?;
         }
         format => print_tables(&[timeline_table(&lines)], format)?,
+    }
+    if let Some(page) = &arguments.page {
+        write_document(page, &render_html(&timeline_page(&lines))?)?;
     }
     Ok(Exit::Pass)
 }
