@@ -131,7 +131,13 @@ impl<const D: usize> LoadedSurface<D> {
     #[inline]
     fn visit(&self, grid: &Grid<D>, points: &Points<D>, mut visitor: impl FnMut(&Spot, usize, f64)) {
         for spot in &self.spots {
-            let place = grid.held_in_cells(&self.place(points, spot));
+            let mut place = grid.held_in_cells(&self.place(points, spot));
+            if self.basis == Basis::Hat {
+                // The edge may lie in the cell above that of its point, whose upper node hats give no mass and no force:
+                // a share of the load put there would be lost.
+                let cell = grid.cell_of(&points.position[spot.point])[D - 1];
+                place[D - 1] = place[D - 1].min((cell + 1) as f64);
+            }
             self.basis.visit_surface(grid, &self.support, &place, |node, weight| visitor(spot, node, weight));
         }
     }
@@ -260,6 +266,25 @@ mod tests {
         assert!((nodes.external_force[top][0] + 3.75).abs() < 1e-9);
         assert!((nodes.external_force[top - 1][0] + 1.25).abs() < 1e-9);
         assert!((surface.height(&points) - 0.975).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hats_carry_the_load_of_shifted_points_on_nodes_with_mass() {
+        let grid = Grid::new(0.1, [12]);
+        let mut points = Points::lattice(0.1, [10], 1);
+        for place in &mut points.position {
+            place[0] += 0.048;
+        }
+        let forces = |basis| {
+            let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
+            let surface = LoadedSurface::of(&points, 5.0).spread_by(basis, Support::oedometer());
+            surface.apply(&grid, &points, &mut nodes);
+            [12, 13].map(|node| nodes.external_force[grid.flat_node(&[node])][0])
+        };
+        assert_eq!(forces(Basis::Hat), [-5.0, 0.0]);
+        // Domains reach into the cell above, and the load acts at their edge.
+        let [top, above] = forces(Basis::Cpgimp);
+        assert!((top + 2.6).abs() < 1e-9 && (above + 2.4).abs() < 1e-9, "{top} {above}");
     }
 
     #[test]
