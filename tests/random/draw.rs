@@ -206,6 +206,7 @@ fn draw_column(options: &mut Options, numbers: &mut Numbers, is_plane: bool) {
     }
     draw_load(options, numbers, &soil, table);
     draw_points(options, numbers);
+    fill_width(options, table, height);
     let is_large = scene == "xie-leo";
     if is_large && numbers.chance(0.3) {
         options.set("material.law", numbers.one_of(&["porosity-dependent", "engineering", "log-linear"]));
@@ -218,6 +219,15 @@ fn draw_column(options: &mut Options, numbers: &mut Numbers, is_plane: bool) {
         options.set("column.self_weight", true);
     }
     draw_times(options, numbers, &soil, height);
+}
+
+/// Makes a plane as wide as so many of its cells, which are larger where the top one is filled in part.
+fn fill_width(options: &mut Options, table: &str, height: f64) {
+    let key = if table == "layer" { "layer.length" } else { "column.width" };
+    if let Some(width) = options.number(key).filter(|_| options.value("points.filling").is_some()) {
+        let across = (width * options.cells as f64 / height).round();
+        options.set_number(key, across * options.cell_size(height));
+    }
 }
 
 /// A load far below the stiffness at small strain, and one that leaves pores at large strain.

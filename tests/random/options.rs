@@ -56,6 +56,11 @@ impl Options {
         self.value(key)?.parse().ok()
     }
 
+    /// Size of a cell of a body of this height, m.
+    pub fn cell_size(&self, height: f64) -> f64 {
+        height / ((self.cells - 1) as f64 + self.number("points.filling").unwrap_or(1.0))
+    }
+
     /// The command that repeats it.
     pub fn command(&self) -> String {
         let mut text = format!(

@@ -91,7 +91,7 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             other = base.clone();
             other.set("column.dimensions", 2);
             let across = numbers.count(1, 3);
-            other.set_number("column.width", height * across as f64 / base.cells as f64);
+            other.set_number("column.width", across as f64 * base.cell_size(height));
             for options in [&mut base, &mut other] {
                 strain_by(options, 1e-6);
             }
@@ -225,7 +225,11 @@ pub fn held(related: &Related) -> (String, Vec<Violation>) {
         }
         (_, _, End::Refused(_) | End::TooLong) => (second.end.kind(), Vec::new()),
         // One of two may be nearer to the end of its pores or of Newton's patience, and says so.
-        (_, _, End::Failed(_)) if base.scene == "xie-leo" || *relation == Relation::TotalAndFrozen => {
+        (_, _, End::Failed(why))
+            if base.scene == "xie-leo"
+                || *relation == Relation::TotalAndFrozen
+                || why.starts_with("not-converged") =>
+        {
             (second.end.kind(), Vec::new())
         }
         (_, _, end) => (kind, violation(format!("the second ends {end:?}"))),

@@ -154,7 +154,8 @@ impl Column {
         if self.dimensions == 1 {
             return Some(1);
         }
-        let across = self.extent() / self.height * cells as f64;
+        // A top cell that is filled in part makes every cell larger.
+        let across = self.extent() / self.points.cell_size(self.height, cells);
         let whole = across.round();
         (whole >= 1.0 && (across - whole).abs() <= WIDTH_TOLERANCE * whole).then_some(whole as usize)
     }
