@@ -28,7 +28,7 @@ pub fn measures(results: &StudyResults<'_>) -> Vec<Block> {
     vec![Block::Heading("Measures".to_owned()), Block::Table(table)]
 }
 
-/// The worst of every check over the runs of a study, and the groups of its first run.
+/// The worst of every check over the runs of a study, and the largest of every dimensionless group.
 pub fn worst_checks(results: &StudyResults<'_>) -> Block {
     // Runs that failed have no result to check.
     let sound = results.records.iter().filter(|record| record.status == Status::Ok);
@@ -36,7 +36,13 @@ pub fn worst_checks(results: &StudyResults<'_>) -> Block {
         .iter()
         .map(|check| vec![check.what.into(), Cell::Error(check.value.abs()), bound_cell(check)])
         .collect();
-    let groups = results.records.first().into_iter().flat_map(groups_of);
+    let largest = results.records.iter().map(groups_of).reduce(|mut largest, groups| {
+        for (largest, group) in largest.iter_mut().zip(groups) {
+            largest.1 = largest.1.max(group.1);
+        }
+        largest
+    });
+    let groups = largest.into_iter().flatten();
     rows.extend(groups.map(|(what, value)| vec![what.into(), Cell::Error(value), "".into()]));
     let table =
         Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
