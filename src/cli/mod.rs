@@ -8,6 +8,7 @@ pub mod exit;
 pub mod job_list;
 pub mod output;
 pub mod overrides;
+mod problems;
 pub mod progress;
 pub mod slurm;
 pub mod stream;

@@ -103,6 +103,11 @@ impl StudyLines {
         Ok(())
     }
 
+    /// The keys as one table, for what is no study.
+    pub fn table(&self) -> anyhow::Result<toml::Table> {
+        toml::from_str(&self.lines.join("\n")).map_err(|error| Ended::usage(error.message().to_owned()))
+    }
+
     /// Whether a key has been given.
     pub fn has(&self, key: &str) -> bool {
         self.given.iter().any(|(given, _)| given == key)

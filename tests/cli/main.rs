@@ -17,6 +17,7 @@ mod mapping;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;
+mod problems;
 mod program;
 mod readme;
 mod report_rules;

@@ -117,6 +117,14 @@ pub enum ExactError {
         /// `L/H`.
         ratio: f64,
     },
+    /// Layers that do not fill the column.
+    #[error("the layers are {sum} m thick together, and the column is {height} m high: they must fill it")]
+    LayersDoNotFill {
+        /// Sum of the thicknesses, m.
+        sum: f64,
+        /// Height of the column, m.
+        height: f64,
+    },
     /// Reloading softer than first loading.
     #[error(
         "the modulus of reloading, {reload} Pa, is below that of first loading, {virgin} Pa: a soil that remembers is \

@@ -1,0 +1,119 @@
+//! Exact solutions of layered soil, a yield front and a sealed element, by the program, against independent values.
+
+use crate::program::{Told, call};
+use std::path::Path;
+
+fn exact(arguments: &[&str]) -> Told {
+    call(Path::new("."), &[&["exact"], arguments].concat())
+}
+
+/// The rows of a reference table of a case, as numbers behind the name.
+fn rows(text: &str, case: &str) -> Vec<Vec<f64>> {
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let of_case = text.lines().map(cells).filter(|row| row[0] == case);
+    of_case.map(|row| row[1..].iter().map(|cell| cell.parse().expect("a number")).collect()).collect()
+}
+
+/// Pressure ratio, settlement ratio and degree of the one row that is printed.
+fn printed(told: &Told) -> [f64; 3] {
+    assert_eq!(told.code, 0, "{}", told.err);
+    let line = told.out.lines().nth(1).expect("a row");
+    let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    [numbers[2], numbers[3], numbers[4]]
+}
+
+#[test]
+fn layered_columns_match_forty_digits() {
+    let table = include_str!("../../crates/exact/tests/reference/layered.csv");
+    let cases = [
+        ("clay-over-sand", "[{thickness=0.5},{thickness=0.5,hydraulic_conductivity=1e-6}]"),
+        ("sand-over-clay", "[{thickness=0.5,hydraulic_conductivity=1e-6},{thickness=0.5}]"),
+        (
+            "sandwich",
+            "[{thickness=0.3,youngs_modulus=1e7},{thickness=0.4,youngs_modulus=5e5,porosity=0.5,\
+             hydraulic_conductivity=1e-7},{thickness=0.3}]",
+        ),
+    ];
+    for (case, soils) in cases {
+        let rows = rows(table, case);
+        assert_eq!(rows.len(), 24);
+        // The first and the last height at each time are enough for the program: the library's test has all.
+        for row in rows.iter().step_by(5) {
+            let (time_factor, zeta) = (row[0].to_string(), (1.0 - row[1]).to_string());
+            let set = format!("column.soils={soils}");
+            let told = exact(&["layered", "--set", &set, "--time-factor", &time_factor, "--zeta", &zeta]);
+            let [pressure, _, degree] = printed(&told);
+            assert!((pressure - row[2]).abs() < 1e-12, "{case} {row:?}: {pressure}");
+            assert!((degree - row[3]).abs() < 1e-12, "{case} {row:?}: {degree}");
+        }
+    }
+}
+
+#[test]
+fn yield_fronts_match_thirty_digits() {
+    let table = include_str!("../../crates/exact/tests/reference/yield_front.csv");
+    // E₁, E₂, k, n, σ'_0, σ'_pc.
+    let cases = [
+        ("stiff-until-yield", [1.2e6, 1.2e7, 1e-7, 0.5, 2e4, 6e4]),
+        ("late-yield", [1.2e6, 6e6, 1e-8, 0.4, 0.0, 9e4]),
+        ("early-yield", [2e6, 1e7, 1e-8, 0.4, 3e4, 3.1e4]),
+    ];
+    for (case, [virgin, reload, conductivity, porosity, initial, preconsolidation]) in cases {
+        for row in rows(table, case).iter().step_by(4) {
+            // With ν = 0 the oedometric modulus is Young's.
+            let time_factor = (row[0] * conductivity * virgin / 9810.0).to_string();
+            let zeta = row[1].to_string();
+            let sets = [
+                "material.law=preconsolidated".to_owned(),
+                "material.poissons_ratio=0".to_owned(),
+                "column.load=1e5".to_owned(),
+                format!("material.youngs_modulus={virgin}"),
+                format!("material.reload_modulus={reload}"),
+                format!("material.hydraulic_conductivity={conductivity}"),
+                format!("material.porosity={porosity}"),
+                format!("column.initial_stress={initial}"),
+                format!("material.preconsolidation={preconsolidation}"),
+            ];
+            let mut arguments = vec!["yield-front", "--time-factor", &time_factor, "--zeta", &zeta];
+            arguments.extend(sets.iter().flat_map(|set| ["--set", set.as_str()]));
+            let [pressure, ..] = printed(&exact(&arguments));
+            assert!((pressure - row[2] / 1e5).abs() < 1e-12, "{case} {row:?}: {pressure}");
+        }
+    }
+}
+
+#[test]
+fn a_sealed_element_carries_its_load_for_ever() {
+    let told = exact(&["sealed-element", "--set", "material.water_bulk_modulus=1e6", "--time-factor", "0,3"]);
+    let [pressure, settlement, _] = printed(&told);
+    assert!((pressure - 1.0 / (1.0 + 0.3 * 1.2e6 / 1e6)).abs() < 1e-15);
+    assert!((settlement - (1.0 - pressure) / 1.2e6).abs() < 1e-20);
+    let values: Vec<&str> =
+        told.out.lines().skip(1).map(|line| line.split(',').nth(2).expect("p/q")).collect();
+    assert!(values.iter().all(|value| *value == values[0]), "{values:?}");
+}
+
+#[test]
+fn impossible_problems_are_refused_in_sentences() {
+    let refused = |arguments: &[&str], part: &str| {
+        let told = exact(arguments);
+        assert_eq!((told.code, told.out.as_str()), (2, ""), "{}", told.err);
+        assert!(told.err.contains(part), "{}", told.err);
+    };
+    refused(&["layered", "--set", "column.soils=[{thickness=0.5},{thickness=0.4}]"], "they must fill it");
+    refused(
+        &["layered", "--set", "column.soils=[{porosity=0.4}]"],
+        "layer 1 from the base has no `thickness`",
+    );
+    refused(&["layered", "--set", "column.soils=[{thickness=1.0,porosity=1.4}]"], "between 0 and 1");
+    refused(&["layered", "--set", "material.poissons_ration=0.2"], "poissons_ratio");
+    refused(&["layered", "--set", "material.preconsolidation=1e4"], "has no effect");
+    refused(&["yield-front"], "needs `material.preconsolidation`");
+    let front =
+        ["yield-front", "--set", "material.preconsolidation=0.5", "--set", "material.reload_modulus=1e5"];
+    refused(&front, "below that of first loading");
+    let never =
+        ["yield-front", "--set", "material.preconsolidation=2", "--set", "material.reload_modulus=2e6"];
+    refused(&never, "no yield front");
+    refused(&["sealed-element", "--x", "0.5"], "neither `--x` nor `--degree`");
+}
