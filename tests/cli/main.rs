@@ -14,6 +14,7 @@ mod gone;
 mod impossible_results;
 mod manufactured;
 mod mapping;
+mod over_time;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;

@@ -1,0 +1,180 @@
+//! `compare`, `history` and `bisect` on a repository of ten commits: one makes results worse, one does not build, one
+//! crashes, one only renames.
+
+use crate::program::{PROGRAM, Told, call};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+/// The commit that makes the results worse.
+const WORSE: &str = "Take a larger porosity";
+
+const STUDY: &str = "title = \"Gate\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.1], references = [\"terzaghi\"] }\n\
+                     [material]\nporosity = 0.3\n[[sweep]]\nmethod = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\n\
+                     cells = [5, 10]\ntime_step = [{ growth = 0.05 }]\n";
+
+fn git(at: &Path, words: &[&str]) -> String {
+    let mut command = Command::new("git");
+    command.args(["-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false"]);
+    let output = command.args(words).current_dir(at).output().expect("git");
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("words").trim().to_owned()
+}
+
+/// Golden values of two cases with an error each.
+fn golden(errors: [f64; 2], reason: &str) -> String {
+    let mut text = format!(
+        "# schema = 2\n# study = \"gate\"\n# reason = \"{reason}\"\n# relative_tolerance = 1e-9\n\
+         # absolute_tolerance = 1e-12\n# basis = \"a test\"\n#\n# [provenance]\n# version = \"0.2.0\"\n# sources = \"0\"\n\
+         # commit = \"0\"\n# dirty = false\n# compiler = \"c\"\n# target = \"t\"\n# profile = \"p\"\n\
+         case,T_v,point updates,pressure points l2 terzaghi\n"
+    );
+    for (cells, error) in [(5, errors[0]), (10, errors[1])] {
+        let label = format!("GIMP-SRI implicit cells={cells} points=2 growth=0.05");
+        text += &format!("{label},,{},\n{label},0.1,,{error:?}\n", 100 * cells);
+    }
+    text
+}
+
+fn repository() -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let write = |name: &str, text: &str| {
+        let path = at.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, text).expect("written");
+    };
+    let commit = |subject: &str| {
+        git(at, &["add", "-A"]);
+        git(at, &["commit", "-q", "--allow-empty", "-m", subject]);
+    };
+    let run = format!("exec '{PROGRAM}' run $(find . -name gate.toml) --out \"$1\"\n");
+    git(at, &["init", "-q"]);
+    write("gate.toml", STUDY);
+    write("run.sh", &run);
+    write("build.sh", "true\n");
+    write("golden/gate.csv", &golden([8e-2, 4e-2], "first values"));
+    commit("Add a gate");
+    git(at, &["tag", "good"]);
+    write("README", "a gate\n");
+    commit("Describe the gate");
+    git(at, &["mv", "gate.toml", "moved.toml"]);
+    fs::create_dir(at.join("studies")).expect("made");
+    git(at, &["mv", "moved.toml", "studies/gate.toml"]);
+    commit("Move the study");
+    write("run.sh", "kill -9 $$\n");
+    commit("Crash");
+    write("run.sh", &run);
+    commit("Mend the crash");
+    write("build.sh", "exit 1\n");
+    commit("Break the build");
+    write("build.sh", "true\n");
+    commit("Mend the build");
+    write("studies/gate.toml", &STUDY.replace("porosity = 0.3", "porosity = 0.45"));
+    write("golden/gate.csv", &golden([8e-2, 5e-2], "a larger porosity"));
+    commit(WORSE);
+    commit("Change nothing");
+    commit("Change nothing again");
+    folder
+}
+
+#[test]
+fn bisect_finds_the_commit_that_moved_the_results_and_skips_what_cannot_be_tried() {
+    let folder = repository();
+    let before = git(folder.path(), &["status", "--porcelain"]);
+    let told = call(
+        folder.path(),
+        &[
+            "bisect",
+            "gate",
+            "--good",
+            "good",
+            "--bad",
+            "HEAD",
+            "--build",
+            "sh build.sh",
+            "--run",
+            "sh run.sh {out}",
+        ],
+    );
+    assert_eq!(told.code, 0, "{}", told.err);
+    let first = told.out.lines().next().expect("a commit");
+    assert!(first.ends_with(WORSE), "{}{}", told.out, told.err);
+    assert!(told.out.contains(" moved, in 2 cases"), "{}", told.out);
+    // The user's own work tree is as it was.
+    assert_eq!(git(folder.path(), &["status", "--porcelain"]), before);
+    assert_eq!(git(folder.path(), &["worktree", "list"]).lines().count(), 1);
+    let nothing = call(
+        folder.path(),
+        &["bisect", "gate", "--good", "good", "--bad", "good~0", "--run", "sh run.sh {out}"],
+    );
+    assert_eq!(nothing.code, 4, "{}", nothing.err);
+    assert!(nothing.err.contains("nothing moved between"), "{}", nothing.err);
+}
+
+#[test]
+fn history_marks_the_step_and_compare_tells_it() {
+    let folder = repository();
+    let at = folder.path();
+    let told = call(at, &["history", "gate", "--format", "csv", "--page", "history.html"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let rows: Vec<&str> = told.out.lines().collect();
+    assert_eq!(rows.len(), 3, "{}", told.out);
+    assert!(rows[1].contains("first values") && rows[1].contains("same"), "{}", rows[1]);
+    assert!(rows[2].contains("regressed") && rows[2].contains(WORSE), "{}", rows[2]);
+    assert!(fs::read_to_string(at.join("history.html")).expect("a page").contains("<svg"));
+    fs::remove_file(at.join("history.html")).expect("removed");
+
+    let told = call(at, &["compare", "good", "HEAD", "--page", "compare.html"]);
+    assert_eq!(told.code, 1, "{}", told.err);
+    let words = told.words();
+    assert!(words.contains("regressed") && words.contains("material.porosity"), "{}", told.out);
+    assert!(words.contains("0.3") && words.contains("0.45"), "{}", told.out);
+    assert!(fs::read_to_string(at.join("compare.html")).expect("a page").contains("<svg"));
+    fs::remove_file(at.join("compare.html")).expect("removed");
+    let same = call(at, &["compare", "HEAD~1", "HEAD"]);
+    assert_eq!(same.code, 0, "{}{}", same.out, same.err);
+
+    // Records of two runs: the study as it was and as it is.
+    for (revision, out) in [("good", "a"), ("HEAD", "b")] {
+        git(at, &["checkout", "-q", revision]);
+        let study = if revision == "good" { "gate.toml" } else { "studies/gate.toml" };
+        assert_eq!(call(at, &["run", study, "--out", out]).code, 0);
+        git(at, &["checkout", "-q", "-"]);
+    }
+    let told = call(at, &["compare", "a", "b", "--format", "json"]);
+    assert_eq!(told.code, 1, "{}{}", told.out, told.err);
+    let found: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    assert_eq!(found[0]["study"], "gate");
+    assert_eq!(found[0]["inputs"][0]["key"], "material.porosity");
+    assert_eq!(found[0]["cost"], "same");
+    assert_eq!(call(at, &["compare", "a", "a"]).code, 0);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_in_sentences() {
+    let folder = repository();
+    let refused = |at: &Path, arguments: &[&str], part: &str| {
+        let Told { code, err, .. } = call(at, arguments);
+        assert!(code == 2 || code == 4, "{arguments:?}: {err}");
+        assert!(err.contains(part), "{arguments:?}: {err}");
+    };
+    let at = folder.path();
+    refused(at, &["compare", "good", "no-such-thing"], "is neither a folder nor a revision");
+    refused(at, &["compare", "studies", "HEAD"], "has no records");
+    refused(at, &["compare", "good", "HEAD", "--golden", "elsewhere"], "has no golden values in elsewhere/");
+    refused(at, &["history", "other"], "no commit has golden values");
+    refused(
+        at,
+        &["bisect", "gate", "--good", "no-such-thing", "--bad", "HEAD"],
+        "is neither a folder nor a revision",
+    );
+    let outside = TempDir::new().expect("a folder");
+    refused(outside.path(), &["history"], "is in no git repository");
+    // A golden file of another layout is passed over with a word.
+    fs::write(at.join("golden/gate.csv"), "{\"schema\": 1}\n").expect("written");
+    git(at, &["commit", "-q", "-a", "-m", "Write another layout"]);
+    let told = call(at, &["history"]);
+    assert!(told.code == 0 && told.err.contains("is passed over"), "{}", told.err);
+}
