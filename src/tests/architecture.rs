@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders of `src/` from the ground up; each uses only those before it.
-const FOLDERS: [&str; 13] = [
-    "case", "record", "measure", "study", "import", "foreign", "campaign", "golden", "judge", "render",
-    "schema", "cli", "api",
+const FOLDERS: [&str; 14] = [
+    "case", "record", "measure", "study", "import", "foreign", "campaign", "golden", "history", "judge",
+    "render", "schema", "cli", "api",
 ];
 
 /// Sources that are compiled for tests alone.

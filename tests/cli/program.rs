@@ -97,7 +97,7 @@ fn without_wall_time(text: &str) -> String {
         if !is_inside {
             lines.push(line);
         }
-        is_inside &= !line.ends_with("not");
+        is_inside &= !line.ends_with("judged");
     }
     lines.join("\n").trim_end().to_owned()
 }
