@@ -191,7 +191,7 @@ fn tolerance(related: &Related) -> f64 {
         related.base.integrator == "implicit" && related.base.value("integrator.formulation").is_some();
     let round_off = if has_inertia { 100.0 * round_off } else { round_off };
     match related.relation {
-        Relation::Units | Relation::Load => 1e-9,
+        Relation::Units | Relation::Load => 1e-8,
         // Strains of 1e-6 over the share of a stiff skeleton's shear, and Newton's tolerance in every step.
         Relation::TotalAndFrozen => 1e-3 + round_off,
         Relation::Dimensions if related.base.scene == "xie-leo" => 1e-4 + round_off,
