@@ -475,35 +475,3 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     let none = place.call(&[], &["report", "short.toml", "--from-records", "--records", "nowhere"]);
     assert!(none.code == 4 && none.err.contains("there is no record"), "{}", none.err);
 }
-
-/// Every fault of the judge stands in the sources exactly once, and the test that catches it exists.
-#[test]
-fn the_faults_of_the_judge_are_in_the_sources_and_have_a_test() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let read = |file: &str| fs::read_to_string(root.join(file)).expect(file);
-    let list: toml::Table = toml::from_str(&read("tests/mutations/judge-faults-output.toml")).expect("TOML");
-    let faults = list["fault"].as_array().expect("faults");
-    assert!(faults.len() >= 8);
-    let tests: String = ["src", "crates", "tests"].map(|folder| sources_below(&root.join(folder))).concat();
-    for fault in faults {
-        let word = |key: &str| fault[key].as_str().expect(key);
-        let source = read(word("file"));
-        assert_eq!(source.matches(word("from")).count(), 1, "{} in {}", word("name"), word("file"));
-        assert_ne!(word("from"), word("to"), "{}", word("name"));
-        let test = format!("fn {}()", word("caught_by"));
-        assert!(tests.contains(&test), "{}: no test {test}", word("name"));
-    }
-}
-
-/// The text of every Rust source below a folder.
-fn sources_below(folder: &Path) -> String {
-    let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
-    let is_source = |path: &Path| path.extension().is_some_and(|extension| extension == "rs");
-    paths
-        .map(|path| match () {
-            () if path.is_dir() => sources_below(&path),
-            () if is_source(&path) => fs::read_to_string(&path).expect("a source"),
-            () => String::new(),
-        })
-        .collect()
-}

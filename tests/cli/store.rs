@@ -531,32 +531,6 @@ fn a_study_with_a_refused_case_fails_by_its_name_and_keeps_the_others() {
     );
 }
 
-// ---- the list of faults ----
-
-/// Every fault still stands where the list says, exactly once, and the test that catches it is there.
-#[test]
-fn the_faults_of_the_store_are_in_the_sources_and_have_their_tests() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = fs::read_to_string(root.join("tests/mutations/judge-faults-store.toml")).expect("the list");
-    let list: toml::Table = toml::from_str(&text).expect("TOML");
-    let faults = list["fault"].as_array().expect("faults");
-    assert!(faults.len() >= 10);
-    let tests: String = [root.join("src"), root.join("crates"), root.join("tests")]
-        .iter()
-        .flat_map(|folder| files_below(folder))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
-        .map(|path| fs::read_to_string(path).expect("a source"))
-        .collect();
-    for fault in faults {
-        let word = |key: &str| fault[key].as_str().expect(key);
-        let source = fs::read_to_string(root.join(word("file"))).expect("a source");
-        assert_eq!(source.matches(word("from")).count(), 1, "{}: `{}`", word("name"), word("from"));
-        assert_ne!(word("from"), word("to"), "{}", word("name"));
-        let caught_by = format!("fn {}()", word("caught_by"));
-        assert!(tests.contains(&caught_by), "{}: no test `{}`", word("name"), word("caught_by"));
-    }
-}
-
 #[test]
 fn origins_of_no_records_have_nothing_to_tell() {
     let none = Origins::default();

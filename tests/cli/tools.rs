@@ -329,75 +329,34 @@ fn help_reads_as_a_terminal_shows_it() {
     assert!(call(folder.path(), &["check", "--help"]).out.contains("$GITHUB_STEP_SUMMARY"));
 }
 
-/// Every fault of the campaign still stands where the list says, exactly once, and the test that is to
-/// catch it is there.
+/// Every planted fault names a function that is there, and a study or a test that catches it.
 #[test]
-fn the_faults_that_check_is_held_against_are_in_the_sources() {
-    let folder = root().join("tests/mutations");
-    let lists = fs::read_dir(&folder).expect("the lists").filter_map(Result::ok);
-    let paths = lists.map(path_of);
-    let is_list = |path: &PathBuf| {
-        let name = path.file_name().and_then(std::ffi::OsStr::to_str).unwrap_or_default().to_owned();
-        name.contains("faults") && path.extension().is_some_and(|extension| extension == "toml")
-    };
-    let texts = paths.filter(is_list).map(|path| fs::read_to_string(path).expect("a list"));
-    let faults: Vec<toml::Value> = texts
-        .flat_map(|text| {
-            let list: toml::Table = toml::from_str(&text).expect("TOML");
-            list["fault"].as_array().expect("faults").clone()
-        })
-        .collect();
-    assert!(faults.len() >= 170);
-    let rust = rust_sources();
-    for fault in &faults {
-        let file = fault["file"].as_str().expect("a file");
-        let from = fault["from"].as_str().expect("a text");
+fn planted_faults_name_functions_and_tests_that_exist() {
+    let text = fs::read_to_string(root().join("tests/faults/faults.toml")).expect("the list");
+    let list: toml::Table = toml::from_str(&text).expect("TOML");
+    let faults = list["fault"].as_array().expect("faults");
+    let sources = rust_sources();
+    for fault in faults {
+        let word = |key: &str| fault[key].as_str().expect(key);
+        let (name, file) = (word("name"), word("file"));
+        let function = word("function").rsplit(':').next().expect("a name");
         let source = fs::read_to_string(root().join(file)).expect(file);
-        let found = source.matches(from).count();
-        let nth =
-            fault.get("nth").and_then(toml::Value::as_integer).and_then(|nth| usize::try_from(nth).ok());
-        let name = &fault["name"];
-        assert!(
-            nth.map_or(found == 1, |nth| found >= nth),
-            "{name}: `{from}` stands {found} times in {file}"
-        );
-        assert_ne!(from, fault["to"].as_str().expect("a text"), "{name}");
-        for test in names_of(fault) {
-            assert!(rust.contains(&format!("fn {test}(")), "{name}: no test is called `{test}`");
+        assert!(source.contains(&format!("fn {function}")), "{name}: {file} has no function {function}");
+        assert!(fault.get("result").is_some() != fault.get("before").is_some(), "{name}: one effect");
+        match word("caught_by").strip_prefix("check ") {
+            Some(study) => {
+                let is_there =
+                    study == "references" || root().join(format!("studies/{study}.toml")).is_file();
+                assert!(is_there, "{name}: no study {study}");
+            }
+            None => {
+                let test = format!("fn {}(", word("caught_by"));
+                assert!(sources.contains(&test), "{name}: no test is called {}", word("caught_by"));
+            }
         }
     }
     let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();
     assert_eq!(names.len(), faults.len(), "two faults have one name");
-    // Two faults of one text stand inside one another; two that overlap cannot both be switched.
-    let spans: BTreeSet<(&str, usize, usize)> = faults.iter().map(span_of).collect();
-    for (one, next) in spans.iter().zip(spans.iter().skip(1)) {
-        assert!(one.0 != next.0 || one.2 <= next.1, "two faults overlap: {one:?} and {next:?}");
-    }
-}
-
-/// File of a fault, and where its text starts and ends there.
-fn span_of(fault: &toml::Value) -> (&str, usize, usize) {
-    let [file, from] = ["file", "from"].map(|key| fault[key].as_str().expect(key));
-    let source = fs::read_to_string(root().join(file)).expect(file);
-    let nth = fault.get("nth").and_then(toml::Value::as_integer).and_then(|nth| usize::try_from(nth).ok());
-    let (start, _) = source.match_indices(from).nth(nth.unwrap_or(1) - 1).expect(from);
-    (file, start, start + from.len())
-}
-
-/// The tests that are to catch a fault, without the modules they stand in.
-fn names_of(fault: &toml::Value) -> Vec<String> {
-    let named = match fault.get("caught_by") {
-        Some(toml::Value::Array(names)) => names.clone(),
-        Some(name) => vec![name.clone()],
-        None => Vec::new(),
-    };
-    let last = |name: &str| name.rsplit([':', ' ']).next().unwrap_or_default().replace('`', "");
-    named.iter().filter_map(toml::Value::as_str).map(last).collect()
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "the signature that iterators ask for")]
-fn path_of(entry: fs::DirEntry) -> PathBuf {
-    entry.path()
 }
 
 /// The text of all Rust files of the program and its tests.
@@ -405,7 +364,7 @@ fn rust_sources() -> String {
     let mut folders = vec![root().join("src"), root().join("crates"), root().join("tests")];
     let mut text = String::new();
     while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(path_of) {
+        for path in fs::read_dir(folder).expect("a folder").filter_map(Result::ok).map(|entry| entry.path()) {
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {

@@ -30,8 +30,11 @@ LONGEST = 300
 
 SWITCH = """
 /// Whether a planted fault is on; see tests/faults.
-fn planted_fault_is_on(number: u32) -> bool {
-    std::env::var("OEDOMETER_FAULT").is_ok_and(|typed| typed.parse() == Ok(number))
+#[inline]
+fn planted_fault_is_on(name: &str) -> bool {
+    static ON: std::sync::LazyLock<String> =
+        std::sync::LazyLock::new(|| std::env::var("OEDOMETER_FAULT").unwrap_or_default());
+    *ON == name
 }
 """
 
@@ -84,11 +87,11 @@ def function(text, name):
     return brace, end_of_block(text, brace), returned
 
 
-def plant(text, fault, number):
+def plant(text, fault):
     """The text with a fault behind its switch."""
     brace, end, returned = function(text, fault["function"])
     body = text[brace + 1 : end - 1]
-    on = f"planted_fault_is_on({number})"
+    on = f'planted_fault_is_on("{fault["name"]}")'
     if "before" in fault:
         # `let x = ...` must last beyond the switch: both ways assign the same name.
         shadow = re.fullmatch(r"let (mut )?(\w+)(: [^=]+)? = (.*);", fault["before"], re.S)
@@ -108,30 +111,32 @@ def plant(text, fault, number):
 
 
 def copied_tree(folder, faults):
-    """A copy of the tracked files with all faults planted."""
+    """A copy of the tracked files with all faults planted; files that are there already are left alone."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True)
-    for name in filter(None, listed.stdout.split("\0")):
-        if (ROOT / name).is_file():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, folder / name)
-    # From the last function of a file to the first, so that places stay right.
-    for number, fault in enumerate(faults, 1):
-        path = folder / fault["file"]
-        text = path.read_text()
+    planted, refused = {}, []
+    for fault in faults:
+        file = fault["file"]
         try:
-            text = plant(text, fault, number)
+            planted[file] = plant(planted.get(file) or (ROOT / file).read_text() + SWITCH, fault)
         except (ValueError, FileNotFoundError) as error:
-            sys.exit(f"{fault['name']}: {fault['file']}: {error}")
-        if "fn planted_fault_is_on" not in text:
-            text += SWITCH
-        path.write_text(text)
+            refused.append(f"{fault['name']}: {file}: {error}")
+    if refused:
+        sys.exit("\n".join(refused))
+    for name in filter(None, listed.stdout.split("\0")):
+        source, copy = ROOT / name, folder / name
+        if not source.is_file():
+            continue
+        content = planted[name].encode() if name in planted else source.read_bytes()
+        if not copy.is_file() or copy.read_bytes() != content:
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(content)
+            shutil.copymode(source, copy)
 
 
 def built(folder):
     """The program and every test by its name."""
-    environment = os.environ | {"RUSTFLAGS": "--cap-lints allow"}
     command = ["cargo", "test", "--no-run", "--locked", "--message-format=json"]
-    told = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, env=environment)
+    told = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True)
     if told.returncode != 0:
         for line in told.stdout.splitlines():
             message = json.loads(line).get("message") or {}
@@ -165,18 +170,18 @@ def judge_of(caught_by, program, tests, folder):
     return [executable, "--exact", whole[0]], home
 
 
-def ended(command, home, number):
+def ended(command, home, fault):
     """Exit code and last words of a command with a fault on."""
-    environment = os.environ | {"OEDOMETER_FAULT": str(number), "INSTA_UPDATE": "no", "CI": "true"}
+    environment = os.environ | {"OEDOMETER_FAULT": fault, "INSTA_UPDATE": "no", "CI": "true"}
     try:
         told = subprocess.run(
             command, cwd=home, env=environment, capture_output=True, text=True, timeout=LONGEST, errors="replace"
         )
     except subprocess.TimeoutExpired:
         return 124, "it hung"
-    lines = (told.stdout + told.stderr).splitlines()
-    said = [line.strip() for line in lines if re.search(r"panicked|expectations met|error:", line)]
-    return told.returncode, (said or [""])[0][:120]
+    # The message of a panic stands in the line below its place.
+    said = re.search(r"panicked at .*\n(.*)|(.*expectations met.*)|(error:.*)", told.stdout + told.stderr)
+    return told.returncode, next(filter(None, said.groups()), "").strip()[:120] if said else ""
 
 
 def main():
@@ -191,15 +196,15 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     copied_tree(folder, faults)
     program, tests = built(folder)
-    chosen = [(number, fault) for number, fault in enumerate(faults, 1) if not only or fault["name"] in only]
-    commands = {fault["caught_by"]: judge_of(fault["caught_by"], program, tests, folder) for _, fault in chosen}
+    chosen = [fault for fault in faults if not only or fault["name"] in only]
+    commands = {fault["caught_by"]: judge_of(fault["caught_by"], program, tests, folder) for fault in chosen}
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        sound = dict(zip(commands, pool.map(lambda judge: ended(*judge, 0), commands.values())))
-        for judge, (code, said) in sound.items():
-            if code != 0:
-                sys.exit(f"{judge} fails with all faults off: {said}")
-        ends = list(pool.map(lambda one: ended(*commands[one[1]["caught_by"]], one[0]), chosen))
-    missed = [fault["name"] for (_, fault), (code, _) in zip(chosen, ends) if code == 0]
+        sound = dict(zip(commands, pool.map(lambda judge: ended(*judge, ""), commands.values())))
+        unsound = [f"{judge}: {said}" for judge, (code, said) in sound.items() if code != 0]
+        if unsound:
+            sys.exit("\n".join(["with all faults off these fail:", *unsound]))
+        ends = list(pool.map(lambda one: ended(*commands[one["caught_by"]], one["name"]), chosen))
+    missed = [fault["name"] for fault, (code, _) in zip(chosen, ends) if code == 0]
     if not only:
         write_outcome(chosen, ends, missed)
     for name in missed:
@@ -222,7 +227,7 @@ def write_outcome(chosen, ends, missed):
         "| fault | function | what is wrong | caught by | what it said |",
         "| :-- | :-- | :-- | :-- | :-- |",
     ]
-    for (_, fault), (code, said) in zip(chosen, ends):
+    for fault, (code, said) in zip(chosen, ends):
         place = f"`{fault['file']}`, `{fault['function']}`"
         told = said.replace("|", "\\|") if code else "**not caught**"
         lines.append(f"| {fault['name']} | {place} | {fault['what']} | `{fault['caught_by']}` | {told} |")
