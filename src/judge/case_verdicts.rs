@@ -16,7 +16,7 @@ impl CaseExpectation {
         let judge = |record: &Record| {
             let mut checks = self.demand.checks(record);
             let within = self.demand.one_set_within;
-            checks.extend(within.map(|within| one_layer_found(within, record, records)));
+            checks.extend(within.map(|within| one_set_found(within, record, records)));
             self.judgement(record.case.label(), checks)
         };
         let selected = records.iter().filter(|record| self.selection.fits(&record.case));
@@ -48,7 +48,7 @@ impl CaseDemand {
         checks.extend(self.error.as_ref().map(|range| error_found(range, record)));
         let balance = &record.balance;
         let worst = |of: fn(&Balance) -> f64| largest(balance.iter().map(|balance| of(balance).abs()));
-        // Only where every output has the balance of two layers.
+        // Only where every output has the balance of two point sets.
         let worst_layer = |of: fn(&LayerBalance) -> f64| {
             let layers = balance.iter().map(|balance| balance.layers.as_ref().map(|one| of(one).abs()));
             layers.reduce(|worst, next| Some(larger(worst?, next?))).flatten()
@@ -93,21 +93,21 @@ impl CaseDemand {
     }
 }
 
-/// Every error of a case of two layers against that of the same case in one.
-fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
-    const NAME: &str = "one layer";
+/// Every error of a double-point case against that of the same case with one point set.
+fn one_set_found(within: f64, record: &Record, records: &[Record]) -> Check {
+    const NAME: &str = "one point set";
     let mut twin = record.case.clone();
     twin.column.points.sets = 1;
     twin.column.points.water_per_cell = 0;
     if twin == record.case {
-        return Check::failed(NAME, "the case has one layer itself");
+        return Check::failed(NAME, "the case has one point set itself");
     }
     let Some(one) = records.iter().find(|other| other.case == twin) else {
-        return Check::failed(NAME, "the study has no such case in one layer");
+        return Check::failed(NAME, "the study has no such case with one point set");
     };
     if record.errors.is_empty() || record.errors.len() != one.errors.len() {
         let (two, one) = (record.errors.len(), one.errors.len());
-        return Check::failed(NAME, format!("{two} errors in two layers and {one} in one"));
+        return Check::failed(NAME, format!("{two} errors with two point sets and {one} with one"));
     }
     let mut worst = 0.0;
     for (two, one) in record.errors.iter().zip(&one.errors) {
@@ -117,7 +117,7 @@ fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
         // Written so that NaN fails.
         if !(is_same && difference <= within) {
             let told = format!(
-                "{} {} {} at T_v = {}: {:.10e} in two layers and {:.10e} in one,",
+                "{} {} {} at T_v = {}: {:.10e} with two point sets and {:.10e} with one,",
                 two.quantity.name(),
                 two.norm,
                 two.sample.name(),
@@ -130,7 +130,7 @@ fn one_layer_found(within: f64, record: &Record, records: &[Record]) -> Check {
         }
         worst = f64::max(worst, difference);
     }
-    let told = format!("{} errors are those of one layer", record.errors.len());
+    let told = format!("{} errors are those of one point set", record.errors.len());
     Check::compared(NAME, true, worst, &told, ["within", ""], &short(worst))
 }
 
@@ -253,7 +253,7 @@ time_step = [{ growth = 0.05 }]
     }
 
     #[test]
-    fn two_layers_are_held_to_one_and_their_water_to_its_pores() {
+    fn double_point_cases_are_compared_with_one_set_and_their_water_with_its_pores() {
         let study = STUDY.replace("cells = [10]", "cells = [3]\nsets = [1, 2]");
         let study = study.replace("\"implicit\"", "\"explicit\"").replace("growth = 0.05", "stable = 0.7");
         let study = study.replace("[0.05]", "[1e-5]");
@@ -266,15 +266,15 @@ time_step = [{ growth = 0.05 }]
             judged.into_iter().map(|one| (one.verdict.pass, one.verdict.reason)).collect()
         };
         let found = verdicts(&records);
-        assert!(!found[0].0 && found[0].1.contains("one layer itself"), "{found:?}");
-        assert!(found[1].0 && found[1].1.contains("are those of one layer"), "{found:?}");
+        assert!(!found[0].0 && found[0].1.contains("one point set itself"), "{found:?}");
+        assert!(found[1].0 && found[1].1.contains("are those of one point set"), "{found:?}");
         records[1].errors[3].value += 2e-9;
         let found = verdicts(&records);
         assert!(!found[1].0 && found[1].1.contains("1e-9 allowed"), "{found:?}");
         records[1].errors[3].value = f64::NAN;
         assert!(!verdicts(&records)[1].0);
         records.remove(0);
-        assert!(verdicts(&records)[0].1.contains("no such case in one layer"));
+        assert!(verdicts(&records)[0].1.contains("no such case with one point set"));
         // Nothing moves here, so there is nothing to hold; and what is not as it must be fails.
         let demand = CaseDemand {
             pore_water: Some([1e-3, 2e-3]),

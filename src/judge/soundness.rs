@@ -41,7 +41,7 @@ pub fn thin(study: &Study, record: &mut Record) {
         return;
     }
     record.history = Vec::new();
-    // A case of two layers is compared with one that its expectation does not name.
+    // A double-point case is compared with one that its expectation does not name.
     let compares = study.case_expectations.iter().any(|one| one.demand.one_set_within.is_some());
     let case = &record.case;
     let of_series = study.expectations.iter().any(|one| one.selection.fits_along(one.axis.name(), case));

@@ -12,7 +12,7 @@ pub const SPURIOUS_VELOCITY: &str = "spurious_velocity";
 
 /// The measures of a run, with the exact values of the scene's own reference; at every output, or of the whole run.
 ///
-/// Of two layers: water in the soil over its pores, less one; the share of the water that left less the settlement over
+/// Of double-point runs: water in the soil over its pores, less one; the share of the water that left less the settlement over
 /// `n_0 H`; and the largest pressure of any water point since the start over the load, which exceeds one only by an
 /// error where all of the load acts at once.
 pub fn measures_of(

@@ -143,7 +143,7 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     checks
 }
 
-/// Whether a pressure burst in a run of two layers of moving points with a conservative continuity: between outputs, or at
+/// Whether a pressure burst in a double-point run of moving points with a conservative continuity: between outputs, or at
 /// the end of a run that became unstable or closed its pores.
 pub fn has_burst(record: &Record) -> bool {
     let case = &record.case;

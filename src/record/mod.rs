@@ -136,15 +136,15 @@ pub struct Balance {
     /// in a scene in which nothing may move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spurious_velocity: Option<f64>,
-    /// Pores and water, where points of two layers move.
+    /// Pores and water, where two point sets move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayerBalance>,
 }
 
-/// Pores and water of two layers at one output.
+/// Pores and water of two point sets at one output.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct LayerBalance {
-    /// Water there is in the soil over the pores there are, minus one: an identity in one layer, and in two the
+    /// Water there is in the soil over the pores there are, minus one: an identity with one point set, and with two the
     /// detector of a wrong continuity.
     pub pore_water: f64,
     /// Share of the water's mass that has left the soil.

@@ -23,8 +23,8 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "large-strain-explicit" "large-strain-implicit" "large-strain-integrators" "large-strain-models"
     "large-strain-points" "large-strain-crossing" "large-strain-plane" "large-strain-small"
     "large-strain-half" "large-strain-start" "large-strain-chord" "large-strain-chord-plane" "large-strain-ramp" "large-strain-ramp-half"
-    "large-strain-ramp-steps" "large-strain-limit" "nodal-pressure" "large-strain-nodal" "two-layers"
-    "two-layers-large-strain" "two-layers-plane" "stability-layers" "manufactured-box" "manufactured-shear"
+    "large-strain-ramp-steps" "large-strain-limit" "nodal-pressure" "large-strain-nodal" "double-point"
+    "double-point-large-strain" "double-point-plane" "stability-double-point" "manufactured-box" "manufactured-shear"
     "manufactured-vortex" "map"
 };
 

@@ -40,7 +40,7 @@ fn study_of(text: &str) -> Study {
     Study::check(&source).expect("a sound study")
 }
 
-/// Three outputs, each with two layers' balance of nothing wrong.
+/// Three outputs, each with a double-point balance without errors.
 fn calm() -> Record {
     let mut record = records_of(&text("cells = [4]", "")).remove(0);
     let layers = LayerBalance {

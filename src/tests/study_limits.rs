@@ -7,7 +7,7 @@ use crate::study::file::StudySource;
 const STUDY: &str = "title = 't'\nscene = 'terzaghi'\n{tables}\noutput.time_factors = [0.1]\n[[sweep]]\n\
                      method = ['GIMP']\nintegrator = ['implicit']\ncells = [4, 8, 16]\n{sweep}\n{tail}\n";
 
-/// A study of two layers.
+/// A double-point study.
 const LAYERS: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
                       method = ['GIMP-SRI-patch']\ncells = [4]\n{sweep}\n{tail}\n";
 

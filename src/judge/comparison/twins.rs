@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_two_layers_have_their_twins_in_one() {
+    fn double_point_runs_have_their_twins_with_one_set() {
         let records = records_of(
             "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [1e-4]\n[[sweep]]\nmethod = ['GIMP-SRI-patch']\n\
              cells = [4]\nsets = [1, 2]\n",

@@ -91,7 +91,7 @@ pub fn whole_growth<const D: usize>(
     if D == 1 {
         return None;
     }
-    spectral_radius::growth(&AssembledStep::new(&Body::new(one_layer(problem))), step, settings)
+    spectral_radius::growth(&AssembledStep::new(&Body::new(one_point_set(problem))), step, settings)
 }
 
 /// The prediction from at most so many cells.
@@ -101,7 +101,7 @@ pub fn predict<const D: usize>(
     most_cells: usize,
 ) -> Prediction<D> {
     let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
-    let problem = &one_layer(problem);
+    let problem = &one_point_set(problem);
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
     let problem = if is_narrow {
         without_middle(problem, most_cells)
@@ -125,7 +125,7 @@ pub fn predict<const D: usize>(
 /// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
 /// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
 /// constant pressure, and have the limit of that.
-fn one_layer<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut one = problem.clone();
     // Forces from outside do not change the limit.
     one.forcing = None;
