@@ -23,6 +23,7 @@ const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, o
 
 impl Case {
     /// Every reason why the case cannot be.
+    #[expect(clippy::too_many_lines, reason = "a table: one row per limit")]
     pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
         let always = |key, why: Option<&'static str>, help| why.map(|why| Refusal { key, why, help });
         let when = move |key, is_so: bool, why, help| always(key, is_so.then_some(why), help);

@@ -319,12 +319,12 @@ mod tests {
 
     #[test]
     fn the_hash_follows_every_input() {
-        let mut hashes = vec![seed().hash()];
         fn square(change: fn(&mut MotionParameters)) -> Shape {
             let mut motion = MotionParameters::default();
             change(&mut motion);
             Shape::Square { motion, pressure: 1.0 }
         }
+        let mut hashes = vec![seed().hash()];
         let changes: [fn(&mut Case); 49] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,

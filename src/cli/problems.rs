@@ -88,13 +88,13 @@ impl TypedSoil {
             ..other
         }
     }
+}
 
-    /// Refuses keys that have no effect in a problem.
-    fn refuse(&self, keys: &[(&str, bool)], where_: &str) -> anyhow::Result<()> {
-        match keys.iter().find(|(_, is_given)| *is_given) {
-            Some((key, _)) => Err(Ended::usage(format!("`{key}` has no effect in {where_}: leave it out"))),
-            None => Ok(()),
-        }
+/// Refuses keys that have no effect in a problem.
+fn refuse(keys: &[(&str, bool)], problem: &str) -> anyhow::Result<()> {
+    match keys.iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => Err(Ended::usage(format!("`{key}` has no effect in {problem}: leave it out"))),
+        None => Ok(()),
     }
 }
 
@@ -136,16 +136,16 @@ impl Problem {
         ];
         let kind = match self {
             Self::Layered => {
-                material.refuse(&yields, "a layered column")?;
+                refuse(&yields, "a layered column")?;
                 Kind::Layered(layered(&column, soil)?)
             }
             Self::YieldFront => {
-                material.refuse(&layers, "the column of a yield front")?;
+                refuse(&layers, "the column of a yield front")?;
                 Kind::YieldFront(yield_front(&column, &material, &soil)?)
             }
             Self::SealedElement => {
-                material.refuse(&yields, "a sealed element")?;
-                material.refuse(&layers, "a sealed element")?;
+                refuse(&yields, "a sealed element")?;
+                refuse(&layers, "a sealed element")?;
                 let modulus = soil.oedometric_modulus();
                 let pressure = 1.0 / (1.0 + soil.porosity * modulus / soil.water_bulk_modulus);
                 // 1 − p/q without cancellation.
@@ -188,7 +188,7 @@ fn layered(column: &TypedColumn, soil: Material) -> anyhow::Result<LayeredColumn
         layers.push((column.height, soil));
     }
     let sum: f64 = layers.iter().map(|(thickness, _)| thickness).sum();
-    if !((sum - column.height).abs() <= GAP * column.height) {
+    if (sum - column.height).abs() > GAP * column.height {
         return Err(ExactError::LayersDoNotFill { sum, height: column.height }.into());
     }
     Ok(LayeredColumn::new(column.load, &layers)?)

@@ -169,7 +169,7 @@ impl Repository {
         let (Some(mut input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(failed(std::io::ErrorKind::BrokenPipe.into()));
         };
-        let asked: String = objects.iter().map(|object| format!("{object}\n")).collect();
+        let asked = objects.join("\n") + "\n";
         // It answers while it is asked: both pipes are served at the same time.
         let asking = std::thread::spawn(move || input.write_all(asked.as_bytes()));
         let mut output = BufReader::new(output);

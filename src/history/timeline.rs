@@ -79,7 +79,7 @@ pub(crate) fn timelines(
                 *before = Some(golden);
             }
             Err(reason) => {
-                notes.push(unreadable(commit, object.split_once(':').map_or("", |(_, path)| path), &reason))
+                notes.push(unreadable(commit, object.split_once(':').map_or("", |(_, path)| path), &reason));
             }
         }
     }
@@ -110,7 +110,8 @@ impl Step {
         step.moved = differences.iter().filter(paired).count();
         step.unpaired = differences.len() - step.moved;
         let errors = differences.iter().filter(|one| is_error(&one.name));
-        step.largest_change = errors.filter_map(|one| one.relative_change()).fold(0.0, f64::max);
+        step.largest_change =
+            errors.filter_map(super::super::golden::compare::Difference::relative_change).fold(0.0, f64::max);
         let state = |golden: &GoldenFile| StudyState {
             golden: golden.clone(),
             inputs: None,

@@ -157,17 +157,12 @@ impl Mistakes<'_> {
     fn of_table(&mut self, schema: &Value, table: &DeTable<'_>, place: Range<usize>, key: &str) {
         let Some(properties) = schema["properties"].as_object() else { return };
         for (name, value) in table {
-            match properties.get(name.get_ref().as_ref()) {
-                Some(schema) => self.of_value(schema, value, name.get_ref()),
-                None => {
-                    let known: Vec<&str> = properties.keys().map(String::as_str).collect();
-                    let message = format!("unknown key `{}`", cut(name.get_ref()));
-                    self.found.push(Diagnostic::at(
-                        name.span(),
-                        message,
-                        help_for_key(name.get_ref(), &known),
-                    ));
-                }
+            if let Some(schema) = properties.get(name.get_ref().as_ref()) {
+                self.of_value(schema, value, name.get_ref());
+            } else {
+                let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+                let message = format!("unknown key `{}`", cut(name.get_ref()));
+                self.found.push(Diagnostic::at(name.span(), message, help_for_key(name.get_ref(), &known)));
             }
         }
         for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {

@@ -1,6 +1,12 @@
 //! Tables, figures and exports of a report made from stored records in which every number is another one: each cell has the
 //! number of the method, mesh, time, quantity and reference that its row and column name.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counters made of distinct numbers"
+)]
+
 use crate::program::call;
 use oedometer::{Record, RecordStore, RunOptions, Study, StudySource, Tier, run_study};
 use std::fs;
@@ -222,7 +228,7 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 /// Tables of a page in their order.
 fn tables(reported: &Reported, page: &str) -> Vec<(Vec<String>, Vec<Vec<String>>)> {
     let path = |number: usize| reported.path(&format!("studies/tables/{page}-table-{number}.csv"));
-    (1..).map(path).take_while(|path| path.exists()).map(|path| table(&path)).collect()
+    (1..1000).map(path).take_while(|path| path.exists()).map(|path| table(&path)).collect()
 }
 
 fn number(text: &str) -> f64 {

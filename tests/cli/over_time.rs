@@ -2,6 +2,7 @@
 //! crashes, one only renames.
 
 use crate::program::{PROGRAM, Told, call};
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -32,7 +33,7 @@ fn golden(errors: [f64; 2], reason: &str) -> String {
     );
     for (cells, error) in [(5, errors[0]), (10, errors[1])] {
         let label = format!("GIMP-SRI implicit cells={cells} points=2 growth=0.05");
-        text += &format!("{label},,{},\n{label},0.1,,{error:?}\n", 100 * cells);
+        let _ = write!(text, "{label},,{},\n{label},0.1,,{error:?}\n", 100 * cells);
     }
     text
 }

@@ -343,16 +343,12 @@ fn planted_faults_name_functions_and_tests_that_exist() {
         let source = fs::read_to_string(root().join(file)).expect(file);
         assert!(source.contains(&format!("fn {function}")), "{name}: {file} has no function {function}");
         assert!(fault.get("result").is_some() != fault.get("before").is_some(), "{name}: one effect");
-        match word("caught_by").strip_prefix("check ") {
-            Some(study) => {
-                let is_there =
-                    study == "references" || root().join(format!("studies/{study}.toml")).is_file();
-                assert!(is_there, "{name}: no study {study}");
-            }
-            None => {
-                let test = format!("fn {}(", word("caught_by"));
-                assert!(sources.contains(&test), "{name}: no test is called {}", word("caught_by"));
-            }
+        if let Some(study) = word("caught_by").strip_prefix("check ") {
+            let is_there = study == "references" || root().join(format!("studies/{study}.toml")).is_file();
+            assert!(is_there, "{name}: no study {study}");
+        } else {
+            let test = format!("fn {}(", word("caught_by"));
+            assert!(sources.contains(&test), "{name}: no test is called {}", word("caught_by"));
         }
     }
     let names: BTreeSet<&str> = faults.iter().filter_map(|fault| fault["name"].as_str()).collect();

@@ -7,6 +7,7 @@ use crate::field_values::{Accuracy, FieldValues};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtRest;
 
+#[expect(clippy::unused_self, clippy::trivially_copy_pass_by_ref, reason = "asked like every other solution")]
 impl AtRest {
     /// No pressure, no stress beyond that of the weight and no displacement.
     ///

@@ -138,7 +138,7 @@ fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Op
     let has_moved = |(one, value): (&Difference, f64)| {
         let (Some(before), Some(after)) = (one.golden, one.found) else { return false };
         let tolerance = right.golden.tolerance(&one.name, before.abs().max(value.abs()));
-        !((value - before).abs() <= tolerance) && ((value > before) == (after > before) || value.is_nan())
+        value.is_nan() || ((value - before).abs() > tolerance && (value > before) == (after > before))
     };
     there.map(has_moved).reduce(|any, one| any || one)
 }

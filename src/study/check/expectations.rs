@@ -372,6 +372,7 @@ impl Checker<'_> {
 
     /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A complaint where no
     /// value lies between them.
+    #[expect(clippy::ref_option, reason = "as the file of a study has it")]
     fn bounds(&mut self, range: &Typed<RangeTable>) -> Option<Bounds> {
         let range = range.as_ref()?;
         let bounds = Bounds { above: range.above.unwrap_or(0.0), below: range.below.unwrap_or(f64::MAX) };

@@ -166,6 +166,7 @@ impl Checker<'_> {
         self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
     }
 
+    #[expect(clippy::too_many_lines, reason = "the tables of a study, one after the other")]
     fn study(&mut self, file: StudyFile) -> Study {
         let (scene, task) = (*file.scene, file.task.as_deref().copied().unwrap_or_default());
         let case_seconds =

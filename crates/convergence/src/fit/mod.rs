@@ -98,7 +98,7 @@ pub(crate) fn order_of_differences(ratio: f64, r21: f64, r32: f64) -> Option<f64
     let side = |p: f64| b * p + ln(-exp_m1(-b * p)) - ln(-exp_m1(-a * p));
     let wanted = ln(ratio);
     let (mut low, mut high) = (0.0, LARGEST_ORDER);
-    if !(side(high) > wanted) {
+    if side(high).partial_cmp(&wanted) != Some(std::cmp::Ordering::Greater) {
         return None;
     }
     for _ in 0..200 {

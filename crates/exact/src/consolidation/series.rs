@@ -77,7 +77,7 @@ fn sum_modes(
 /// (Carslaw & Jaeger 1959, section 12.5). All alternate in sign with falling terms, so the first omitted term bounds the
 /// tail.
 pub mod images {
-    use super::*;
+    use super::{FRAC_2_SQRT_PI, SeriesValue, elementary, integrals_of_erfc, sum_images};
 
     /// `W(ζ, T)` for `T > 0`, as `erf(ζ/2√T)` less the images, so that it vanishes with `ζ` exactly:
     ///
@@ -127,7 +127,7 @@ pub mod images {
 
 /// Sums over the modes of the column.
 pub mod modes {
-    use super::*;
+    use super::{SeriesValue, elementary, sign, sum_modes};
 
     /// `W(ζ, T)` for `T > 0`.
     pub fn isochrone(zeta: f64, time_factor: f64) -> SeriesValue {
@@ -152,7 +152,7 @@ pub mod modes {
 
 /// Integrals over time.
 pub mod elapsed {
-    use super::*;
+    use super::{SWITCH, elementary, integrals_of_erfc, sign, sum_images, sum_modes};
 
     /// Integral of the isochrone over the time that has passed, `∫_0^T W(ζ, T) dT`: what a growing load leaves behind.
     ///

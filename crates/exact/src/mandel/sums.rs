@@ -82,7 +82,7 @@ pub mod early {
     //! other, `tanh r = 1`, and what is left is the transform of `e^{κ²T} erfc` (Abramowitz & Stegun 29.3.90):
     //! no series that creeps, however short the time.
 
-    use super::*;
+    use super::{Groups, MandelRatios, elementary};
 
     /// Inverse of `e^{−k r}/(r (r − κ))`: `e^{κ²T − κk} erfc(k/(2√T) − κ√T)`.
     fn felt_from(kappa: f64, time: f64, way: f64) -> f64 {
@@ -145,7 +145,7 @@ pub mod early {
 pub mod series {
     //! Mandel's series, over the roots of `tan α/α = 1/κ` (Mandel 1953; Cheng & Detournay 1988, Eqs 41–46).
 
-    use super::*;
+    use super::{Groups, MandelRatios, Sums, elementary};
     use core::f64::consts::{FRAC_PI_2, PI};
 
     /// What the terms left out may add up to.

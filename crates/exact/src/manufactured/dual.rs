@@ -24,9 +24,11 @@ pub trait Number:
     fn constant(value: f64) -> Self;
 
     /// One over it.
+    #[must_use]
     fn recip(self) -> Self;
 
     /// The natural logarithm.
+    #[must_use]
     fn ln(self) -> Self;
 
     /// The sine and the cosine.
@@ -153,6 +155,7 @@ impl<T: Number> Sub for Dual<T> {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of a product's derivative")]
 impl<T: Number> Mul for Dual<T> {
     type Output = Self;
     #[inline(always)]

@@ -115,7 +115,9 @@ impl BandedLu {
             self.pivots[column] = pivot;
             own[0] = 1.0 / own[0];
             let (per_pivot, multipliers) = (own[0], &mut own[1..]);
-            multipliers.iter_mut().for_each(|multiplier| *multiplier *= per_pivot);
+            for multiplier in multipliers.iter_mut() {
+                *multiplier *= per_pivot;
+            }
             // Columns that the pivot row reaches.
             end = end.max((column + pivot + upper + 1).min(size));
             self.reach = self.reach.max(end - 1 - column);

@@ -108,11 +108,15 @@ fn dissect(set: Vec<usize>, matrix: &SparseMatrix, is_upper: &mut [bool], order:
         let middle = places.len() / 2;
         let level = *places.select_nth_unstable_by(middle, f64::total_cmp).1;
         let (low, high): (Vec<usize>, Vec<usize>) = own.iter().partition(|unknown| place(unknown) < level);
-        high.iter().for_each(|unknown| is_upper[*unknown] = true);
+        for unknown in &high {
+            is_upper[*unknown] = true;
+        }
         let touches =
             |unknown: &&usize| matrix.row(**unknown).1.iter().any(|other| is_upper[*other as usize]);
         let (separator, apart): (Vec<usize>, Vec<usize>) = low.iter().partition(touches);
-        high.iter().for_each(|unknown| is_upper[*unknown] = false);
+        for unknown in &high {
+            is_upper[*unknown] = false;
+        }
         // A set that is all separator is not worth cutting.
         if !apart.is_empty() {
             children = [apart, high].map(|half| dissect(half, matrix, is_upper, order)).into();

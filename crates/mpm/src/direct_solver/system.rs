@@ -145,6 +145,7 @@ pub struct Factors {
 }
 
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one per system, whose matrices are far larger")]
 enum CoreFactors {
     Banded(BandedLu),
     Frontal(FrontalLu),
@@ -180,10 +181,10 @@ impl Factors {
     pub fn factor(&mut self, matrix: &SystemMatrix) -> Result<(), Singular> {
         match (&mut self.core, &matrix.core) {
             (CoreFactors::Banded(factors), Core::Banded(matrix)) => {
-                factors.factor(matrix, self.time_limit)?
+                factors.factor(matrix, self.time_limit)?;
             }
             (CoreFactors::Frontal(factors), Core::Sparse(matrix)) => {
-                factors.factor(matrix, self.time_limit)?
+                factors.factor(matrix, self.time_limit)?;
             }
             _ => unreachable!("factors of another pattern"),
         }

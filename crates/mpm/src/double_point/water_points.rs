@@ -78,7 +78,6 @@ impl<const D: usize> WaterPoints<D> {
 
     /// Number of points in the soil.
     #[inline]
-    #[expect(clippy::len_without_is_empty, reason = "a body without water has no points of water at all")]
     pub fn len(&self) -> usize {
         self.mass.len()
     }

@@ -83,7 +83,7 @@ impl PhysicalBounds {
     /// The bounds of a run from a start, whose pressures may be many times the load where a method locks, which is what
     /// studies of that are about, and whose unbalanced forces run through the body as waves.
     #[must_use]
-    pub fn from_start(self, pressures: &[f64], unbalanced_force: f64) -> Self {
+    pub fn widened_by_start(self, pressures: &[f64], unbalanced_force: f64) -> Self {
         let largest = pressures.iter().fold(0.0, |largest: f64, pressure| largest.max(pressure.abs()));
         Self {
             pressure: self.pressure.max(MOST_PRESSURE * largest),
@@ -192,7 +192,7 @@ mod tests {
         let half_space = 2.0 * (1.0 - 0.4999_f64.powi(2)) / (std::f64::consts::PI * soil.youngs_modulus);
         assert!(bounds.settlement_scale > half_space && bounds.settlement_scale < 1.1 * half_space);
         assert!(bounds.left_by_pressure(&[300.0]).is_some());
-        let locked = bounds.from_start(&[-80.0, 20.0], 0.0);
+        let locked = bounds.widened_by_start(&[-80.0, 20.0], 0.0);
         assert!(locked.left_by_pressure(&[300.0]).is_none(), "locked from its start, and not ended");
         assert!(locked.left_by_pressure(&[500.0]).is_some(), "and ended where it goes on to grow");
     }
@@ -207,7 +207,7 @@ mod tests {
         {
             assert_eq!(bounds.left_by_force(force, time).is_none(), is_within, "{force} {time}");
         }
-        let waves = bounds.from_start(&[], 50.0);
+        let waves = bounds.widened_by_start(&[], 50.0);
         assert!(waves.left_by_force(150.0, 1.0).is_none() && waves.left_by_force(250.0, 1.0).is_some());
         let growing = Column { loading_time: 1.0, ..Column::default() };
         let growing = bounds_of(SceneKind::DynamicColumn, &growing, &soil);

@@ -49,7 +49,8 @@ impl<'a> Watch<'a> {
 
     /// Takes its bounds from the state at the start.
     pub fn begin(&mut self, start: &Snapshot) {
-        self.bounds = self.plan.bounds.from_start(start.points.pressures().0, start.totals.unbalanced_force);
+        self.bounds =
+            self.plan.bounds.widened_by_start(start.points.pressures().0, start.totals.unbalanced_force);
     }
 
     /// Steps to the next look of at most `most`, when so many are done: at first it comes after 1, 2, 4

@@ -122,6 +122,7 @@ impl From<Problem<2>> for SceneProblem {
 ///
 /// # Errors
 /// When the parameters are impossible.
+#[expect(clippy::too_many_lines, reason = "the parts of a problem, one after the other")]
 pub fn column_problem<const D: usize>(
     scene: SceneKind,
     column: &Column,

@@ -128,7 +128,7 @@ impl ByHand {
         [grains, point.ratio * point.initial_volume - grains]
     }
 
-    fn take_velocities(&self, nodes: &mut [Node]) {
+    fn take_velocities(nodes: &mut [Node]) {
         for (number, node) in nodes.iter_mut().enumerate() {
             let is_held = number == 0 || node.grains == 0.0;
             node.velocity = if is_held {
@@ -167,7 +167,7 @@ impl ByHand {
         for number in 0..nodes.len() {
             nodes[number].force[0] -= self.load * self.hat(number, top.place + edge);
         }
-        self.take_velocities(&mut nodes);
+        Self::take_velocities(&mut nodes);
         for (number, node) in nodes.iter_mut().enumerate() {
             if number == 0 || node.grains == 0.0 {
                 continue;
@@ -207,7 +207,7 @@ impl ByHand {
                 node.momentum[1] += weight * pores * point.water_velocity;
             }
         }
-        self.take_velocities(&mut nodes);
+        Self::take_velocities(&mut nodes);
         self.strain(&nodes, &shapes, dt);
     }
 
@@ -219,7 +219,7 @@ impl ByHand {
             node.velocity[0] + porosity * (node.velocity[1] - node.velocity[0])
         };
         // Places and volumes of the beginning of the step: cells and their porosity are those of the weights.
-        let cells: Vec<usize> = shapes.iter().map(|shapes| self.cell_of(shapes)).collect();
+        let cells: Vec<usize> = shapes.iter().map(|shapes| Self::cell_of(shapes)).collect();
         let mut of_cells = [[0.0; 2]; CELLS + 2];
         for (point, cell) in self.points.iter().zip(&cells) {
             let [grains, pores] = self.volumes(point);
@@ -252,7 +252,8 @@ impl ByHand {
     }
 
     /// Cell that held a point when its weights were made: the one between the nodes with hats around its middle.
-    fn cell_of(&self, shapes: &[[f64; 2]]) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place on a short mesh")]
+    fn cell_of(shapes: &[[f64; 2]]) -> usize {
         let place: f64 = shapes.iter().enumerate().map(|(node, [weight, _])| node as f64 * weight).sum();
         // The mean of the hats' places over a domain is the middle of the domain: hats reproduce lines.
         (place + 1e-10).floor().max(0.0) as usize
