@@ -51,7 +51,7 @@ fn series_of(
     let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
     let mut signed: Vec<(f64, f64)> = sizes.iter().copied().zip(errors.iter().copied()).collect();
     signed.sort_by(|a, b| b.0.total_cmp(&a.0));
-    // Norms have no sign: then the signs are no information.
+    // Norms have no sign, so signs carry no information here.
     let has_signs = errors.iter().any(|error| *error < 0.0);
     let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };
     Ok((series, Context { formal_order, round_off: Some(ROUND_OFF), signed, ..Context::default() }))

@@ -38,7 +38,7 @@ pub struct ExactValues {
 /// ```
 ///
 /// # Errors
-/// When there is no such solution, or it refuses its inputs.
+/// When the solution does not exist or refuses its inputs.
 pub fn exact(
     solution: &str,
     time_factors: &[f64],

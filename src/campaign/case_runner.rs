@@ -98,7 +98,7 @@ impl<'a> CaseRunner<'a> {
         // It has a process group of its own, which no signal to this program reaches: from now on they are taken, and
         // end it with all that it has started. Where the system refuses, they do what they did.
         let _ = stop::heed_signals();
-        // How far it is nobody knows before its end.
+        // The progress of an attached solver is unknown until it ends.
         let is_wanted = || observe(0, 1) && !stop::is_over();
         let wish = Wish {
             references: &self.study.references,

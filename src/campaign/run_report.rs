@@ -74,7 +74,7 @@ impl RunError {
         Self::Case { label: case.label(), reason: "crashed; please report it with the study file".to_owned() }
     }
 
-    /// The case that has no record, with the reason; `None` where it is no case's own fault.
+    /// The case that has no record, with the reason; `None` if no single case caused it.
     pub fn of_case(&self) -> Option<(&str, String)> {
         match self {
             Self::Store(_) => None,
@@ -109,7 +109,7 @@ pub struct Tally {
     pub failed: usize,
     /// Those that failed and were not expected to.
     pub unforeseen: usize,
-    /// Those of them that were not begun, for nobody has allowed their programs to be started.
+    /// Those of them that were not begun, because their programs were not allowed to start.
     pub held_back: usize,
     /// Cases that were not begun or not ended, for the run was stopped.
     pub left: usize,

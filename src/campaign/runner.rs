@@ -160,10 +160,10 @@ fn cases_of<'a>(studies: &[Selected<'a>], options: &RunOptions) -> Vec<Vec<&'a C
     of_studies
 }
 
-/// The record of a case, or why there is none.
+/// The record of a case, or the reason why it is missing.
 type Outcome = Result<Box<Record>, Box<RunError>>;
 
-/// One case to run; of a million of them it is no more than that.
+/// One case to run. Small, because a study may have a million.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     case: &'a Case,

@@ -50,7 +50,7 @@ impl Case {
     fn swept_inputs(&self) -> impl Iterator<Item = String> {
         self.swept.iter().filter_map(|name| {
             let value = match Key::named(name, "sweep")?.get(self) {
-                // A digit of round-off is no other case.
+                // A digit of round-off does not make another case.
                 Value::Number(number) => typed(format!("{number:.7e}").parse().unwrap_or(number)),
                 other => other.to_string(),
             };

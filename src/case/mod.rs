@@ -46,7 +46,7 @@ const HASH_DIGITS: usize = 16;
 /// What is done with a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Task {
-    /// It is solved, and held against the references of its scene.
+    /// It is solved and compared with the references of its scene.
     #[default]
     Solve,
     /// Its critical step is predicted and observed.

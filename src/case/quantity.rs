@@ -24,7 +24,7 @@ words!(
 );
 
 impl Quantity {
-    /// Its field among samples; a settlement is none.
+    /// Its field among samples; `None` for a settlement.
     pub fn field(self, samples: &Samples) -> Option<&[f64]> {
         match self {
             Self::Pressure => Some(&samples.pressure),

@@ -26,7 +26,7 @@ pub fn estimated_work(case: &Case) -> u64 {
     (1e9 * estimated_seconds(case)).max(1.0) as u64
 }
 
-/// Time that is put down for a case of an attached solver, s: nobody knows it before.
+/// Time assumed for a case of an attached solver, s: it cannot be estimated.
 const ATTACHED_SECONDS: f64 = 5.0;
 
 /// Time that a case will take on one core of the machine that [`step_cost`](crate::case::step_cost) names, s.

@@ -103,7 +103,7 @@ impl StudyLines {
         Ok(())
     }
 
-    /// The keys as one table, for what is no study.
+    /// The keys as one table, for use outside a study.
     pub fn table(&self) -> anyhow::Result<toml::Table> {
         toml::from_str(&self.lines.join("\n")).map_err(|error| Ended::usage(error.message().to_owned()))
     }

@@ -18,7 +18,7 @@ pub(crate) use say;
 /// Writes data to standard output and flushes it.
 ///
 /// # Errors
-/// When the device fails; a pipe that nobody reads any more is not an error.
+/// When the device fails; a closed pipe is not an error.
 pub fn print_data(text: &str) -> anyhow::Result<()> {
     print_as_it_is(&document(text))
 }

@@ -29,7 +29,7 @@ pub fn note_on_longest(longest: &LongestCase) -> Option<String> {
     note_with(longest, |integrator| format!("`integrator = [\"{integrator}\"]` in its [[sweep]]"))
 }
 
-/// The same of a case that the command line describes.
+/// Time notes of a case that the command line describes.
 pub fn note_on_solve(longest: &LongestCase) -> Option<String> {
     note_with(longest, |integrator| format!("`--integrator {integrator}`"))
 }

@@ -59,7 +59,7 @@ impl TrustArguments {
             || is_answered(study, &starting)
     }
 
-    /// The same for a command that makes nothing of a part of a study.
+    /// Trust for a command that uses the whole study.
     ///
     /// # Errors
     /// When one may not start its programs.

@@ -186,7 +186,7 @@ impl<'a> Attachment<'a> {
             about.last_words = ending::kept_words(&finished).iter().map(plain).collect();
         }
         let left = in_plain_words(left, |text| staged.without_paths(text));
-        // Of a run that nobody wants any more nothing is kept, and what an earlier one left stays.
+        // Nothing of a cancelled run is kept; results of an earlier run stay.
         let is_stopped = matches!(finished.ending, Ending::Stopped);
         let keep =
             || staged.keep_words(&finished.output, &finished.errors).and_then(|()| staged.keep(!failed));

@@ -47,7 +47,7 @@ pub struct CaseFile {
     pub derived: Derived,
     /// Outputs as time factors `T_v = c_v t/H²`, ascending; 0 is the undrained start.
     pub time_factors: Vec<f64>,
-    /// The same outputs, s.
+    /// Times of the outputs, s.
     pub times: Vec<f64>,
     /// Suggested time step, s: that of the study where it names one in seconds; else `T_v` = 0.1 over the square of
     /// the cells, and a twentieth of the first output at most.
@@ -64,7 +64,7 @@ pub struct CaseColumn {
     /// Width of a column, or length of a layer, m; in one dimension it has no say. Of a slab half the distance of its
     /// plates.
     pub width: f64,
-    /// Load on the surface, Pa, compression positive; the amplitude of the initial pressure where there is no load.
+    /// Load on the surface, Pa, compression positive; the amplitude of the initial pressure in scenes without a load.
     pub load: f64,
     /// Time over which the load grows, s; 0 where it acts at once.
     pub loading_time: f64,

@@ -3,13 +3,13 @@
 //! | status | when | whose |
 //! | :-- | :-- | :-- |
 //! | `timed-out` | its time was over, whatever it had printed by then | the solver's |
-//! | `not-startable` | there is no such program, or no folder for it | the study's command's, or the machine's |
+//! | `not-startable` | the program or its folder does not exist | the study's command's, or the machine's |
 //! | `killed` | a signal ended it that this program did not send | the solver's, or the machine's |
 //! | `failed` | it ended with an exit code other than 0 and 77 | the solver's, or its adapter's |
-//! | `skipped` | it ended with exit code 77: it cannot run here | nobody's |
+//! | `skipped` | it ended with exit code 77: it cannot run here | none |
 //! | `no-result` | it ended well, and its result is not there | the adapter's |
-//! | `unreadable` | the result is no such file, or not what the mapping says | the adapter's, or the mapping's |
-//! | `not-finite` | the result holds what is no finite number | the solver's |
+//! | `unreadable` | the result is missing, or not what the mapping says | the adapter's, or the mapping's |
+//! | `not-finite` | the result contains a value that is not finite | the solver's |
 //! | `incomplete` | outputs or places are missing | the adapter's |
 //! | `ok` | none of these | |
 
@@ -69,12 +69,12 @@ pub fn of_processes(run: &Finished) -> Option<String> {
     left.then(|| format!("it left processes behind, which were ended: {}", named(&found.seen)))
 }
 
-/// The end of a run that nobody wanted any more: Ctrl-C, or another result that could not be kept.
+/// The end of a cancelled run: Ctrl-C, or another result that could not be kept.
 pub fn of_stopped() -> Failure {
     Failure::of_attached(FailureKind::Stopped, "stopped from outside".to_owned())
 }
 
-/// The end of a run that was not begun, for nobody has allowed the study to start programs.
+/// The end of a run that was not begun because the study may not start programs.
 pub fn of_held_back() -> Failure {
     let reason = "nobody has allowed this study to start programs; `--allow-solvers` does".to_owned();
     Failure::of_attached(FailureKind::Skipped, reason)
@@ -147,7 +147,7 @@ pub fn of_mapping(why: &str) -> Failure {
     Failure::of_attached(FailureKind::Unreadable, format!("the mapping cannot be taken: {why}"))
 }
 
-/// The last lines of a run: of its errors, or where there are none of its output.
+/// The last lines of a run's errors, or of its output if it wrote no errors.
 pub fn kept_words(run: &Finished) -> Vec<String> {
     let errors = last_lines(&run.errors, MOST_LINES, LONGEST_LINE);
     if errors.is_empty() { last_lines(&run.output, MOST_LINES, LONGEST_LINE) } else { errors }

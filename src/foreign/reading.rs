@@ -35,14 +35,14 @@ pub struct ReadResult {
     pub digest: String,
 }
 
-/// Why there is no result.
+/// Why a result is missing.
 #[derive(Debug)]
 pub enum Unread {
     /// No file of that name.
     NoFile,
     /// A file cannot be read as its mapping says.
     Unreadable(String),
-    /// It holds what is no finite number.
+    /// It contains a value that is not finite.
     NotFinite(String),
 }
 
@@ -96,7 +96,7 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
 /// The result of a case.
 ///
 /// # Errors
-/// Why there is none.
+/// Why it is missing.
 pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadResult, Unread> {
     let given = files_of(result).map_err(|_| Unread::NoFile)?;
     let files = given.concat();
@@ -186,7 +186,7 @@ fn beyond_the_load(case: &Case, state: &SampledState) -> Option<String> {
     ))
 }
 
-/// An error of the import, told apart where it is about a value that is no finite number.
+/// An error of the import, distinguished if it is about a value that is not finite.
 fn why_unread(error: &ImportError) -> Unread {
     let told = error.to_string();
     let is_value = matches!(error, ImportError::Content { .. });

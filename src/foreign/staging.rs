@@ -43,7 +43,7 @@ impl Staged {
             remove_left(&parent);
         }
         let folder = parent.join(format!("{STAGED}{}-{number}", std::process::id()));
-        // What an earlier process of this number left there is nobody's.
+        // Left by an earlier process of this number: abandoned.
         remove(&folder);
         let staged = Self { folder, place: place.map(|_| parent) };
         fs::create_dir_all(staged.out())?;
@@ -118,12 +118,12 @@ impl Drop for Staged {
     }
 }
 
-/// Removes a folder where there is one; what cannot be removed stays, and is in nobody's way.
+/// Removes a folder if it exists; a folder that cannot be removed stays and does no harm.
 fn remove(folder: &Path) {
     let _ = fs::remove_dir_all(folder);
 }
 
-/// Removes the staged folders of processes that are no more, where the system tells.
+/// Removes the staged folders of ended processes, if the system can tell.
 fn remove_left(parent: &Path) {
     let all = Path::new("/proc");
     if !all.join("self").exists() {

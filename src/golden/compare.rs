@@ -59,7 +59,7 @@ const LEAST_SIZE: f64 = 1e-9;
 
 impl Difference {
     /// Change over the larger of both values; of a water balance, which is a share already and near zero,
-    /// the change itself. Infinite for what is no number, `None` where one side is missing.
+    /// the change itself. Infinite for NaN, `None` where one side is missing.
     pub fn relative_change(&self) -> Option<f64> {
         let (golden, found) = (self.golden?, self.found?);
         let largest = golden.abs().max(found.abs());
@@ -126,7 +126,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
     differences
 }
 
-/// Marks values that fell in a case in which another one moved: they are no improvement.
+/// Marks values that fell in a case in which another value moved: these do not count as improvements.
 fn tell_apart_what_is_paid_for(differences: &mut [Difference]) {
     let case_of = |one: &Difference| parts(&one.name).0.to_owned();
     let moved = |one: &&Difference| one.change == Change::Moved;
@@ -380,7 +380,7 @@ mod tests {
         assert_eq!((better.change, better.is_stale()), (ParetoChange::Better, true));
         let trade = only(&[difference(steps, 100.0, 50.0), difference(error, 0.1, 0.2)]);
         assert_eq!((trade.change, trade.is_stale()), (ParetoChange::Traded, true));
-        // At the same cost some errors fell and some grew: that is no trade but a change of method.
+        // At the same cost some errors fell and some grew: a change of method, not a trade of cost for accuracy.
         let mixed = only(&[difference(error, 0.1, 0.2), difference(other, 0.1, 0.05)]);
         assert_eq!((mixed.change, mixed.is_stale()), (ParetoChange::Traded, false));
     }

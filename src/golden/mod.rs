@@ -74,7 +74,7 @@ pub struct GoldenFile {
 /// Why golden values could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
-    /// There is no file.
+    /// The file does not exist.
     #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
     Missing(PathBuf),
     /// The file cannot be read or written, or allows what no golden file may.

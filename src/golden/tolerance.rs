@@ -46,7 +46,7 @@ pub fn spread_by_group<'a>(
     let mut spread: BTreeMap<String, f64> = BTreeMap::new();
     for (name, other) in others.into_iter().flatten() {
         let (Some(group), Some(value)) = (spread_group(name), values.get(name)) else { continue };
-        // What is no number on one side is no spread: the comparison itself must fail on it.
+        // A NaN on one side is not a spread: the comparison itself must fail on it.
         let change = (value - other).abs();
         if change > 0.0 && change.is_finite() {
             let largest = spread.entry(group).or_default();
@@ -94,7 +94,7 @@ impl GoldenFile {
             ("absolute_tolerance", self.absolute_tolerance, MOST_ABSOLUTE),
         ];
         for (name, value, most) in tolerances {
-            // Written so that what is no number is refused.
+            // Written so that NaN is refused.
             let holds = (0.0..=most).contains(&value);
             if !holds {
                 return Some(format!("its `{name}` is {value:e}, which is not between 0 and {most:e}"));

@@ -73,7 +73,7 @@ impl Repository {
     /// The repository that holds a folder.
     ///
     /// # Errors
-    /// When git cannot be started or there is none.
+    /// When git is missing or cannot be started.
     pub fn around(folder: &Path) -> Result<Self, GitError> {
         let output = git(folder, &["rev-parse", "--show-toplevel"])?;
         match output {
@@ -103,7 +103,7 @@ impl Repository {
     /// The commit of a revision: a branch, a tag, a hash, `HEAD~3`.
     ///
     /// # Errors
-    /// When there is no such revision.
+    /// When the revision does not exist.
     pub fn commit(&self, revision: &str) -> Result<Commit, GitError> {
         let name = format!("{revision}^{{commit}}");
         let shown = ["log", "-1", "--format=%H%x09%cs%x09%s", "--end-of-options", &name];
@@ -151,7 +151,7 @@ impl Repository {
         Ok(text.split('\x01').skip(1).map(of_commit).collect())
     }
 
-    /// The texts of files at commits, `hash:path`, by one process; those that are not there or are no text are left out.
+    /// The texts of files at commits, `hash:path`, by one process; missing and binary files are left out.
     ///
     /// # Errors
     /// When git fails.

@@ -37,7 +37,7 @@ pub(crate) struct State {
     pub notes: Vec<String>,
 }
 
-/// Why there is no state.
+/// Why a state cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StateError {
     /// Git gives no answer.
@@ -80,7 +80,7 @@ impl State {
     /// The golden values of a revision in a folder of the repository.
     ///
     /// # Errors
-    /// When git fails or there are none.
+    /// When git fails or finds no commits.
     pub fn of_revision(repository: &Repository, revision: &str, folder: &str) -> Result<Self, StateError> {
         let commit = repository.commit(revision)?;
         let files = repository.files(&commit)?;

@@ -68,7 +68,7 @@ fn judge_expectation(expectation: &SeriesExpectation, all: &[Path<'_>]) -> Vec<J
         return judgements;
     }
     let method = selection.method().map_or("any method".to_owned(), |method| method.to_string());
-    // Not excused by `xfail`: nothing was measured, and that is no known failure.
+    // Not excused by `xfail`: nothing was measured, which is not a known failure.
     let strict = SeriesDemand { xfail: None, ..demand.clone() };
     let verdict = judge(&strict, &ErrorSeries::default(), &Context::default(), &Beside::default());
     vec![Judgement { line: *line, subject: format!("{method}: {measure}"), verdict, uncertainty: None }]

@@ -38,7 +38,7 @@ pub struct StudyCheck {
     pub unsound: Vec<CaseNote>,
     /// Verdicts on expectations.
     pub judgements: Vec<Judgement>,
-    /// Differences from the golden values, or why there are no golden values.
+    /// Differences from the golden values, or why golden values are missing.
     pub golden: Result<Vec<Difference>, GoldenError>,
     /// The differences by kind, with what those of a kind have in common.
     pub groups: Vec<DifferenceGroup>,
@@ -91,7 +91,7 @@ impl StudyCheck {
                 let failure = record.status.failure().filter(|_| !is_foreseen);
                 failure.map(ToString::to_string).into_iter().collect()
             }),
-            // The remains of a failed run are no result to complain about.
+            // Partial results of a failed run are not judged.
             unsound: notes(&|record| match record.status {
                 Status::Ok => soundness::complaints(record),
                 Status::Failed(_) => Vec::new(),
@@ -162,7 +162,7 @@ impl StudyCheck {
         }
     }
 
-    /// Differences from the golden values; empty where there is no golden file.
+    /// Differences from the golden values; empty without a golden file.
     pub fn differences(&self) -> &[Difference] {
         self.golden.as_deref().unwrap_or_default()
     }
@@ -193,7 +193,7 @@ impl StudyCheck {
     }
 }
 
-/// A warning about a wall time far beyond the golden one, which is no verdict.
+/// A warning about a wall time far beyond the golden one; not a verdict.
 fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
     let before = golden.seconds.filter(|before| *before > 0.0)?;
     (seconds > SLOW * before).then(|| {

@@ -81,7 +81,7 @@ pub fn pressure_peak(case: &Case, snapshots: &[Snapshot]) -> Option<PressurePeak
     let bend = (slopes[1] - slopes[0]) / (after.0 - before.0);
     let slope = slopes[0] + bend * (time - before.0);
     let shift = -0.5 * slope / bend;
-    // Written so that NaN is no peak.
+    // Written so that NaN is not a peak.
     (bend < 0.0).then(|| PressurePeak {
         time_factor: elementary::exp(time + shift),
         height: height + 0.5 * slope * shift,

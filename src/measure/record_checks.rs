@@ -115,7 +115,7 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
         ),
         RecordCheck::of("sum of internal forces, relative", balance.internal_force_imbalance, ROUND_OFF),
         RecordCheck::of("settlement off the settlement curve", balance.settlement_curve_gap, CURVE_GAP),
-        // With constant recovery both stresses have the same error: zero is no evidence.
+        // With constant recovery both stresses have the same error: a zero difference proves nothing.
         RecordCheck::judged(
             "equilibrium (σ' − p + q)/q, rms",
             balance.equilibrium_residual,

@@ -35,7 +35,7 @@ const TRAILER: usize = 8;
 /// Effort of the compression, the least whose members begin with [`START`]: most of it makes a record a twentieth
 /// smaller and takes longer than a small case.
 const EFFORT: u32 = 2;
-/// Longest text of a member, bytes: a longer one is no record.
+/// Longest text of a member, bytes; records are shorter.
 const MOST_TEXT: u64 = 1 << 30;
 /// Bytes that are searched at once for the next header behind damage.
 const WINDOW: usize = 1 << 20;
@@ -86,7 +86,7 @@ impl Entry {
         self.program == program.program_tag() && self.end != CaseEnd::Late
     }
 
-    /// Reads the header at the beginning of some bytes; `None` where they are no member's.
+    /// Reads the header at the beginning of some bytes; `None` if no member begins there.
     fn read(bytes: &[u8]) -> Option<Self> {
         let field = bytes.get(..HEADER)?.strip_prefix(&START)?;
         let word = |at: usize| field[at..at + 8].try_into().ok().map(u64::from_le_bytes);
@@ -139,7 +139,7 @@ fn unpacked(member: &[u8]) -> Option<String> {
     ((text.len() as u64) < MOST_TEXT && decoder.into_inner().is_empty()).then_some(text)
 }
 
-/// Bytes of a pack that are no whole member.
+/// Bytes of a pack outside complete members.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     /// The pack.
@@ -260,7 +260,7 @@ impl Index {
     }
 }
 
-/// The header at a byte of a file of a length; `None` where there is none, or its member would not fit.
+/// The header at a byte of a file of a length; `None` if it is missing or its member would not fit.
 fn header_at(file: &mut (impl Read + Seek), at: u64, length: u64) -> io::Result<Option<Entry>> {
     let mut bytes = [0; HEADER];
     if length - at < HEADER as u64 {
@@ -308,7 +308,7 @@ struct Writer {
 }
 
 impl Writer {
-    /// Takes up a pack that this machine began and nobody writes, or begins one.
+    /// Continues a pack that this machine began and no process is writing, or begins one.
     ///
     /// A lock is trusted between the processes of one machine only: network file systems know locks that other
     /// machines do not see.
@@ -395,7 +395,7 @@ impl Packs {
         self.state().index.records.get(&case).map(|place| place.entry)
     }
 
-    /// What of the packs is no record, by pack and place, but for the ends of those that somebody is writing.
+    /// Damaged bytes of the packs, by pack and place, except at the ends of packs being written.
     pub fn damages(&self) -> Vec<Damage> {
         let mut damages = self.state().index.damages.clone();
         // A pack that is read on finds a cut end again, behind what other packs have.
@@ -530,7 +530,7 @@ mod tests {
         let member = member(1, 1, "text");
         for window in [START.len(), HEADER, HEADER + 1, 80, 200] {
             for count in 0..3 * window {
-                // Beginnings of headers at all edges of the windows mislead nobody.
+                // Beginnings of headers at the edges of the windows must not mislead the scan.
                 let bait = member.iter().take(1 + count % 20).chain(&[1, 2, 3]).copied().cycle();
                 let bytes: Vec<u8> = bait.take(count).chain(member.iter().copied()).collect();
                 let length = bytes.len() as u64;

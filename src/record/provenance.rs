@@ -40,7 +40,7 @@ impl Provenance {
         self.compiler == other.compiler && self.target == other.target && self.profile == other.profile
     }
 
-    /// A number for version and sources: the same for programs whose values are the same.
+    /// Digest of version and sources: equal for programs that compute equal values.
     pub fn program_tag(&self) -> u64 {
         tag(&[&self.version, &self.sources])
     }

@@ -85,7 +85,7 @@ impl RecordStore {
         self.is_packed
     }
 
-    /// What of the packs is no record.
+    /// Damaged bytes of the packs.
     pub fn damages(&self) -> Vec<Damage> {
         self.packs.damages()
     }

@@ -13,7 +13,7 @@ use std::time::{Duration, SystemTime};
 
 /// Ending of a file that is being written.
 const PART: &str = ".part";
-/// Age after which such a file is nobody's, whatever machine wrote it.
+/// Age after which such a file is abandoned, whatever machine wrote it.
 const STALE: Duration = Duration::from_secs(24 * 3600);
 /// Letters of the host's name in a file's name.
 const HOST_LETTERS: usize = 32;
@@ -123,7 +123,7 @@ pub fn place_of_this_process() -> &'static str {
     &PLACE
 }
 
-/// Sixteen hexadecimal digits that nobody else has.
+/// Sixteen hexadecimal digits, unique to this process and call.
 pub fn random_word() -> String {
     format!("{:016x}", RandomState::new().build_hasher().finish())
 }

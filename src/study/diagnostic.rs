@@ -160,7 +160,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// Help for a word that is none of the candidates.
+/// Help for a word that is not among the candidates.
 pub fn one_of(word: &str, candidates: &[&str]) -> String {
     let near = nearest(word, candidates.iter().copied());
     match near {

@@ -41,7 +41,7 @@ impl Axis {
     pub const REFINEMENTS: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
 }
 
-/// The reference that is no other theory: the same run at the next finer level. Differences of
+/// The reference that needs no theory: the same run at the next finer level. Differences of
 /// neighbours have no floor but round-off, whatever the exact solution.
 pub const NEXT_FINER: &str = "next-finer";
 

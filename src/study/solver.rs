@@ -36,7 +36,7 @@ pub struct ExternalSolver {
     pub mapping: Option<String>,
     /// Program whose files are known.
     pub preset: Option<String>,
-    /// Command that prints its version; empty where there is none.
+    /// Command that prints its version; empty by default.
     pub version: Vec<String>,
     /// Longest wall time of one run, s.
     pub timeout: f64,
@@ -69,7 +69,7 @@ impl ExternalSolver {
     }
 }
 
-/// The file of a folder that a word names; a word without a letter is none, nor is one that begins like an option.
+/// The file of a folder that a word names; `None` for a word without a letter or one that begins like an option.
 pub fn file_beside(folder: &std::path::Path, word: &str) -> Option<PathBuf> {
     let is_name = word.contains(|letter: char| letter.is_alphabetic()) && !word.starts_with('-');
     Some(folder.join(word)).filter(|path| is_name && path.is_file())

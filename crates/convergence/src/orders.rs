@@ -1,6 +1,6 @@
 //! Observed orders of convergence: by pairs, by a straight fit to all levels, and on the finest window.
 //!
-//! An interval alone is no gate: a Student-t interval takes curvature for noise, and `h² + 8h³`
+//! An interval alone cannot decide: a Student-t interval takes curvature for noise, and `h² + 8h³`
 //! over the six levels h = 1/5 … 1/160 gives 2.25 ± 0.12. Whether an order means anything is decided in
 //! [`classify`](crate::classify) first.
 

@@ -51,7 +51,7 @@ pub fn front(points: &[CostPoint]) -> Vec<bool> {
     on_front
 }
 
-/// A point held against its golden value, in accuracy and cost together.
+/// A point compared with its golden value, in accuracy and cost together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ParetoChange {

@@ -355,7 +355,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Displacement of the skeleton at the place of a node, m: that of the node itself, but for splines,
-    /// whose coefficients are no values.
+    /// whose coefficients are not nodal values.
     pub fn displacement_at_node(&self, node: usize) -> Vector<D> {
         if !self.method.basis.is_spline() {
             return self.nodes.displacement[node];

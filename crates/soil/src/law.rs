@@ -16,7 +16,7 @@ pub enum Law {
     /// The modulus `E = E_0/J` in the rate form, `dσ' = (E_oed/J) dJ/J`, so `σ' = E_oed (1 − 1/J)`
     /// (docs/theory.md, Eq. 7), and `k = k_0 J²`: Zheng et al. Eqs 7 and 8, taken as rates.
     PorosityDependent,
-    /// The same modulus `E = E_0/J` with the engineering strain that it belongs to,
+    /// Modulus `E = E_0/J` with the engineering strain that it belongs to,
     /// `dσ' = (E_oed/J) dJ`, and `k = k_0 J²`: the material of Xie & Leo by another way.
     Engineering,
     /// Hyperelastic, `σ' = [μ (F Fᵀ − I) + λ ln J I]/J` (Simo & Pister 1984; docs/theory.md, Eq. 28), and

@@ -26,7 +26,7 @@ const ROUND_OFF: f64 = 1e-14;
 enum Format {
     /// One row per time factor and depth, 17 significant digits
     Csv,
-    /// The same with terms used and tail bounds
+    /// Also print the terms used and the tail bounds
     Json,
 }
 

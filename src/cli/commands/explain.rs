@@ -43,7 +43,7 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-/// Finds the case, solves it if there is no record, and explains.
+/// Finds the case, solves it if its record is missing, and explains it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let studies = load_or_shipped(&arguments.studies)?;
     let (description, focus) = match arguments.case.split_once(" | ") {

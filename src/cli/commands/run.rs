@@ -206,7 +206,7 @@ pub fn run_and_store(
     Ok(reports)
 }
 
-/// The first error that is no case's own: nothing can be kept any more.
+/// The first error that no single case caused: no further result can be kept.
 fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
     let place = report.errors.iter().position(|error| error.of_case().is_none())?;
     Some(report.errors.swap_remove(place))

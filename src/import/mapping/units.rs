@@ -246,7 +246,7 @@ mod tests {
         }
     }
 
-    /// Every preset with all that it says: columns of a plane, and words that are none of the convention's.
+    /// Every preset with all that it says: columns of a plane, and names outside the convention.
     #[test]
     #[expect(clippy::too_many_lines, reason = "one table of all presets")]
     fn every_preset_names_these_columns_and_no_others() {

@@ -300,7 +300,7 @@ mod tests {
         let (fine, coarse) = ("{ growth = 0.01 }", "{ growth = 0.5 }");
         assert_ne!(error(fine), error(coarse));
         assert_eq!(error(&format!("{fine}, {coarse}")), error(fine).min(error(coarse)));
-        // A step beyond the limit beside one below it is no failure of the method; alone it is.
+        // A step beyond the limit is not a failure of the method if another step below it succeeds.
         let explicit = |rule: &str| {
             let sweep = format!("time_step = [{rule}]");
             let text = format!(

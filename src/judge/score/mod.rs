@@ -382,7 +382,7 @@ pub(crate) mod tests {
             assert!((value(quantity, norm) - 0.01).abs() < 1e-12, "{quantity:?}");
         }
         assert!(found.worst.iter().all(|worst| worst.x.is_some()));
-        // Without the sample under the crest there is no settlement: that at the far end is another.
+        // The settlement is that of the sample under the crest; that at the far end differs.
         let far: Vec<usize> = (0..25).filter(|place| state.initial_distance[*place] > 0.1).collect();
         let only = |list: &[f64]| far.iter().map(|place| list[*place]).collect::<Vec<f64>>();
         let without = SampledState {

@@ -1,6 +1,6 @@
 //! Volume-weighted norms of the error of a sampled field, absolute and relative.
 //!
-//! The same pointwise error reads as order 2.5, 2.0 or 1.5 by what is called "the L2 norm", so
+//! One pointwise error reads as order 2.5, 2.0 or 1.5 by what is called "the L2 norm", so
 //! every norm here carries its formula, and all are means over the volume: a pointwise `h²` error
 //! has norm `h²` times a constant, whatever the number of samples.
 

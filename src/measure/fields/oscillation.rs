@@ -95,7 +95,7 @@ pub struct PlaneField {
 }
 
 impl PlaneField {
-    /// The field of a record at one of its outputs; `None` where there is no such output or the run has no
+    /// The field of a record at one of its outputs; `None` if the output is missing or the run has no
     /// second dimension.
     ///
     /// # Errors

@@ -27,7 +27,7 @@ const HISTORY_COLUMNS: [(&str, &str, &str); 3] = [
     ("degree_of_consolidation", "", "settlement over the final one of the scene's own reference"),
 ];
 
-/// Columns of the tidy table that are no input: name, unit, meaning.
+/// Columns of the tidy table that are not inputs: name, unit, meaning.
 const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
     ("study", "", "name of the study"),
     ("case", "", "hash of the case: its identity"),

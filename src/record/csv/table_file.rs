@@ -33,7 +33,7 @@ impl TableForm {
         })
     }
 
-    /// A part of the file. The same text gives the same bytes: no time and no name stand in a member's header.
+    /// A part of the file. Equal text gives equal bytes: a member's header has no time and no name.
     fn part(self, text: String) -> io::Result<Vec<u8>> {
         match self {
             Self::Plain => Ok(text.into_bytes()),
@@ -46,7 +46,7 @@ impl TableForm {
     }
 
     /// Writes a table of a header line and the rows of things, made on all cores and in the order of the things; it is
-    /// on the disk at the end. Removes what the other form left there: nobody reads an old table for it.
+    /// on the disk at the end. Removes the file of the other form, so that an old table is not read by mistake.
     ///
     /// # Errors
     /// When the file system or `rows` refuses.

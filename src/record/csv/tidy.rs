@@ -24,7 +24,7 @@ const CASE_COLUMNS: [&str; 15] = [
     "sources",
 ];
 
-/// Columns behind those of a measure that are no input of the case.
+/// Columns after those of a measure that are not inputs of the case.
 const LAST_COLUMNS: [&str; 6] =
     ["absolute_error", "scene", "task", "cell_size", "wall_seconds", "cpu_seconds"];
 

@@ -140,7 +140,7 @@ impl Bed {
     }
 
     fn wall(&mut self) -> Vec<f64> {
-        // The same time twice is two times.
+        // A repeated time counts twice.
         (0..self.dice.below(4)).map(|_| 0.25 * (1 + self.dice.below(2)) as f64).collect()
     }
 
@@ -222,7 +222,7 @@ impl Bed {
                 State::Gone
             }
             _ => {
-                // Bytes of nobody before it, with beginnings of headers.
+                // Stray bytes before it, with beginnings of headers.
                 let most = 1 << self.dice.below(13);
                 let count = self.dice.below(most);
                 let bait = &bytes[offset..offset + 1 + self.dice.below(20)];

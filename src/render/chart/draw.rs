@@ -367,7 +367,7 @@ impl Chart {
         Ok(out)
     }
 
-    /// Title, subtitle and notes, and words instead of data where there is none.
+    /// Title, subtitle and notes; a sentence in place of missing data.
     fn texts(&self, layout: &Layout) -> Result<String, String> {
         layer(layout.size, |area| {
             let mut top = PAD - 2.0;

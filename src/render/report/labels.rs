@@ -60,7 +60,7 @@ pub fn is_settled(class: Class) -> bool {
     matches!(class, Class::Asymptotic | Class::Superconvergent)
 }
 
-/// The order, with the class where it is not settled; the class alone where there is no order.
+/// The order, with its class unless it is asymptotic; the class alone without an order.
 pub fn order_or_class(found: &Classification) -> String {
     match found.order {
         Some(order) if is_settled(found.class) => number::order(order),

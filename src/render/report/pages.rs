@@ -56,7 +56,7 @@ fn studies_table(studies: &[&StudyResults<'_>]) -> Table {
     Table::of("", columns("study | > runs | expectations met | run it again"), rows)
 }
 
-/// How many expectations are met; without a mark where there are none.
+/// How many expectations are met; without a mark if the study has none.
 fn met_cell(one: &StudyResults<'_>) -> Cell {
     let mood = if one.judgements.is_empty() && one.passes() { Mood::Note } else { Mood::of(one.passes()) };
     let words = match one.judgements.len() {

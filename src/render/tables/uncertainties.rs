@@ -27,7 +27,7 @@ pub fn table_of(judgements: &[Judgement]) -> Option<Table> {
 
 /// Why the finest three levels have no estimate.
 const OSCILLATES: &str = "the finest three levels oscillate";
-/// Why there is no fit.
+/// Why a fit is missing.
 const FEW: &str = "fewer than four levels";
 
 fn row_of(judgement: &Judgement) -> Option<Vec<Cell>> {

@@ -205,7 +205,7 @@ impl Checker<'_> {
         usize::try_from(count).ok()
     }
 
-    /// A positive number, or the default where there is none.
+    /// A positive number, or the default.
     pub(super) fn positive(
         &mut self,
         typed: Option<&Placed<f64>>,

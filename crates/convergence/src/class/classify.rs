@@ -287,7 +287,7 @@ impl EvaluableSeries<'_> {
         })
     }
 
-    /// Errors near the accuracy of the reference are no evidence of an order.
+    /// Errors near the accuracy of the reference prove no order.
     fn poor_reference(&self, context: &Context, found: &Classification) -> Option<Classification> {
         let judged = [Class::FloorLimited, Class::Divergent, Class::Oscillatory];
         let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);

@@ -5,14 +5,14 @@
 //! one such order, and any limit fits them; it takes a fourth to confirm what three suggest.
 //!
 //! Errors without signs, `e = |C h^p − F|`, dip where the two terms cancel and then rise to the floor. The dip is a
-//! coincidence, and the rise is no divergence.
+//! coincidence, and the rise is not divergence.
 
 use crate::fit::two_terms::both;
 use crate::fit::{Exponent, best_power, fit_powers, minimum, order_of_differences};
 use crate::series::Undefined;
 use oedometer_soil::elementary::{powf, powi};
 
-/// Orders at which differences between levels may fall; slower ones are no approach.
+/// Orders at which differences between levels may fall; slower ones do not approach a limit.
 const ORDERS: (f64, f64) = (0.4, 12.0);
 
 /// Share of its predicted step by which the finest level may miss the prediction.

@@ -65,7 +65,7 @@ fn is_significant(points: &[(f64, f64)], line: &SlopeFit, fit: &TwoTerms) -> Res
     Ok(ratio.is_finite() && ratio > quantile * quantile)
 }
 
-/// The floor that bends a series without governing it yet, in the unit of the errors; 0 where there is none.
+/// The floor that bends a series without governing it yet, in the unit of the errors; 0 without one.
 /// `formal` is the formal order of the method, where it is known.
 pub fn hidden_floor(series: &ErrorSeries, formal: Option<f64>) -> f64 {
     let Ok(points) = series.points() else { return 0.0 };

@@ -32,7 +32,7 @@ const OFF: f64 = 0.2;
 /// Factor over the scatter of the others by which it must be off.
 const CLEAR: f64 = 10.0;
 
-/// Largest difference of the exponents of two terms; a term that vanishes after one level is no explanation.
+/// Largest difference of the exponents of two terms; a term that vanishes after one level explains nothing.
 const NEAR_EXPONENTS: f64 = 3.0;
 
 /// The level that stands alone among (size, error) points, where there is one.

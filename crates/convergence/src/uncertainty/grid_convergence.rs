@@ -27,7 +27,7 @@ pub enum Behaviour {
     Oscillatory,
     /// The differences do not fall.
     Divergent,
-    /// Two neighbouring values are equal to round-off, so that there is no order.
+    /// Two neighbouring values are equal to round-off, so the order is undefined.
     Equal,
 }
 

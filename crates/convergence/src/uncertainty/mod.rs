@@ -158,7 +158,7 @@ mod tests {
     const FOUR: [f64; 4] = [0.25, 0.125, 0.0625, 0.03125];
 
     proptest! {
-        /// The estimate is there to cover the error that nobody knows: here it is known.
+        /// The estimate must cover the unknown error: here the error is known.
         #[test]
         fn the_uncertainty_covers_the_true_error(
             exact in 0.5..2.0_f64, constant in -1.0..1.0_f64, bend in -0.2..0.2_f64, levels in 3..=4_usize,

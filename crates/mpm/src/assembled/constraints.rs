@@ -6,7 +6,7 @@ use crate::body::Body;
 use crate::loaded_body::NORMAL;
 use oedometer_soil::tensor::Vector;
 
-/// Rows of one velocity along the plate's normal; none where there is no plate.
+/// Rows of one velocity along the plate's normal; empty without a plate.
 #[derive(Clone, Debug, Default)]
 pub struct TiedRows {
     rows: Vec<TiedRow>,

@@ -17,7 +17,7 @@ impl<const D: usize> NodeBlocks<D> {
         Self { rows: vec![Vec::new(); nodes] }
     }
 
-    /// The block between two nodes, made where there is none.
+    /// The block between two nodes, inserted if missing.
     pub fn block(&mut self, row: usize, column: usize) -> &mut Tensor<D> {
         entry_of(&mut self.rows[row], column, [[0.0; D]; D])
     }
@@ -56,7 +56,7 @@ fn entry_after<'a, T>(
     &mut row[*place].1
 }
 
-/// The entry of a column in a row that ascends in its columns, made where there is none.
+/// The entry of a column in a row sorted by column, inserted if missing.
 pub fn entry_of<T>(row: &mut Vec<(usize, T)>, column: usize, zero: T) -> &mut T {
     let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
         row.insert(place, (column, zero));

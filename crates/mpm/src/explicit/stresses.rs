@@ -54,7 +54,7 @@ impl<const D: usize> Body<D> {
             if self.configuration == Configuration::Total {
                 gradient = product(&gradient, &points.inverse_deformation[point]);
             }
-            // A motion that is held against exact fields is followed at the middle of the step, to second order.
+            // A motion compared with exact fields is followed at the middle of the step, to second order.
             if self.forcing.is_some() {
                 gradient = middle_gradient(&gradient, dt);
             }

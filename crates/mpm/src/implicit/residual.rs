@@ -26,7 +26,7 @@ impl<const D: usize> Trial<D> {
     /// beyond its storage.
     ///
     /// # Errors
-    /// [`StepFailure`] where the pores of a point are closed: there is no residual then.
+    /// [`StepFailure`] if the pores of a point are closed: the residual is undefined then.
     pub fn residual(
         &mut self,
         increments: &[f64],

@@ -69,7 +69,7 @@ impl<const W: usize> Row<W> {
         let mut row = Row { first, values: [0.0; V], gradients: [0.0; V] };
         for (end, sign) in [(low, -1.0), (high, 1.0)] {
             for k in 0..W {
-                // Ends more than a cell apart are no domain: what has no place is left out.
+                // Ends more than a cell apart are not a domain; points outside the mesh are left out.
                 if let Some(value) = row.values.get_mut(end.first - first + k) {
                     *value += 0.5 * end.values[k];
                     row.gradients[end.first - first + k] += sign * end.values[k] / length;
@@ -127,7 +127,7 @@ impl Basis {
         }
     }
 
-    /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are no values.
+    /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are not nodal values.
     pub fn is_spline(self) -> bool {
         matches!(self, Self::Bspline2 | Self::Bspline3)
     }

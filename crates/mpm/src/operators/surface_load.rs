@@ -10,7 +10,7 @@ use oedometer_soil::tensor::Vector;
 /// How a load varies along the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LoadShape {
-    /// The same everywhere.
+    /// A uniform load.
     #[default]
     Uniform,
     /// `cos(πx/L)` of the initial place `x` along the first direction.

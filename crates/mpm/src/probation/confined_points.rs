@@ -93,7 +93,7 @@ impl ConfinedPoints {
         }
     }
 
-    /// The same for points of one cell, one above another.
+    /// Bounds of points of one cell, one above another.
     fn share_out_run<const D: usize>(
         &self,
         grid: &Grid<D>,

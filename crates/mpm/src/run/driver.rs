@@ -61,7 +61,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// Goes from output to output, unless there is no start to go from.
+    /// Steps from output to output, unless the start failed.
     pub fn solve(mut self, start_failure: Option<Failure>) -> Outcome {
         let start = self.stepper.snapshot(0.0);
         self.watch.begin(&start);
@@ -146,7 +146,7 @@ impl<'a> Driver<'a> {
         let rest = output - self.time;
         let left = steps_for(rest, self.adaptive_step);
         let dt = if left <= 2 { rest / left as f64 } else { self.adaptive_step };
-        // An error of the first step that a smaller one does not reduce is no error in time: the start is out of
+        // An error of the first step that a smaller step does not reduce is not an error in time: the start is out of
         // balance, by points off their lattice say, and the first step takes that up whatever its size.
         let jumps = |last: f64, error: f64| error > STAYS * last;
         let step = EqualSteps::first(self.time, dt, 1);

@@ -60,7 +60,7 @@ impl EnergyAccount {
             self.largest_rise = share;
         }
         let most = if moves { MOST_RISE_MOVING } else { MOST_RISE };
-        // What is no number is no energy.
+        // NaN is not an energy.
         let is_within = self.turned == 0.0 || share <= most;
         (!is_within).then(|| {
             format!(

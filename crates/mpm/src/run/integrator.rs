@@ -7,7 +7,7 @@ use oedometer_soil::wording::words;
 
 /// Share of the critical step where an explicit run names no rule.
 const DEFAULT_SHARE: f64 = 0.8;
-/// The same of a semi-implicit run: of first order in time, it needs a tenth of what it can stand.
+/// Default step of a semi-implicit run, relative to its limit: of first order in time, it needs a tenth of it.
 const SEMI_IMPLICIT_SHARE: f64 = 0.1;
 /// Growth of the steps where an implicit run names no rule: its error in time stays below a
 /// twentieth of that of ten cells in space.

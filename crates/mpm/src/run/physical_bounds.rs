@@ -107,7 +107,7 @@ impl PhysicalBounds {
     /// Why a settlement, m, is none of the scene's, where it is not.
     pub fn left_by_settlement(&self, settlement: f64) -> Option<String> {
         let [least, most] = self.settlement;
-        // What is no number is in no range.
+        // NaN is in no range.
         if settlement.is_finite() && (least..=most).contains(&settlement) {
             return None;
         }

@@ -14,7 +14,7 @@ pub struct Column {
     #[serde(flatten)]
     #[schemars(with = "ShapeKeys")]
     pub shape: Shape,
-    /// Load `q` on the surface, Pa; the amplitude of the initial pressure where there is no load.
+    /// Load `q` on the surface, Pa; the amplitude of the initial pressure in scenes without a load.
     pub load: f64,
     /// Directions that are solved, 1 or 2. Left out of the identity of a case where it is 1: older
     /// records keep theirs.

@@ -75,7 +75,7 @@ pub enum SceneStart {
 
 /// What is known of the pore pressure at the start.
 pub enum StartPressure {
-    /// The same everywhere, Pa.
+    /// A uniform pressure, Pa.
     Uniform(fn(&Column, &Material) -> f64),
     /// Its mean is zero, and nothing else is known.
     ZeroMean,
@@ -115,7 +115,7 @@ impl StartFields {
 }
 
 impl ColumnStart {
-    /// The same state at every depth.
+    /// A uniform state at every depth.
     pub fn uniform(vertical_gradient: f64, fields: StartFields) -> Self {
         Self { vertical_gradient, fields: Box::new(move |_| Ok(fields)) }
     }

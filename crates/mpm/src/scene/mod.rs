@@ -133,7 +133,7 @@ impl SceneKind {
     }
 
     /// Choices of the explicit integrator where a study names none: the paper's, but of second order in the step
-    /// where a smooth motion is held against exact fields.
+    /// where a smooth motion is compared with exact fields.
     pub fn default_settings(self) -> ExplicitSettings {
         if self.is_manufactured() {
             ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..ExplicitSettings::default() }

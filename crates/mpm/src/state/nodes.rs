@@ -48,7 +48,7 @@ pub struct Nodes<const D: usize> {
     /// One where a component of the skeleton's velocity is free, zero where it is fixed or nothing
     /// is there.
     pub free: Vec<Vector<D>>,
-    /// The same for the water: it slides along a rough base.
+    /// Fixed components of the water's velocity: water slides along a rough base.
     pub water_free: Vec<Vector<D>>,
     /// One where the water slides past a skeleton that sticks to the base, else zero: there the node itself remembers the
     /// water's velocity, for the points around move with a skeleton that the base does not hold (docs/theory.md,
@@ -109,7 +109,7 @@ impl<const D: usize> Support<D> {
         Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
     }
 
-    /// The same faces with an upper side that a plate moves.
+    /// These faces with an upper side that a plate moves.
     #[must_use]
     pub fn with_movable_side(mut self) -> Self {
         self.upper[0] = false;
@@ -125,7 +125,7 @@ impl<const D: usize> Support<D> {
         })
     }
 
-    /// The same faces on a base that the skeleton sticks to.
+    /// These faces on a base that the skeleton sticks to.
     #[must_use]
     pub fn on_rough_base(self) -> Self {
         Self { rough_base: true, ..self }
@@ -204,7 +204,7 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.len()
     }
 
-    /// Whether there is no node at all.
+    /// Whether the mesh is empty.
     pub fn is_empty(&self) -> bool {
         self.solid_mass.is_empty()
     }

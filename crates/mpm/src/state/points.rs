@@ -71,7 +71,7 @@ impl<const D: usize> Points<D> {
         self.pressure.len()
     }
 
-    /// Whether there is no point at all.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         self.pressure.is_empty()
     }

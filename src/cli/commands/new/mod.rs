@@ -37,7 +37,7 @@ pub struct Arguments {
     language: Option<Language>,
 }
 
-/// Writes a study or an adapter, where there is none yet.
+/// Writes a new study or adapter; an existing file is kept.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let is_solver = arguments.solver.is_some() || arguments.language.is_some();
     if is_solver && arguments.scene.is_some() {
