@@ -41,7 +41,7 @@ impl TrustArguments {
             study.may_start_solvers = self.may_start(study, named);
             if !study.may_start_solvers {
                 say!(
-                    "{}: this study starts {} with your rights, and nobody has allowed that: its cases are not run. Read it, \
+                    "{}: this study starts {} with your rights, which is not allowed yet: its cases are not run. Read it, \
                      then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
                     study.name,
                     told(&starting(study))
@@ -78,7 +78,7 @@ pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
         return otherwise;
     }
     let cases = count_of(tally.held_back, "case was", "cases were");
-    say!("{cases} not run: nobody has allowed their programs to be started, and --allow-solvers does");
+    say!("{cases} not run: their programs may not be started without `--allow-solvers`");
     if otherwise == Exit::Pass { Exit::IncompleteMerge } else { otherwise }
 }
 

@@ -76,7 +76,7 @@ pub fn of_stopped() -> Failure {
 
 /// The end of a run that was not begun because the study may not start programs.
 pub fn of_held_back() -> Failure {
-    let reason = "nobody has allowed this study to start programs; `--allow-solvers` does".to_owned();
+    let reason = "this study may not start programs without `--allow-solvers`".to_owned();
     Failure::of_attached(FailureKind::Skipped, reason)
 }
 
@@ -105,14 +105,14 @@ pub fn of_reading(unread: Unread, solver: &ExternalSolver, contents: &str) -> Fa
          the study names it otherwise",
         solver.result
     );
-    of_unread(unread, no_file, "; the adapter wrote it wrongly, or the mapping says of it what is not so")
+    of_unread(unread, no_file, "; the adapter wrote it wrongly, or the mapping describes it wrongly")
 }
 
 /// The end of a result that was there already and cannot be taken.
 pub fn of_given(unread: Unread, files: &[String]) -> Failure {
     let files = files.join(", ");
     let no_file = format!(
-        "there is no file {files}: the solver was not run, or `files` in the study names its result otherwise"
+        "there is no file {files}: the solver did not run, or `files` in the study names another result"
     );
     of_unread(unread, no_file, "")
 }

@@ -142,7 +142,7 @@ impl GoldenFile {
         let row = (&record[0], &record[1]);
         let cells = titles.iter().zip(record).skip(LABELS.len());
         for (title, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
-            let value = cell.parse().map_err(|_| format!("`{cell}` under `{title}` is no number"))?;
+            let value = cell.parse().map_err(|_| format!("`{cell}` under `{title}` is not a number"))?;
             let (kept, measure) = match title.strip_prefix(SPREAD_MARK) {
                 Some(measure) => (&mut self.spread, measure),
                 None => (&mut self.values, title),
@@ -228,7 +228,7 @@ mod tests {
             GoldenFile::from_text(&text.replacen(from, to, 1)).expect_err("refused")
         };
         let told = refused("46824", "many");
-        assert_eq!(told, format!("line {}: `many` under `steps` is no number", line_of("46824")));
+        assert_eq!(told, format!("line {}: `many` under `steps` is not a number", line_of("46824")));
         let told = refused(",0.05,", ",0.0000001,");
         let twice = "`pressure points l2 terzaghi` is given twice for this case and time factor";
         assert_eq!(told, format!("line {}: {twice}", line_of(",0.05,")));

@@ -87,7 +87,7 @@ impl GoldenFile {
     pub fn out_of_bounds(&self) -> Option<String> {
         if self.reason.trim().is_empty() || self.basis.trim().is_empty() {
             let what = if self.reason.trim().is_empty() { "reason" } else { "basis" };
-            return Some(format!("its `{what}` is empty: nobody said why these values and tolerances hold"));
+            return Some(format!("its `{what}` is empty: give the reason for these values and tolerances"));
         }
         let tolerances = [
             ("relative_tolerance", self.relative_tolerance, MOST_RELATIVE),

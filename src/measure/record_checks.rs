@@ -27,7 +27,7 @@ const LITTLE_INERTIA: f64 = 1e-3;
 /// Why the points of a moving plane and of two point sets are not judged.
 const MOVING: &str = "stresses of points that cross cells jump; the forces of the run are checked";
 /// Why splines are not judged.
-const SPLINES: &str = "points do not integrate splines exactly, and the error is no share of a load";
+const SPLINES: &str = "points do not integrate splines exactly, and the error does not scale with a load";
 /// Gap between outputs and settlement curve that a smooth curve explains.
 const CURVE_GAP: f64 = 2e-3;
 /// Velocity over the hydraulic conductivity that round-off causes in a column at rest; about 1e-12 is observed.
@@ -208,7 +208,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         return Err("a motion made by body forces does not balance a load");
     }
     if case.scene.has_waves() || case.column.loading_time > 0.0 {
-        return Err("waves are no error; the energy of the run is checked");
+        return Err("waves are not an error; the energy of the run is checked");
     }
     if case.is_spline() {
         return Err(SPLINES);

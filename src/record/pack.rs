@@ -159,7 +159,7 @@ impl fmt::Display for Damage {
         if *is_cut {
             write!(out, "{pack} is cut at byte {from}: {bytes} bytes of a record that was not finished")
         } else {
-            write!(out, "{pack} is damaged from byte {from} on: {bytes} bytes are no record")
+            write!(out, "{pack} is damaged from byte {from} on: {bytes} bytes are not part of a record")
         }
     }
 }

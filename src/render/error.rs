@@ -20,7 +20,7 @@ pub enum RenderError {
         name: String,
     },
     /// A name that cannot be a file name or an anchor.
-    #[error("`{name}` is no usable name: lower-case letters, digits, `-`, `_` and `.` only")]
+    #[error("`{name}` is not a usable name: lower-case letters, digits, `-`, `_` and `.` only")]
     Name {
         /// The name in question.
         name: String,

@@ -211,7 +211,7 @@ impl Mistakes<'_> {
                 format!("a block that may be repeated has two brackets: [[{key}]]")
             }
             DeValue::Array(_) if kind == "object" => {
-                format!("a table that stands once has one pair of brackets: [{key}]")
+                format!("a table that appears once has one pair of brackets: [{key}]")
             }
             DeValue::Array(_) if Key::named(key, "sweep").is_some() => {
                 format!("several values belong in a [[sweep]]: `{key} = {written}`")

@@ -145,7 +145,7 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("water_bulk_modulus = 2.2", ["no liquid has a bulk modulus of 2.2 Pa", "give pascals"]),
         ("law = \"linaer\"", ["no law is called `linaer`", "did you mean `linear`?"]),
         ("continuity = \"exact\"", ["no continuity is called `exact`", "`conservative`"]),
-        ("conductivity_mean = \"chord\"", ["at small strain the conductivity is the same", "large strain"]),
+        ("conductivity_mean = \"chord\"", ["at small strain the conductivity is uniform", "large strain"]),
     ] {
         let told = refused_with("porosity = 0.3", line);
         assert_says(&told, &parts);
@@ -301,7 +301,7 @@ fn shards_and_numbers_of_jobs_that_are_none_are_refused() {
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");
     for shard in ["3/2", "0/2", "1/0", "1", "a/b", "1/2/3", "-1/2", ""] {
         let told = refused_in(folder.path(), &["run", "study.toml", &format!("--shard={shard}")]);
-        assert_says(&told, &["is no share", "like 2/3"]);
+        assert_says(&told, &["is not a share", "like 2/3"]);
     }
     for option in ["--jobs=0", "--jobs=-1", "--jobs=many", "--tier=big"] {
         refused_in(folder.path(), &["run", "study.toml", option]);

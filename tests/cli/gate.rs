@@ -152,7 +152,7 @@ fn a_result_that_is_not_there_or_lacks_a_time_fails_its_case_and_says_what_to_do
     }
     let told = check(at, &[]);
     assert!(
-        told.words().contains("there is no file run-{cells}/*.vtk: the solver was not run"),
+        told.words().contains("there is no file run-{cells}/*.vtk: the solver did not run"),
         "{}",
         told.out
     );

@@ -285,6 +285,8 @@ pub fn shard_of(typed: &str, parting: Parting) -> anyhow::Result<Shard> {
         typed.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
     match parts {
         Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count, parting }),
-        _ => Err(Ended::usage(format!("`--shard {typed}` is no share: write i/n with 1 ≤ i ≤ n, like 2/3"))),
+        _ => {
+            Err(Ended::usage(format!("`--shard {typed}` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3")))
+        }
     }
 }

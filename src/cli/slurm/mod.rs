@@ -107,13 +107,16 @@ pub fn run(
             }
         };
         if arguments.detach {
-            say!("{}: not followed; the same command without `--detach` does", campaign.name);
+            say!("{}: not followed; run the command without `--detach` to follow it", campaign.name);
             return Ok(Exit::Pass);
         }
         let was_cancelled = jobs.follow(|| campaign.count_of_done(), campaign.count())?;
         let _ = fs::remove_file(folder.join(JOB));
         if was_cancelled && !campaign.shares_to_run().is_empty() {
-            say!("{}: the tasks were cancelled; the same command submits what is missing", campaign.name);
+            say!(
+                "{}: the tasks were cancelled; run the command again to submit what is missing",
+                campaign.name
+            );
             return Ok(campaign.given_up(attempt, files));
         }
     }

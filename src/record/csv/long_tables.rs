@@ -40,12 +40,12 @@ const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
     ("quantity", "", "what is compared; or a measure by its name: peak_pressure, spurious_velocity, …"),
     ("sample", "", "where it is compared"),
     ("norm", "", "how the error becomes one number; of a measure, whether its error is relative or absolute"),
-    ("reference", "", "exact solution that it is held against"),
+    ("reference", "", "exact solution that it is compared with"),
     ("value", "", "relative error; that of the settlement with its sign"),
     ("absolute_error", "", "error over the load, or over the final settlement"),
     ("cell_size", "m", "edge of a cell"),
     ("wall_seconds", "s", "time that the case took, the least of its runs"),
-    ("cpu_seconds", "s", "time that the processor worked on it, where the system tells"),
+    ("cpu_seconds", "s", "processor time, where the system reports it"),
 ];
 
 /// A table with rows of every record, one record after the other.

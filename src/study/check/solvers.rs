@@ -137,7 +137,7 @@ impl Checker<'_> {
         let files = words_of(&table.files);
         for typed in table.files.iter() {
             if let Some(other) = placeholders_of(typed).find(|name| *name != MESH) {
-                let message = format!("`{{{other}}}` stands for nothing in the files of a result");
+                let message = format!("`{{{other}}}` has no meaning in the files of a result");
                 self.complain(typed.span(), message, "`{cells}` stands for the cells over the height");
             }
         }

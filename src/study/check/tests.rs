@@ -241,7 +241,7 @@ mod results {
             ("\"ogs\"", "\"MPM\"", "`MPM` is a method"),
             ("\"ogs\"", "\"o g s\"", "cannot be called `o g s`"),
             ("-{cells}", "", "2 meshes have the same files"),
-            ("{cells}", "{cell}", "`{cell}` stands for nothing"),
+            ("{cells}", "{cell}", "`{cell}` has no meaning"),
             ("[10, 20]", "[]", "no mesh"),
             ("[10, 20]", "[0]", "0"),
             ("cells = [10, 20]", "cells = [10, 20]\ntime_step = -1.0", "time_step"),

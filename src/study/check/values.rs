@@ -177,7 +177,7 @@ impl Checker<'_> {
         } else if is_chord && !scene.is_large_strain() {
             self.complain(
                 span,
-                "at small strain the conductivity is the same everywhere, and so is every mean of it",
+                "at small strain the conductivity is uniform, so all means of it are equal",
                 format!(
                     "leave it out, or take a scene of large strain: the scene `{}` has small strains",
                     scene.name()

@@ -150,7 +150,7 @@ impl EvaluableSeries<'_> {
         let Some(odd) = odd_level(self.points) else { return found };
         let [size, factor] = [odd.size, odd.factor].map(short);
         let reason = format!(
-            "{}; the level of size {size} stands alone: its error is {factor} times the value that the others suggest",
+            "{}; the level of size {size} is an outlier: its error is {factor} times the value that the others suggest",
             found.reason
         );
         let advice = found

@@ -35,7 +35,7 @@ const CLEAR: f64 = 10.0;
 /// Largest difference of the exponents of two terms; a term that vanishes after one level explains nothing.
 const NEAR_EXPONENTS: f64 = 3.0;
 
-/// The level that stands alone among (size, error) points, where there is one.
+/// The outlier among (size, error) points, if there is one.
 pub(crate) fn odd_level(points: &[(f64, f64)]) -> Option<OddLevel> {
     if points.len() < LEAST_LEVELS {
         return None;

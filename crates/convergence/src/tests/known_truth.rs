@@ -76,7 +76,7 @@ impl Known {
         let unnamed = self.named.filter(|size| {
             !found
                 .reason
-                .contains(&format!("level of size {} stands alone", oedometer_soil::wording::short(*size)))
+                .contains(&format!("level of size {} is an outlier", oedometer_soil::wording::short(*size)))
         });
         unnamed.map(|size| format!("{} without a word on size {size:.4}", found.class))
     }
