@@ -5,6 +5,7 @@
 pub mod commands;
 pub mod destination;
 pub mod exit;
+mod help;
 pub mod job_list;
 pub mod output;
 pub mod overrides;
@@ -61,11 +62,11 @@ enum Command {
     Merge(merge::Arguments),
     /// List scenes, methods, references and shipped studies
     List(list::Arguments),
-    /// Write a commented study to start from, or an adapter for another solver
+    /// Write a commented study, or an adapter for another solver
     New(new::Arguments),
     /// Show where the error of a case comes from and what changed
     Explain(explain::Arguments),
-    /// Compare two states of studies: folders of records or git revisions
+    /// Compare two states: folders of records or git revisions
     Compare(compare::Arguments),
     /// Show golden values over the commits that changed them
     History(history::Arguments),
@@ -73,27 +74,15 @@ enum Command {
     Bisect(bisect::Arguments),
     /// Measure the scatter of results that should be equal
     Spread(spread::Arguments),
-    /// Print the JSON Schema of study files, records, mappings or case files
+    /// Print the JSON Schema of studies, records, mappings or cases
     Schema(schema::Arguments),
     /// Print the completions for a shell
     Completions(completions::Arguments),
 }
 
-/// The command line, with help texts without the backticks of the source's comments.
+/// The command line with its help texts.
 fn command() -> clap::Command {
-    fn plain(command: clap::Command) -> clap::Command {
-        let words = |help: &clap::builder::StyledStr| help.to_string().replace('`', "");
-        let of_argument = |argument: clap::Arg| {
-            let (help, long) = (argument.get_help().map(words), argument.get_long_help().map(words));
-            let argument = argument.help(help.unwrap_or_default());
-            match long {
-                Some(long) => argument.long_help(long),
-                None => argument,
-            }
-        };
-        command.mut_args(of_argument).mut_subcommands(plain)
-    }
-    plain(Arguments::command())
+    help::dressed(Arguments::command())
 }
 
 /// Parses the command line, runs the command, and turns its end into an exit code.

@@ -17,10 +17,6 @@ use std::process::{Command, Stdio};
 
 /// Arguments of `bisect`.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Examples:\n  oedometer bisect studies/gate.toml --good v1.0 --bad HEAD --allow-solvers\n  \
-                        oedometer bisect gate --good v1.0 --bad HEAD --build 'make' --run './solver-study {out}'"
-)]
 pub struct Arguments {
     /// Study file, or its name: it is looked for in each commit
     #[arg(value_name = "STUDY")]

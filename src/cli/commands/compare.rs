@@ -14,9 +14,6 @@ use std::path::{Path, PathBuf};
 
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Examples:\n  oedometer compare HEAD~1 HEAD\n  oedometer compare out-before out-after terzaghi-mesh"
-)]
 pub struct Arguments {
     /// State before: a folder of results that `run --out` wrote, or a git revision with golden values
     #[arg(value_name = "A")]

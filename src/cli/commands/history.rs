@@ -13,7 +13,6 @@ use std::path::PathBuf;
 
 /// Arguments of `history`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  oedometer history\n  oedometer history terzaghi-mesh --format csv")]
 pub struct Arguments {
     /// Names of the studies; all with golden values where none is named, one row each
     #[arg(value_name = "STUDY")]

@@ -1,0 +1,200 @@
+//! Help texts: commands in groups, two examples per command, options for experts in a section of their own.
+
+use clap::builder::StyledStr;
+use std::fmt::Write;
+
+/// A group of the overview: its title, and each command with its examples.
+type Group = (&'static str, &'static [(&'static str, [&'static str; 2])]);
+
+const GROUPS: [Group; 5] = [
+    (
+        "Start",
+        &[
+            ("new", ["new my-study", "new solver mine --language python"]),
+            ("list", ["list", "list --show terzaghi-mesh"]),
+            ("exact", ["exact terzaghi --time-factor 0.1", "exact xie-leo --degree 0.5,0.9"]),
+            (
+                "solve",
+                [
+                    "solve terzaghi --integrator implicit --cells 20",
+                    "solve xie-leo --method GC-SRI-patch --set column.load=5e4",
+                ],
+            ),
+        ],
+    ),
+    (
+        "Studies",
+        &[
+            ("plan", ["plan my-study.toml", "plan my-study.toml --missing out"]),
+            ("run", ["run my-study.toml", "run my-study.toml --shard 1/4 --out out-1"]),
+            ("check", ["check my-study.toml", "check --junit results.xml"]),
+            ("report", ["report", "report my-study.toml --out pages"]),
+            (
+                "accept",
+                [
+                    "accept my-study.toml --reason \"First results\"",
+                    "accept --references --reason \"One more term\"",
+                ],
+            ),
+            ("explain", ["explain 3f2a my-study.toml", "explain \"GC-SRI-patch cells=20\" terzaghi-mesh"]),
+        ],
+    ),
+    (
+        "Your own solver",
+        &[
+            (
+                "score",
+                [
+                    "score result.vtu --preset ogs --scene terzaghi",
+                    "score coarse.csv fine.csv --cells 10,20 --scene terzaghi --below 5e-3",
+                ],
+            ),
+            (
+                "stability",
+                ["stability terzaghi --cells 8,16", "stability terzaghi --method MPM,GC-SRI-patch"],
+            ),
+        ],
+    ),
+    (
+        "Over time",
+        &[
+            ("compare", ["compare HEAD~1 HEAD", "compare out-before out-after terzaghi-mesh"]),
+            ("history", ["history", "history terzaghi-mesh --format csv"]),
+            (
+                "bisect",
+                [
+                    "bisect studies/gate.toml --good v1.0 --bad HEAD --allow-solvers",
+                    "bisect gate --good v1.0 --bad HEAD --build 'make' --run './solver-study {out}'",
+                ],
+            ),
+        ],
+    ),
+    (
+        "Records and tools",
+        &[
+            ("records", ["records out/my-study", "records out/my-study 3f2a"]),
+            ("merge", ["merge out-1 out-2", "merge my-study.toml out-1 out-2 --out merged"]),
+            ("spread", ["spread terzaghi-mesh --quick", "spread my-study.toml --into golden"]),
+            ("schema", ["schema", "schema mapping"]),
+            ("completions", ["completions bash", "completions zsh"]),
+        ],
+    ),
+];
+
+/// Options for clusters, other builds and the development of methods.
+const EXPERT: [&str; 22] = [
+    "shard",
+    "balance",
+    "resume",
+    "compress",
+    "engine",
+    "tasks",
+    "partition",
+    "time",
+    "cores",
+    "sbatch",
+    "attempts",
+    "detach",
+    "dry_run",
+    "case_files",
+    "references",
+    "annotate",
+    "summary",
+    "despite_failing",
+    "point_wise",
+    "profile",
+    "time_tolerance",
+    "against",
+];
+
+/// The command line with its help texts.
+pub fn dressed(command: clap::Command) -> clap::Command {
+    let overview = overview(&command);
+    let command = command.mut_subcommands(|command| {
+        let of_command = |(name, examples): &(&str, [&str; 2])| {
+            (*name == command.get_name())
+                .then(|| format!("Examples:\n  oedometer {}\n  oedometer {}", examples[0], examples[1]))
+        };
+        let examples = GROUPS.iter().flat_map(|(_, commands)| *commands).find_map(of_command);
+        let command = command.mut_args(|argument| {
+            let is_expert = EXPERT.contains(&argument.get_id().as_str());
+            if is_expert { argument.help_heading("Expert options") } else { argument }
+        });
+        command.after_help(examples.unwrap_or_default())
+    });
+    plain(command.help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{overview}\n\nOptions:\n{{options}}{{after-help}}"
+    )))
+}
+
+/// The commands by group, each with its first sentence.
+fn overview(command: &clap::Command) -> String {
+    let mut out = String::new();
+    for (title, commands) in GROUPS {
+        let _ = write!(out, "\n{title}:");
+        for (name, _) in commands {
+            let about = command.find_subcommand(name).and_then(clap::Command::get_about);
+            let _ = write!(out, "\n  {name:<12} {}", about.map(StyledStr::to_string).unwrap_or_default());
+        }
+        out.push('\n');
+    }
+    out.trim_end().to_owned()
+}
+
+/// Help texts without the backticks of the source's comments.
+fn plain(command: clap::Command) -> clap::Command {
+    let words = |help: &StyledStr| help.to_string().replace('`', "");
+    let of_argument = |argument: clap::Arg| {
+        let (help, long) = (argument.get_help().map(words), argument.get_long_help().map(words));
+        let argument = argument.help(help.unwrap_or_default());
+        match long {
+            Some(long) => argument.long_help(long),
+            None => argument,
+        }
+    };
+    command.mut_args(of_argument).mut_subcommands(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::command;
+
+    #[test]
+    fn every_command_is_in_one_group_and_its_examples_are_taken() {
+        let commands = command();
+        let mut grouped: Vec<&str> =
+            GROUPS.iter().flat_map(|(_, commands)| commands.iter().map(|(name, _)| *name)).collect();
+        let mut all: Vec<&str> = commands.get_subcommands().map(clap::Command::get_name).collect();
+        grouped.sort_unstable();
+        all.sort_unstable();
+        assert_eq!(grouped, all);
+        for (name, examples) in GROUPS.iter().flat_map(|(_, commands)| *commands) {
+            for example in examples {
+                assert_eq!(example.split(' ').next(), Some(*name), "{example}");
+                let mut quoted = example.split(['"', '\'']);
+                let mut words = vec!["oedometer".to_owned()];
+                while let Some(bare) = quoted.next() {
+                    words.extend(bare.split_whitespace().map(str::to_owned));
+                    words.extend(quoted.next().map(str::to_owned));
+                }
+                if let Err(error) = command().try_get_matches_from(&words) {
+                    panic!("{example}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_expert_option_is_one_of_a_command() {
+        let commands = command();
+        let is_there = |id: &str| {
+            commands
+                .get_subcommands()
+                .any(|command| command.get_arguments().any(|argument| argument.get_id() == id))
+        };
+        for id in EXPERT {
+            assert!(is_there(id), "{id}");
+        }
+    }
+}
