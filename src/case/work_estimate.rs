@@ -65,6 +65,8 @@ pub fn estimated_steps(case: &Case) -> f64 {
         }
     };
     match case.task {
+        // The undrained start alone: no steps, and rules relative to the time give none.
+        Task::Solve if end == 0.0 => 0.0,
         Task::Solve => end / step,
         Task::Stability => {
             // Runs of a fixed length bracket the limit; that below it ends with the scene, or before, and that above soon.

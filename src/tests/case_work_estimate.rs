@@ -2,7 +2,9 @@
 
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::case::work_estimate::{MOST_PROBE_STEPS, estimated_updates, estimated_work, work_of};
+use crate::case::work_estimate::{
+    MOST_PROBE_STEPS, estimated_seconds, estimated_updates, estimated_work, work_of,
+};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_mpm::critical_step::observed::OBSERVED_STEPS;
@@ -31,4 +33,16 @@ fn the_work_of_a_critical_step_has_an_end() {
     assert_eq!(estimated_updates(&endless[0]), most);
     let short = cases("task = \"stability\"\n[output]\ntime_factors = [1e-9]", "cells = [8]");
     assert_eq!(estimated_updates(&short[0]), (4 + 1) * OBSERVED_STEPS * 16);
+}
+
+#[test]
+fn an_undrained_start_alone_takes_no_steps_and_a_known_time() {
+    for rule in ["{ growth = 0.01 }", "{ tolerance = 1e-4 }"] {
+        let start = cases(
+            "[output]\ntime_factors = [0.0]",
+            &format!("integrator = [\"implicit\"]\ntime_step = [{rule}]\ncells = [8]"),
+        );
+        let seconds = estimated_seconds(&start[0]);
+        assert!(seconds > 0.0 && seconds < 1.0, "{rule}: {seconds} s");
+    }
 }
