@@ -11,6 +11,7 @@ pub mod score;
 use crate::case::keys::Key;
 use crate::cli::exit;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::{ShelfKey, ShelfProblem};
 use oedometer_mpm::scene::SceneKind;
 
 /// An error as a sentence.
@@ -24,7 +25,8 @@ fn sentence(error: &anyhow::Error) -> String {
 /// When no solution has the name: lists the names.
 pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
     let kind: ReferenceKind = solution.parse().map_err(|_| {
-        let names: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
+        let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf);
+        let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&shelf).map(|kind| kind.name()).collect();
         format!("no exact solution is called `{solution}`; there are {}", names.join(", "))
     })?;
     Ok((kind, SceneKind::of_solution(kind)))
@@ -38,6 +40,14 @@ pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
 pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     if name.contains('.') {
         return Ok(name.to_owned());
+    }
+    let own = |problem: ShelfProblem, key: &&ShelfKey| {
+        key.problems.contains(&problem) && key.key.rsplit('.').next() == Some(name)
+    };
+    if let Some(problem) = ShelfProblem::named(scene)
+        && let Some(key) = ShelfKey::ALL.iter().find(|key| own(problem, key))
+    {
+        return Ok(key.key.to_owned());
     }
     let scene = match SceneKind::named(scene) {
         Some(scene) => scene,

@@ -3,8 +3,8 @@
 use crate::api::sentence;
 use crate::case::Case;
 use crate::case::quantity::Sample;
+use crate::cli::commands::score::Asked;
 use crate::cli::commands::score::results::{Comparison, Results};
-use crate::cli::commands::score::study_of;
 use crate::cli::overrides::{Assignments, Outputs};
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody};
@@ -54,8 +54,8 @@ pub fn score(
         time_factor: None,
         set: Assignments { assignments: assignments.to_vec() },
     };
-    let (study, _) = study_of(scene, &outputs).map_err(|error| sentence(&error))?;
-    let case = &study.planned[0].case;
+    let asked = Asked::of(scene, &outputs).map_err(|error| sentence(&error))?;
+    let case = asked.case();
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
         let names = Sample::ALL.map(Sample::name).join(", ");
@@ -66,11 +66,11 @@ pub fn score(
     mapping.sample = kind;
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
-    let references: Vec<_> = study.references.iter().map(|kind| kind.of_soil(&case.material)).collect();
     let comparison = Comparison {
         case,
+        parameters: asked.parameters,
         mapping: &mapping,
-        references: &references,
+        references: &asked.references,
         requested: &[],
         tolerance: 1e-3,
         are_cells_found: false,

@@ -5,6 +5,7 @@ use crate::cli::exit::Ended;
 use crate::study::check::Purpose;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
+use oedometer_exact::{ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
 
 /// Repeats are for the cases of a study.
 pub const TIMING: (&str, &str) = ("timing.repeats", "cases are timed by `oedometer run` with a study file");
@@ -18,6 +19,49 @@ pub struct Assignments {
     /// Set a dotted key of a study file, like material.porosity=0.45
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub assignments: Vec<String>,
+}
+
+impl Assignments {
+    /// What is set of a problem of the shelf, and the assignments that are a column's; of other solutions all are.
+    pub fn of_shelf(&self, kind: ReferenceKind) -> anyhow::Result<(Self, ShelfParameters)> {
+        let mut shelf = ShelfParameters::default();
+        let ReferenceKind::Shelf(problem) = kind else { return Ok((self.clone(), shelf)) };
+        let mut others = Self::default();
+        for typed in &self.assignments {
+            let (key, value) = assignment(typed)?;
+            if let Some((_, why)) = without_effect(problem).iter().find(|(refused, _)| *refused == key) {
+                return Err(Ended::usage(format!("`--set {key}` has no effect in `{problem}`: {why}")));
+            }
+            match ShelfKey::ALL.iter().find(|own| own.key == key) {
+                None => others.assignments.push(typed.clone()),
+                Some(own) if !own.problems.contains(&problem) => {
+                    let problems: Vec<_> = own.problems.iter().map(|one| format!("`{one}`")).collect();
+                    let problems = problems.join(", ");
+                    return Err(Ended::usage(format!(
+                        "`--set {key}` has no effect in `{problem}`: it is for {problems}"
+                    )));
+                }
+                Some(own) => match value.parse() {
+                    Ok(number) => (own.set)(&mut shelf, number),
+                    Err(_) => return Err(Ended::usage(format!("`{key}` must be a number, got {value}"))),
+                },
+            }
+        }
+        Ok((others, shelf))
+    }
+}
+
+/// Keys of a column that a problem of the shelf does not heed, each with the reason.
+fn without_effect(problem: ShelfProblem) -> Vec<(&'static str, &'static str)> {
+    let mut keys = vec![
+        ("material.law", "the problem has its own law"),
+        ("column.loading_time", "its load acts at once, or in waves"),
+        ("column.self_weight", "it has no weight"),
+    ];
+    if !ShelfKey::ALL[0].problems.contains(&problem) {
+        keys.push(("material.water_bulk_modulus", "its water is incompressible"));
+    }
+    keys
 }
 
 /// Which results are compared with what.

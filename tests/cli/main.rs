@@ -25,6 +25,7 @@ mod report_rules;
 mod report_tables;
 mod run;
 mod score;
+mod shelf;
 mod signals;
 mod solve;
 mod store;

@@ -149,6 +149,30 @@ pub enum ExactError {
         /// `σ'_0 + q`, Pa.
         end: f64,
     },
+    /// A Biot coefficient that no porous body has.
+    #[error(
+        "the Biot coefficient must lie between the porosity {porosity} and 1, got {alpha}: grains are stiffer than the \
+         skeleton that they make"
+    )]
+    BiotCoefficient {
+        /// `α`.
+        alpha: f64,
+        /// `n`.
+        porosity: f64,
+    },
+    /// A time at which a series has too few terms.
+    #[error(
+        "the time factor {time_factor} is too early for a series of {terms} terms: ask for 0, or for a later time"
+    )]
+    TooEarly {
+        /// Time factor.
+        time_factor: f64,
+        /// Terms that are known.
+        terms: usize,
+    },
+    /// The place of a source.
+    #[error("the pressure at the source itself is infinite: ask for places beside it, ζ below 1")]
+    AtTheSource,
     /// A numerical reference that does not settle under refinement.
     #[error(
         "the large-strain reference did not converge: two resolutions still differ by {difference} \

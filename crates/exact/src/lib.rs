@@ -9,6 +9,9 @@
 //! | [`dynamic_column`] | column with the inertia of both phases, under a step, a ramp, or let go | after Zienkiewicz et al. (1980) |
 //! | [`cosine_layer`] | layer in plane strain under a cosine load | Biot (1941) |
 //! | [`mandel`] | slab between rigid plates | Mandel (1953), Cheng & Detournay (1988) |
+//! | [`layered`] | column of layers | Schiffman & Stein (1970) |
+//! | [`yield_front`] | front of first loading that moves into a column | Neumann, in Carslaw & Jaeger (1959) |
+//! | [`shelf`] | Biot's column, Cryer's sphere, drains, seabed, injection, Davis & Raymond's column | there |
 //! | [`manufactured`] | motions of the unit square with body forces and sources that make them exact | docs/theory.md, Eqs 24–28 |
 //!
 //! [`consolidation`] has Terzaghi's functions of depth and time that several of them share. [`Reference`] gives the fields
@@ -39,6 +42,7 @@ pub mod parameters;
 #[doc(hidden)]
 pub mod quadrature;
 pub mod reference;
+pub mod shelf;
 pub mod single_mode;
 pub mod terzaghi;
 pub mod xie_leo;
@@ -48,3 +52,4 @@ pub use crate::exact_error::{ExactError, normal};
 pub use crate::field_values::{Accuracy, FieldValues};
 pub use crate::parameters::{Base, ColumnParameters, MotionParameters};
 pub use crate::reference::{Reference, ReferenceKind};
+pub use crate::shelf::{ShelfKey, ShelfParameters, ShelfProblem};

@@ -1,6 +1,7 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact_error::{ExactError, normal, positive};
+use crate::shelf::ShelfParameters;
 use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
@@ -76,6 +77,8 @@ pub struct ColumnParameters {
     pub self_weight: bool,
     /// How a manufactured solution moves; nothing else heeds it.
     pub motion: MotionParameters,
+    /// What problems of the shelf add; nothing else heeds it.
+    pub shelf: ShelfParameters,
 }
 
 impl Default for ColumnParameters {
@@ -96,6 +99,7 @@ impl Default for ColumnParameters {
             loading_time: 0.0,
             self_weight: false,
             motion: MotionParameters::default(),
+            shelf: ShelfParameters::default(),
         }
     }
 }

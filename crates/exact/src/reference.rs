@@ -14,6 +14,7 @@ use crate::mandel::Mandel;
 use crate::manufactured::Manufactured;
 use crate::manufactured::motion::{ManufacturedModel, Motion};
 use crate::parameters::ColumnParameters;
+use crate::shelf::{Shelf, ShelfProblem};
 use crate::single_mode::SingleMode;
 use crate::terzaghi::Terzaghi;
 use crate::xie_leo::XieLeo;
@@ -49,10 +50,13 @@ pub enum ReferenceKind {
     AtRest,
     /// A motion in the plane that is exact because body forces and a source make it so.
     Manufactured(ManufacturedModel),
+    /// A problem that no scene solves.
+    Shelf(ShelfProblem),
 }
 
 impl ReferenceKind {
-    /// All kinds, in the order of the documentation; large strain and motions with their default models.
+    /// All kinds that a scene solves, in the order of the documentation; large strain and motions with their default
+    /// models. [`ShelfProblem::ALL`] has the others.
     pub const ALL: [Self; 15] = [
         Self::Terzaghi,
         Self::TerzaghiIncompressible,
@@ -87,6 +91,7 @@ impl ReferenceKind {
             Self::Mandel => "mandel",
             Self::AtRest => "at-rest",
             Self::Manufactured(model) => model.motion.name(),
+            Self::Shelf(problem) => problem.name(),
         }
     }
 
@@ -128,6 +133,7 @@ impl FromStr for ReferenceKind {
     fn from_str(name: &str) -> Result<Self, ExactError> {
         Self::ALL
             .into_iter()
+            .chain(ShelfProblem::ALL.map(Self::Shelf))
             .find(|kind| kind.name() == name)
             .ok_or_else(|| ExactError::UnknownReference(name.to_owned()))
     }
@@ -154,6 +160,7 @@ enum Solution {
     Mandel(Mandel),
     AtRest(AtRest),
     Manufactured(Manufactured),
+    Shelf(Shelf),
 }
 
 /// One `match` for all that every solution answers.
@@ -169,6 +176,7 @@ macro_rules! ask {
             Solution::Mandel($solution) => $answer,
             Solution::AtRest($solution) => $answer,
             Solution::Manufactured($solution) => $answer,
+            Solution::Shelf($solution) => $answer,
         }
     };
 }
@@ -223,6 +231,7 @@ impl Reference {
             ReferenceKind::Manufactured(model) => {
                 Solution::Manufactured(Manufactured::new(model, parameters)?)
             }
+            ReferenceKind::Shelf(problem) => Solution::Shelf(Shelf::new(problem, parameters)?),
         };
         Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
@@ -316,6 +325,7 @@ impl Reference {
     pub fn displacement_scale(&self, long_after: f64) -> Result<f64, ExactError> {
         match &self.solution {
             Solution::Manufactured(solution) => Ok(solution.largest_displacement()),
+            Solution::Shelf(problem) => Ok(problem.final_settlement().abs()),
             _ => self.settlement(long_after),
         }
     }
@@ -340,7 +350,8 @@ impl Reference {
             | Solution::LargeStrain(_)
             | Solution::CosineLayer(_)
             | Solution::AtRest(_)
-            | Solution::Manufactured(_) => None,
+            | Solution::Manufactured(_)
+            | Solution::Shelf(_) => None,
         }
     }
 

@@ -9,8 +9,8 @@
 use nalgebra::Complex;
 
 pub use libm::{
-    acos, asin, atan, cos, erf, erfc, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2,
-    log10, pow as powf, sin, sincos, tan,
+    acos, asin, atan, atan2, cos, erf, erfc, exp, exp2, expm1 as exp_m1, hypot, j0, j1, log as ln,
+    log1p as ln_1p, log2, log10, pow as powf, sin, sincos, tan, y0, y1,
 };
 
 /// `xⁿ` by repeated squaring, in this order of products.

@@ -5,7 +5,7 @@ use crate::cli::stream::print_data;
 use crate::study::shipped::shipped_names;
 use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;
-use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::{ReferenceKind, ShelfProblem};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::scene::SceneKind;
@@ -22,7 +22,8 @@ fn with_names(command: clap::Command) -> clap::Command {
     // clap keeps names as long as the program runs.
     let lasting = |names: Vec<String>| names.into_iter().map(|name| &*name.leak()).collect::<Vec<&str>>();
     let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
-    let scenes = SceneKind::ALL.iter().map(|scene| scene.name()).collect();
+    let scenes: Vec<&str> = SceneKind::ALL.iter().map(|scene| scene.name()).collect();
+    let with_shelf = |names: &[&'static str]| [names, &ShelfProblem::NAMES].concat();
     let integrators = IntegratorKind::ALL.iter().map(|integrator| integrator.name()).collect();
     let named = [
         ("method", lasting(Method::names())),
@@ -31,7 +32,11 @@ fn with_names(command: clap::Command) -> clap::Command {
         ("show", lasting(shipped_names())),
     ];
     command.mut_subcommands(|subcommand| {
-        let of_scene = if subcommand.get_name() == "exact" { &references } else { &scenes };
+        let of_scene = match subcommand.get_name() {
+            "exact" => with_shelf(&references),
+            "score" => with_shelf(&scenes),
+            _ => scenes.clone(),
+        };
         let named = named.iter().chain([&("scene", of_scene.clone())]).cloned().collect::<Vec<_>>();
         subcommand.mut_args(|argument| match named.iter().find(|(name, _)| argument.get_id() == name) {
             Some((_, names)) => argument.value_parser(PossibleValuesParser::new(names)),

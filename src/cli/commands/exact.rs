@@ -6,6 +6,7 @@ use crate::cli::overrides::{Assignments, StudyLines, numbers};
 use crate::cli::problems::{self, Problem};
 use crate::cli::stream::{print_data, say};
 use clap::ValueEnum;
+use oedometer_exact::ShelfProblem;
 use oedometer_exact::consolidation;
 use oedometer_exact::field_values::Accuracy;
 use oedometer_exact::mandel::Mandel;
@@ -94,7 +95,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return problem_rows(problem, arguments);
     }
     let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
-        let names = ReferenceKind::ALL.map(ReferenceKind::name).into_iter().chain(problems::NAMES);
+        let names = ReferenceKind::ALL
+            .map(ReferenceKind::name)
+            .into_iter()
+            .chain(ShelfProblem::ALL.map(ShelfProblem::name));
+        let names = names.chain(problems::NAMES);
         let names = names.collect::<Vec<_>>().join(", ");
         Ended::usage(format!("no exact solution is called `{}`; there are {names}", arguments.scene))
     })?;
@@ -149,7 +154,11 @@ fn column_rows(
     time_factors: &[f64],
     arguments: &Arguments,
 ) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
-    let depths = numbers("--zeta", &arguments.zeta)?;
+    let mut depths = numbers("--zeta", &arguments.zeta)?;
+    if kind == ReferenceKind::Shelf(ShelfProblem::Injection) && arguments.zeta == DEFAULT_DEPTHS {
+        // The source itself, where the pressure is infinite.
+        depths.retain(|zeta| *zeta < 1.0);
+    }
     let distances = arguments.x.as_ref().map(|typed| numbers("--x", typed)).transpose()?;
     let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
     if distances.is_some() && !is_layer && !kind.is_manufactured() {
@@ -176,7 +185,15 @@ fn column_rows(
         let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
         for &zeta in &depths {
             let Some(distances) = &distances else {
-                rows.push(PrintedRow(row(zeta, reference.fields(time_factor, zeta)?.pressure)));
+                let fields = reference.fields(time_factor, zeta)?;
+                let mut columns = row(zeta, fields.pressure);
+                if matches!(kind, ReferenceKind::Shelf(_)) {
+                    columns.extend([
+                        ("effective_stress_ratio", fields.effective_stress / parameters.load),
+                        ("displacement_ratio", fields.displacement / parameters.height + 0.0),
+                    ]);
+                }
+                rows.push(PrintedRow(columns));
                 continue;
             };
             for &distance in distances {
@@ -262,11 +279,13 @@ pub fn parameters_of(
     kind: ReferenceKind,
     set: &Assignments,
 ) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
+    let (set, shelf) = set.of_shelf(kind)?;
     let mut lines = StudyLines::of("exact", SceneKind::of_solution(kind).name(), "the solution's name")?;
-    lines.assign(set)?;
+    lines.assign(&set)?;
     let study = lines.theory_study()?;
     let case = &study.planned[0].case;
-    Ok((column_parameters(&case.column, &case.material), kind.of_soil(&case.material)))
+    let parameters = ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) };
+    Ok((parameters, kind.of_soil(&case.material)))
 }
 
 /// Time factors at which degrees of consolidation are reached.

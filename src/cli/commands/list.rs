@@ -4,7 +4,7 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::print_data;
 use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
-use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::{ReferenceKind, ShelfProblem};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::scene::SceneKind;
@@ -49,6 +49,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     writeln!(out, "references")?;
     for kind in ReferenceKind::ALL {
         writeln!(out, "  {}", kind.name())?;
+    }
+    writeln!(out, "exact problems without a solver")?;
+    for problem in ShelfProblem::ALL {
+        writeln!(out, "  {problem}")?;
     }
     writeln!(out, "shipped studies")?;
     for (name, title) in shipped_titles() {

@@ -13,7 +13,7 @@ use crate::measure::fields::{
     ExactFields, FieldError, LONG_AFTER, SamplePlaces, largest_contribution, resolution, settlement_error,
 };
 use crate::record::ErrorRow;
-use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
+use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, ShelfProblem};
 use oedometer_soil::wording::short;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -296,10 +296,12 @@ impl ScoredState<'_> {
     }
 
     /// Vertical displacement of the surface, in a layer under the crest of its load: from a settlement curve, or from a
-    /// sample there. The settlement of a slab is that of its plate, which no sample has.
+    /// sample there. The settlement of a slab is that of its plate, and of a free layer that is drained by wells the mean: no
+    /// sample has them.
     fn displacement_of_surface(&self) -> Option<f64> {
         let (state, parameters) = (self.state, self.parameters);
-        if state.surface_displacement.is_some() || self.reference.kind() == ReferenceKind::Mandel {
+        let mean_or_plate = [ReferenceKind::Mandel, ReferenceKind::Shelf(ShelfProblem::BarronFreeStrain)];
+        if state.surface_displacement.is_some() || mean_or_plate.contains(&self.reference.kind()) {
             return state.surface_displacement;
         }
         let is_at_surface = |place: &usize| {

@@ -1,6 +1,7 @@
 //! Geometry and load of the body of soil that a scene is about.
 
 use crate::scene::arrangement::Arrangement;
+use oedometer_exact::ShelfParameters;
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
 use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
@@ -187,5 +188,6 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
             Shape::Square { motion, .. } => motion,
             Shape::Column { .. } | Shape::Layer { .. } => MotionParameters::default(),
         },
+        shelf: ShelfParameters::default(),
     }
 }

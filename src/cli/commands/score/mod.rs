@@ -16,7 +16,9 @@ use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::study::check::Study;
+use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfParameters};
 use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::column_parameters;
 use std::path::PathBuf;
 
 /// Columns behind those of the errors, for results on several meshes.
@@ -83,14 +85,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             "`--time-tolerance {tolerance}` is invalid: expected a number from 0 to below 1"
         )));
     }
-    let (study, requested) = study_of(&arguments.scene, &arguments.outputs)?;
-    let case = &study.planned[0].case;
+    let asked = Asked::of(&arguments.scene, &arguments.outputs)?;
+    let case = asked.case();
     let (mapping, runs) = scored_files::read(arguments, case)?;
     let comparison = Comparison {
         case,
+        parameters: asked.parameters,
         mapping: &mapping,
-        references: &study.references.iter().map(|kind| kind.of_soil(&case.material)).collect::<Vec<_>>(),
-        requested: &requested,
+        references: &asked.references,
+        requested: &asked.requested,
         tolerance,
         are_cells_found: arguments.cells.is_none(),
     };
@@ -107,7 +110,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         _ => {
             let mut tables = Vec::new();
             for one in &results.all {
-                let title = format!("{}: {}", case.scene.name(), one.name());
+                let title = format!("{}: {}", arguments.scene, one.name());
                 tables.push(scores::errors_table(&one.score, &title));
             }
             if let Some((series, cells)) = &series {
@@ -120,17 +123,52 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     gate::judge(&results, arguments.below, arguments.strict, comparison.references)
 }
 
-/// The scene with its column as a study of one case, and the requested time factors.
-///
-/// # Errors
-/// What is wrong with the scene or an assignment.
-pub fn study_of(scene: &str, outputs: &Outputs) -> anyhow::Result<(Study, Vec<f64>)> {
-    let mut lines = StudyLines::of("score", scene, "`--scene`")?;
-    lines.give_outputs(outputs)?;
-    let is_requested = lines.has("output.time_factors");
-    let study = lines.theory_study()?;
-    let requested = if is_requested { study.planned[0].case.time_factors.to_vec() } else { Vec::new() };
-    Ok((study, requested))
+/// What a result is compared with: a scene, or a problem of the shelf, with its numbers.
+pub struct Asked {
+    /// The scene with its column as a study of one case; of a problem of the shelf the column that it is told in.
+    study: Study,
+    /// Parameters of the references.
+    pub parameters: ColumnParameters,
+    /// References, the scene's own first.
+    pub references: Vec<ReferenceKind>,
+    /// Requested time factors; all if empty.
+    pub requested: Vec<f64>,
+}
+
+impl Asked {
+    /// The scene or problem of a name.
+    ///
+    /// # Errors
+    /// What is wrong with the scene or an assignment.
+    pub fn of(scene: &str, outputs: &Outputs) -> anyhow::Result<Self> {
+        let on_shelf = scene.parse().ok().filter(|kind| matches!(kind, ReferenceKind::Shelf(_)));
+        let mut outputs = outputs.clone();
+        let mut shelf = ShelfParameters::default();
+        if let Some(kind) = on_shelf {
+            (outputs.set, shelf) = outputs.set.of_shelf(kind)?;
+            if let Some(other) = outputs.reference.take().filter(|other| other != scene) {
+                return Err(Ended::usage(format!("`{scene}` has no reference `{other}`: it is its own")));
+            }
+        }
+        let name = on_shelf.map_or(scene, |kind| SceneKind::of_solution(kind).name());
+        let mut lines = StudyLines::of("score", name, "`--scene`")?;
+        lines.give_outputs(&outputs)?;
+        let is_requested = lines.has("output.time_factors");
+        let study = lines.theory_study()?;
+        let case = &study.planned[0].case;
+        let own = study.references.iter().map(|kind| kind.of_soil(&case.material)).collect();
+        Ok(Self {
+            parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
+            references: on_shelf.map_or(own, |kind| vec![kind]),
+            requested: if is_requested { case.time_factors.to_vec() } else { Vec::new() },
+            study,
+        })
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.study.planned[0].case
+    }
 }
 
 /// The size of what the reference neglects, in one line.

@@ -13,13 +13,14 @@ use crate::judge::score::{Score, score};
 use crate::record::ErrorRow;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::wording::short;
 
 /// What results are compared with, and how.
 pub struct Comparison<'a> {
     /// The case that was solved.
     pub case: &'a Case,
+    /// Parameters of the references.
+    pub parameters: ColumnParameters,
     /// Meaning of the columns.
     pub mapping: &'a Mapping,
     /// References, the scene's own first.
@@ -55,21 +56,20 @@ pub struct Results<'a> {
 impl<'a> Results<'a> {
     /// Scores runs.
     pub fn of(runs: Vec<Run>, comparison: &'a Comparison<'a>) -> anyhow::Result<Self> {
-        let Comparison { case, requested, tolerance, .. } = comparison;
-        let parameters = column_parameters(&case.column, &case.material);
+        let Comparison { parameters, requested, tolerance, .. } = comparison;
         let mut all: Vec<Scored> =
             runs.into_iter().map(|run| Scored { run, score: Score::default() }).collect();
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by_key(|place| all[*place].run.cells);
         let times_of = |all: &[Scored]| {
-            let times = |place: &usize| time_factors(&parameters, &all[*place].run.states);
+            let times = |place: &usize| time_factors(parameters, &all[*place].run.states);
             TimeGroups::of(requested, &order.iter().map(times).collect::<Vec<_>>(), *tolerance)
         };
         let mut times = times_of(&all);
         let is_requested = !requested.is_empty();
         for (rank, place) in order.iter().enumerate() {
             let Scored { run, score } = &mut all[*place];
-            let has = time_factors(&parameters, &run.states);
+            let has = time_factors(parameters, &run.states);
             score.warnings.extend(missing_times(&times.missing(rank), &has, is_requested));
             if is_requested {
                 let mut wanted = times.groups[rank].iter().map(Option::is_some);
@@ -90,10 +90,10 @@ impl<'a> Results<'a> {
             times = times_of(&all);
         }
         for one in &mut all {
-            one.assess(comparison, &parameters)?;
+            one.assess(comparison, parameters)?;
         }
         let mut results = Self { all, order, times, comparison };
-        results.compare_meshes(&parameters);
+        results.compare_meshes(parameters);
         Ok(results)
     }
 
@@ -195,6 +195,7 @@ impl Scored {
             let column = &held.case.column;
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
+                None if matches!(own, ReferenceKind::Shelf(_)) => Vec::new(),
                 None if held.case.scene.has_plane_fields() => vec![column.volume()],
                 None => vec![column.height, column.height * column.extent()],
             };

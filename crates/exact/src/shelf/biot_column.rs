@@ -1,0 +1,67 @@
+//! Terzaghi's column with a Biot coefficient and grains of finite stiffness.
+
+use super::porous_soil::PorousSoil;
+use crate::consolidation::{consolidated_below, isochrone};
+use crate::exact_error::ExactError;
+use crate::field_values::{Accuracy, FieldValues};
+use crate::parameters::ColumnParameters;
+
+/// Column on an impermeable base, drained and loaded at its top (Biot 1941; Detournay & Cheng 1993, section 5.2).
+///
+/// ```text
+/// p = p_0 W(ζ, ct/H²)     p_0 = q α/(E_oed S)     s = m_v q H [1/(M S) + (1 − 1/(M S)) U(ct/H²)]
+/// ```
+///
+/// `α = 1` and stiff grains make it [`Terzaghi`](crate::terzaghi::Terzaghi)'s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BiotColumn {
+    load: f64,
+    final_settlement: f64,
+    soil: PorousSoil,
+    /// `p_0/q`.
+    start: f64,
+    /// `1/(M S)`: the share of the settlement that is there at once.
+    immediate: f64,
+}
+
+impl BiotColumn {
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        let soil = PorousSoil::of(parameters)?;
+        Ok(Self {
+            load: parameters.load,
+            final_settlement: parameters.final_settlement(),
+            soil,
+            start: soil.alpha * soil.slowed(),
+            immediate: soil.fixed_storage / soil.storage,
+        })
+    }
+
+    /// Settlement of the part below a depth, over the final one of the whole.
+    fn compressed(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
+        let consolidated = consolidated_below(zeta, self.soil.slowed() * time_factor)?.value;
+        Ok(self.immediate * (1.0 - zeta) + (1.0 - self.immediate) * consolidated)
+    }
+
+    /// The effective stress is Biot's, `σ + α p`.
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let pressure = self.load * self.start * isochrone(zeta, self.soil.slowed() * time_factor)?.value;
+        Ok(FieldValues {
+            pressure,
+            effective_stress: self.soil.alpha * pressure - self.load,
+            displacement: -self.final_settlement * self.compressed(time_factor, zeta)?,
+        })
+    }
+
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(self.final_settlement * self.compressed(time_factor, 0.0)?)
+    }
+
+    pub fn final_settlement(&self) -> f64 {
+        self.final_settlement
+    }
+
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let base = isochrone(1.0, self.soil.slowed() * time_factor)?;
+        Ok(Accuracy::of(base.terms, self.start * base.tail_bound))
+    }
+}

@@ -1,0 +1,235 @@
+//! The shelf: problems of poromechanics that other programs are tested by and no scene of this one solves.
+//!
+//! | name | problem | source |
+//! |---|---|---|
+//! | `biot-column` | Terzaghi's column with a Biot coefficient and grains of finite stiffness | Biot (1941), Detournay & Cheng (1993) |
+//! | `cryer` | sphere under a pressure all round, drained at its surface | Cryer (1963) |
+//! | `barron` | radial flow to a vertical drain, equal strain | Barron (1948), Hansbo (1981) |
+//! | `barron-free-strain` | the same, free strain | Barron (1948) |
+//! | `seabed` | column under a wave pressure that acts on soil and pore water | Verruijt (1982) |
+//! | `injection` | point source of water in an infinite body | Rudnicki (1986) |
+//! | `davis-raymond` | nonlinear column with a constant coefficient of consolidation | Davis & Raymond (1965) |
+//!
+//! Each has the height `H`, the load `q`, the material and the time factor `T_v = c_v t/H²` of a column, and what
+//! [`ShelfParameters`] adds. Where the places are is said with each problem: `ζ = 0` is its drained or loaded end,
+//! and `y = (1 − ζ)H` counts from the other one. docs/exact.md has the equations.
+
+mod barron;
+mod biot_column;
+mod cryer;
+mod davis_raymond;
+mod injection;
+mod porous_soil;
+mod seabed;
+
+use crate::exact_error::ExactError;
+use crate::field_values::{Accuracy, FieldValues};
+use crate::parameters::ColumnParameters;
+use barron::{Barron, BarronFreeStrain};
+use biot_column::BiotColumn;
+use cryer::Cryer;
+use davis_raymond::DavisRaymond;
+use injection::Injection;
+use oedometer_soil::wording::words;
+use seabed::Seabed;
+
+/// A problem of the shelf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ShelfProblem {
+    /// Terzaghi's column with a Biot coefficient and grains of finite stiffness.
+    BiotColumn,
+    /// Cryer's sphere.
+    Cryer,
+    /// Radial flow to a drain, equal strain.
+    Barron,
+    /// Radial flow to a drain, free strain.
+    BarronFreeStrain,
+    /// Column under a wave pressure.
+    Seabed,
+    /// Point source of water.
+    Injection,
+    /// Nonlinear column with a constant coefficient of consolidation.
+    DavisRaymond,
+}
+
+words!(
+    ShelfProblem:
+    BiotColumn "biot-column", Cryer "cryer", Barron "barron", BarronFreeStrain "barron-free-strain",
+    Seabed "seabed", Injection "injection", DavisRaymond "davis-raymond",
+);
+
+impl core::fmt::Display for ShelfProblem {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+/// What the problems of the shelf ask beyond a column; each heeds those of [`ShelfKey`] that name it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShelfParameters {
+    /// Biot coefficient `α`; without it `1 − K/K_s`, and 1 without both.
+    pub biot_coefficient: Option<f64>,
+    /// Bulk modulus of the grains `K_s`, Pa; without it `K/(1 − α)`, infinite where `α = 1`.
+    pub grain_bulk_modulus: Option<f64>,
+    /// Radius `r_w` of a drain, m.
+    pub drain_radius: f64,
+    /// Period of a wave, s.
+    pub wave_period: f64,
+    /// Vertical effective stress of the start, compression positive, Pa; without it that of the load.
+    pub initial_stress: Option<f64>,
+}
+
+impl Default for ShelfParameters {
+    fn default() -> Self {
+        Self {
+            biot_coefficient: None,
+            grain_bulk_modulus: None,
+            drain_radius: 0.05,
+            wave_period: 10.0,
+            initial_stress: None,
+        }
+    }
+}
+
+/// A key of a problem's own input, for command lines.
+#[derive(Clone, Copy, Debug)]
+pub struct ShelfKey {
+    /// Dotted, as other keys are.
+    pub key: &'static str,
+    /// Problems that heed it.
+    pub problems: &'static [ShelfProblem],
+    /// Sets it.
+    pub set: fn(&mut ShelfParameters, f64),
+}
+
+/// Problems of Biot's full equations.
+const OF_BIOT: &[ShelfProblem] =
+    &[ShelfProblem::BiotColumn, ShelfProblem::Cryer, ShelfProblem::Seabed, ShelfProblem::Injection];
+
+impl ShelfKey {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self {
+            key: "material.biot_coefficient",
+            problems: OF_BIOT,
+            set: |shelf, value| shelf.biot_coefficient = Some(value),
+        },
+        Self {
+            key: "material.grain_bulk_modulus",
+            problems: OF_BIOT,
+            set: |shelf, value| shelf.grain_bulk_modulus = Some(value),
+        },
+        Self {
+            key: "drain.radius",
+            problems: &[ShelfProblem::Barron, ShelfProblem::BarronFreeStrain],
+            set: |shelf, value| shelf.drain_radius = value,
+        },
+        Self {
+            key: "wave.period",
+            problems: &[ShelfProblem::Seabed],
+            set: |shelf, value| shelf.wave_period = value,
+        },
+        Self {
+            key: "column.initial_stress",
+            problems: &[ShelfProblem::DavisRaymond],
+            set: |shelf, value| shelf.initial_stress = Some(value),
+        },
+    ];
+}
+
+/// A problem of the shelf with its numbers.
+#[derive(Clone, Debug)]
+pub(crate) enum Shelf {
+    BiotColumn(BiotColumn),
+    Cryer(Cryer),
+    Barron(Barron),
+    BarronFreeStrain(BarronFreeStrain),
+    Seabed(Seabed),
+    Injection(Injection),
+    DavisRaymond(DavisRaymond),
+}
+
+/// One `match` for all that every problem answers.
+macro_rules! ask {
+    ($shelf:expr, $problem:ident => $answer:expr) => {
+        match $shelf {
+            Shelf::BiotColumn($problem) => $answer,
+            Shelf::Cryer($problem) => $answer,
+            Shelf::Barron($problem) => $answer,
+            Shelf::BarronFreeStrain($problem) => $answer,
+            Shelf::Seabed($problem) => $answer,
+            Shelf::Injection($problem) => $answer,
+            Shelf::DavisRaymond($problem) => $answer,
+        }
+    };
+}
+
+impl Shelf {
+    pub fn new(problem: ShelfProblem, parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        Ok(match problem {
+            ShelfProblem::BiotColumn => Self::BiotColumn(BiotColumn::new(parameters)?),
+            ShelfProblem::Cryer => Self::Cryer(Cryer::new(parameters)?),
+            ShelfProblem::Barron => Self::Barron(Barron::new(parameters)?),
+            ShelfProblem::BarronFreeStrain => Self::BarronFreeStrain(BarronFreeStrain::new(parameters)?),
+            ShelfProblem::Seabed => Self::Seabed(Seabed::new(parameters)?),
+            ShelfProblem::Injection => Self::Injection(Injection::new(parameters)?),
+            ShelfProblem::DavisRaymond => Self::DavisRaymond(DavisRaymond::new(parameters)?),
+        })
+    }
+
+    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        ask!(self, problem => problem.fields(time_factor, zeta))
+    }
+
+    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        ask!(self, problem => problem.settlement(time_factor))
+    }
+
+    /// Settlement over what it is measured by: the final one, of a seabed that under the amplitude without drainage.
+    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(self.settlement(time_factor)? / self.final_settlement())
+    }
+
+    pub fn final_settlement(&self) -> f64 {
+        ask!(self, problem => problem.final_settlement())
+    }
+
+    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        ask!(self, problem => problem.accuracy(time_factor))
+    }
+}
+
+/// What the terms left out of a series may add to the pressure over the load.
+const NEGLIGIBLE: f64 = 1e-17;
+
+/// The least number of terms, up to `most`, whose bound on the rest is negligible, with that bound.
+///
+/// # Errors
+/// When there are too few terms for the time.
+fn terms_for(most: usize, time_factor: f64, tail: impl Fn(usize) -> f64) -> Result<Accuracy, ExactError> {
+    if tail(most) > NEGLIGIBLE {
+        return Err(ExactError::TooEarly { time_factor, terms: most });
+    }
+    // The bound falls with the number of terms.
+    let (mut few, mut enough) = (0, most);
+    while enough - few > 1 {
+        let middle = usize::midpoint(few, enough);
+        if tail(middle) > NEGLIGIBLE { few = middle } else { enough = middle }
+    }
+    Ok(Accuracy { phase_bound: ROUND_OFF * enough as f64, ..Accuracy::of(enough, tail(enough)) })
+}
+
+/// What a term's round-off may add to the pressure over the load.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// The root of a function that is negative at `low` and positive at `high`, to the last bit.
+fn bisected(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if function(middle) < 0.0 { low = middle } else { high = middle }
+    }
+}
