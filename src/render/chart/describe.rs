@@ -206,6 +206,8 @@ pub enum Style {
     /// The reference: a dark line above other lines and below all markers. Several references differ in their
     /// dashes.
     Theory,
+    /// A thin grey line: a series that is coloured in another panel of small multiples.
+    Context,
 }
 
 /// A horizontal line across the figure: a floor, a limit, a tolerance.

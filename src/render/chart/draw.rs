@@ -1,6 +1,7 @@
 //! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
 use crate::render::chart::axis::{Ends, PlacedAxis, PlotAxis, Reason, Scale, TICK_FONT, drawable};
 use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
+use crate::render::chart::multiples::side_by_side;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, scripted, stroke, units, write,
 };
@@ -102,7 +103,7 @@ impl Layout {
 }
 
 /// The ends of both axes.
-fn ends(chart: &Chart) -> (Ends, Ends) {
+pub(super) fn ends(chart: &Chart) -> (Ends, Ends) {
     let points = || chart.series.iter().flat_map(|series| &series.points);
     let edges = |x: bool| {
         let field = chart.field.as_ref();
@@ -133,7 +134,7 @@ fn has_markers(series: &Series) -> bool {
 /// Sentences on what the figure cannot show.
 fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
     let mut lost: BTreeMap<Reason, (usize, Vec<&str>)> = BTreeMap::new();
-    for series in &chart.series {
+    for series in chart.series.iter().filter(|series| series.style != Style::Context) {
         for &(a, b) in &series.points {
             let reason = match (x.visible(a), y.visible(b)) {
                 (Ok(_), Ok(_)) => continue,
@@ -190,19 +191,29 @@ impl Chart {
     /// If plotters fails to draw it.
     pub fn svg(&self) -> Result<String, RenderError> {
         let draw = || -> Result<String, String> {
-            let layout = Layout::of(self);
-            let mut space = Space::within(layout.plot.grown(-2.0));
-            let back = self.axes(&layout)? + &self.lines(&layout, &mut space)?;
-            let markers = self.markers(&layout, &mut space)?;
-            let words = triangles(&mut space, self, &layout)?
-                + &rules(&mut space, self, &layout)?
-                + &names(&mut space, self, &layout)?;
-            let below = (PAD, layout.plot.bottom + BELOW + 8.0);
-            let around = layout.legend.elements(layout.size, below)? + &self.texts(&layout)?;
-            let elements = [back, markers, words, around].concat();
-            Ok(document(layout.size, &self.title, &self.description(), &elements))
+            let panels = self.panels();
+            let (size, elements) = if panels.is_empty() {
+                self.elements()?
+            } else {
+                side_by_side(&panels.iter().map(Self::elements).collect::<Result<Vec<_>, _>>()?)
+            };
+            Ok(document(size, &self.title, &self.description(), &elements))
         };
         draw().map_err(|reason| RenderError::Draw { title: self.title.clone(), reason })
+    }
+
+    /// Size of the figure as one plot, and its elements.
+    fn elements(&self) -> Result<(Px, String), String> {
+        let layout = Layout::of(self);
+        let mut space = Space::within(layout.plot.grown(-2.0));
+        let back = self.axes(&layout)? + &self.lines(&layout, &mut space)?;
+        let markers = self.markers(&layout, &mut space)?;
+        let words = triangles(&mut space, self, &layout)?
+            + &rules(&mut space, self, &layout)?
+            + &names(&mut space, self, &layout)?;
+        let below = (PAD, layout.plot.bottom + BELOW + 8.0);
+        let around = layout.legend.elements(layout.size, below)? + &self.texts(&layout)?;
+        Ok((layout.size, [back, markers, words, around].concat()))
     }
 
     /// The chart of plotters whose axes are those of the layout.

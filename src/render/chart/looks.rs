@@ -24,6 +24,8 @@ const COLOURS: [RGBColor; 7] = [
 pub(super) const DARK: RGBColor = RGBColor(0x1A, 0x1A, 0x1A);
 pub(super) const TEXT: RGBColor = RGBColor(0x26, 0x26, 0x26);
 pub(super) const QUIET: RGBColor = RGBColor(0x5F, 0x5F, 0x5F);
+/// Series that are coloured in another panel.
+const GREY: RGBColor = RGBColor(0xC8, 0xC8, 0xC8);
 
 /// Lengths of dashes and gaps in drawing units.
 const DASHES: [&str; 7] = ["", "75 35", "22 28", "95 30 22 30", "105 25", "60 25 20 25 20 25", "40 30"];
@@ -69,7 +71,11 @@ pub(super) struct Look {
 impl Look {
     /// Line width, px.
     pub fn width(&self) -> f64 {
-        if self.is_theory { 1.7 } else { 1.5 }
+        match self.colour {
+            GREY => 1.0,
+            _ if self.is_theory => 1.7,
+            _ => 1.5,
+        }
     }
 
     /// Attributes of the group of its lines.
@@ -88,10 +94,14 @@ pub(super) fn looks(chart: &Chart) -> Vec<Look> {
         let is_theory = series.style == Style::Theory;
         let slot = series.slot.unwrap_or(place);
         Look {
-            colour: if is_theory { DARK } else { COLOURS[slot % COLOURS.len()] },
+            colour: match series.style {
+                Style::Theory => DARK,
+                Style::Context => GREY,
+                _ => COLOURS[slot % COLOURS.len()],
+            },
             is_theory,
             has_line: series.style != Style::Markers,
-            dash: DASHES[slot % DASHES.len()],
+            dash: if series.style == Style::Context { "" } else { DASHES[slot % DASHES.len()] },
             marker: matches!(series.style, Style::Markers | Style::LineAndMarkers).then_some(slot),
         }
     };
@@ -194,12 +204,13 @@ impl Legend {
         for (place, (look, lines)) in self.entries.iter().enumerate() {
             let x = corner.0 + (place % self.columns) as f64 * self.column_width;
             let y = corner.1 + (place / self.columns) as f64 * self.row + ROW / 2.0;
+            let mut entry = String::new();
             if look.has_line {
                 let style = stroke(look.colour, look.width());
                 let sample = layer(size, |area| line(area, &[(x, y), (x + SAMPLE, y)], style))?;
-                out += &group(&look.line_attributes(), "", &sample);
+                entry += &group(&look.line_attributes(), "", &sample);
             }
-            out += &layer(size, |area| {
+            entry += &layer(size, |area| {
                 if let Some(slot) = look.marker {
                     draw_marker(area, (x + SAMPLE / 2.0, y), slot, 4.0, look.colour)?;
                 }
@@ -208,6 +219,8 @@ impl Legend {
                 }
                 Ok(())
             })?;
+            // The script of a page hides the series of a name by a click on its entry.
+            out += &group(" class=\"key\"", &lines.join(" "), &entry);
         }
         Ok(out)
     }

@@ -7,6 +7,7 @@ mod axis;
 mod describe;
 mod draw;
 mod looks;
+mod multiples;
 mod svg;
 mod words;
 

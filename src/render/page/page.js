@@ -26,6 +26,18 @@ for (const table of document.querySelectorAll("main table")) {
     head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });
   });
 }
+// A click on an entry of a legend hides its series in that figure; a second click shows it again.
+for (const svg of document.querySelectorAll("figure svg")) {
+  const name = (group) => group.querySelector(":scope > title")?.textContent.replace(/\s+/g, " ");
+  for (const key of svg.querySelectorAll(":scope g.key")) {
+    key.addEventListener("click", () => {
+      const hidden = key.classList.toggle("off");
+      for (const group of key.closest("svg").querySelectorAll("g:not(.key)")) {
+        if (name(group) === name(key)) group.style.display = hidden ? "none" : "";
+      }
+    });
+  }
+}
 // A box that leaves only the rows with every word that is typed.
 const content = document.getElementById("content");
 if (content.dataset.filter) {

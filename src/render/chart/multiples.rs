@@ -1,0 +1,134 @@
+//! Small multiples: a figure with more series than colours becomes panels with one scale. Each panel has a few series in
+//! colour, over the others in grey.
+
+use crate::render::chart::draw::ends;
+use crate::render::chart::svg::Px;
+use crate::render::chart::{Chart, Series, Style};
+use std::fmt::Write;
+
+/// Most series of a panel besides theory: as many as there are colours that a colour-blind reader tells apart.
+const MOST_SERIES: usize = 7;
+
+/// Width of a panel, px: two stand side by side.
+const PANEL_WIDTH: f64 = 450.0;
+
+const COLUMNS: usize = 2;
+
+impl Chart {
+    /// The panels of a figure with more series than colours; empty if one plot serves.
+    pub(super) fn panels(&self) -> Vec<Self> {
+        let mut names: Vec<&str> = Vec::new();
+        for series in self.series.iter().filter(|series| is_counted(series)) {
+            if !names.contains(&series.name.as_str()) {
+                names.push(&series.name);
+            }
+        }
+        if names.len() <= MOST_SERIES || self.field.is_some() {
+            return Vec::new();
+        }
+        let panels = names.len().div_ceil(MOST_SERIES);
+        let shown: Vec<&[&str]> = names.chunks(names.len().div_ceil(panels)).collect();
+        shown
+            .iter()
+            .enumerate()
+            .map(|(number, shown)| self.panel(&names, shown, (number + 1, panels)))
+            .collect()
+    }
+
+    fn panel(&self, names: &[&str], shown: &[&str], (number, of): (usize, usize)) -> Self {
+        let (x, y) = ends(self);
+        let is_shown = |name: &str| shown.contains(&name);
+        let context = self
+            .series
+            .iter()
+            .filter(|series| is_counted(series) && series.style != Style::Markers && !is_shown(&series.name));
+        let grey = |series: &Series| Series::new("", series.points.clone()).style(Style::Context);
+        let coloured = self.series.iter().filter(|series| !is_counted(series) || is_shown(&series.name));
+        let placed = |series: &Series| {
+            let place = names.iter().position(|name| *name == series.name);
+            Series { slot: series.slot.or(place), ..series.clone() }
+        };
+        let series: Vec<Series> = context.map(grey).chain(coloured.map(placed)).collect();
+        let mut panel = self.clone();
+        panel.names.retain(|name| {
+            series.iter().any(|series| series.style != Style::Context && series.points.contains(&name.at))
+        });
+        panel.triangles.retain(|triangle| is_shown(&triangle.beside));
+        panel.series = series;
+        panel.title = format!("{}, {number} of {of}", self.title);
+        panel.x = panel.x.between(x.low, x.high);
+        panel.y = panel.y.between(y.low, y.high);
+        panel.size.width = PANEL_WIDTH;
+        panel
+    }
+}
+
+/// Whether a series takes a colour: theory is dark, and what has no name has no entry in the legend.
+fn is_counted(series: &Series) -> bool {
+    series.style != Style::Theory && !series.name.is_empty()
+}
+
+/// Panels side by side, row by row: the size of the whole and its elements.
+pub(super) fn side_by_side(panels: &[(Px, String)]) -> (Px, String) {
+    let (mut elements, mut top) = (String::new(), 0.0);
+    for row in panels.chunks(COLUMNS) {
+        for (place, ((width, height), panel)) in row.iter().enumerate() {
+            let [x, y, w, h] = [place as f64 * PANEL_WIDTH, top, *width, *height].map(|px| px * 10.0);
+            let _ = write!(
+                elements,
+                "<svg x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n{panel}</svg>\n"
+            );
+        }
+        top += row.iter().map(|((_, height), _)| *height).fold(0.0, f64::max);
+    }
+    ((PANEL_WIDTH * COLUMNS.min(panels.len()) as f64, top), elements)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::chart::{ChartAxis, PointName, SlopeTriangle};
+
+    fn chart(series: usize) -> Chart {
+        let mut chart = Chart::new("E", ChartAxis::log10("h"), ChartAxis::log10("e"))
+            .with(Series::theory("exact", vec![(0.1, 1.0), (1.0, 2.0)]));
+        for place in 0..series {
+            let error = 10.0 * (place + 1) as f64;
+            chart =
+                chart.with(Series::new(format!("method {place}"), vec![(0.1, error), (1.0, 2.0 * error)]));
+        }
+        chart
+    }
+
+    #[test]
+    fn as_many_series_as_colours_stay_in_one_plot() {
+        assert!(chart(MOST_SERIES).panels().is_empty());
+        assert_eq!(chart(MOST_SERIES + 1).panels().len(), 2);
+    }
+
+    #[test]
+    fn every_series_is_coloured_in_one_panel_and_grey_in_the_others_on_one_scale() {
+        let mut whole = chart(15);
+        whole.names = vec![PointName { at: (0.1, 20.0), name: "8 cells".to_owned() }];
+        whole.triangles = vec![SlopeTriangle { slope: 1.0, beside: "method 14".to_owned() }];
+        let panels = whole.panels();
+        assert_eq!(panels.len(), 3);
+        for panel in &panels {
+            assert_eq!((panel.x.range, panel.y.range), (panels[0].x.range, panels[0].y.range));
+            let count = |style| panel.series.iter().filter(|series| series.style == style).count();
+            assert_eq!(
+                (count(Style::Theory), count(Style::Context), count(Style::LineAndMarkers)),
+                (1, 10, 5)
+            );
+        }
+        let mut names: Vec<_> =
+            panels.iter().flat_map(|panel| &panel.series).filter(|one| is_counted(one)).collect();
+        names.dedup_by_key(|series| &series.name);
+        assert_eq!(names.len(), 15);
+        assert_eq!(panels.iter().map(|panel| panel.names.len()).collect::<Vec<_>>(), [1, 0, 0]);
+        assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
+        let svg = whole.svg().expect("it is drawn");
+        assert_eq!(svg.matches(" of 3</text>").count(), 3);
+        assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));
+    }
+}
