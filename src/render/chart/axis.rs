@@ -238,15 +238,19 @@ fn is_power(value: f64) -> bool {
 const LONGEST_LABEL: usize = 8;
 
 /// Ticks at given values.
-fn given(values: &[f64], scale: Scale) -> Vec<Tick> {
-    let usable: Vec<f64> = values.iter().copied().filter(|&value| drawable(value, scale).is_ok()).collect();
-    let is_plain = usable.iter().all(|value| *value == 0.0 || (1e-4..1e5).contains(&value.abs()));
+fn given(ticks: &[(f64, Option<String>)], scale: Scale) -> Vec<Tick> {
+    let usable: Vec<_> = ticks.iter().filter(|(value, _)| drawable(*value, scale).is_ok()).collect();
+    let is_plain = usable.iter().all(|(value, _)| *value == 0.0 || (1e-4..1e5).contains(&value.abs()));
     let label = |value: f64| match format!("{value}") {
         _ if !is_plain => power(value, None),
         text if text.len() <= LONGEST_LABEL => minus(text),
         _ => minus(format!("{}", format!("{value:.3e}").parse().unwrap_or(value))),
     };
-    usable.into_iter().map(|value| Tick { value, label: Some(label(value)) }).collect()
+    let tick = |(value, own): &(f64, Option<String>)| Tick {
+        value: *value,
+        label: Some(own.clone().unwrap_or_else(|| label(*value))),
+    };
+    usable.into_iter().map(tick).collect()
 }
 
 /// Key points of plotters, at most so many, with as many decimals as they need.
@@ -473,7 +477,7 @@ mod tests {
         let placed = PlacedAxis::new(&axis, ends, (0.0, 500.0), false);
         let labels: Vec<_> = placed.ticks.into_iter().filter_map(|tick| tick.label).collect();
         assert_eq!(labels, ["0.2", "0.1", "0.05", "0.025"]);
-        let long = given(&[1.0 / 3.0, 0.015_625, 0.007_812_5], Scale::Log10);
+        let long = given(&[1.0 / 3.0, 0.015_625, 0.007_812_5].map(|value| (value, None)), Scale::Log10);
         let long: Vec<_> = long.into_iter().filter_map(|tick| tick.label).collect();
         assert_eq!(long, ["0.3333", "0.015625", "0.007812"]);
     }

@@ -119,7 +119,7 @@ pub struct ChartAxis {
     /// Whether values grow downwards or to the left, as a depth does.
     pub inverted: bool,
     /// Places of the ticks, such as mesh sizes; round numbers if `None`.
-    pub ticks: Option<Vec<f64>>,
+    pub ticks: Option<Vec<(f64, Option<String>)>>,
 }
 
 impl ChartAxis {
@@ -150,7 +150,14 @@ impl ChartAxis {
     /// Puts the ticks at these values.
     #[must_use]
     pub fn with_ticks(mut self, ticks: Vec<f64>) -> Self {
-        self.ticks = Some(ticks);
+        self.ticks = Some(ticks.into_iter().map(|value| (value, None)).collect());
+        self
+    }
+
+    /// Places the ticks, each with its own label.
+    #[must_use]
+    pub fn with_labelled_ticks(mut self, ticks: impl IntoIterator<Item = (f64, String)>) -> Self {
+        self.ticks = Some(ticks.into_iter().map(|(value, label)| (value, Some(label))).collect());
         self
     }
 }

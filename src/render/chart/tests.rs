@@ -67,7 +67,7 @@ fn hostile_descriptions_still_make_a_figure() {
     let mut chart = convergence();
     chart.title = "a < b & \"c\" \u{0} \u{e000}".into();
     chart.size = Size { width: f64::NAN, plot_height: -5.0, equal_units: true };
-    chart.x.ticks = Some(vec![f64::NAN, -1.0, 0.05]);
+    chart.x = chart.x.with_ticks(vec![f64::NAN, -1.0, 0.05]);
     chart.triangles.push(SlopeTriangle { slope: f64::NAN, beside: "MPM".into() });
     chart.triangles.push(SlopeTriangle { slope: 0.0, beside: "nobody".into() });
     chart.rules.push(Rule { at: -1.0, label: "x".into() });

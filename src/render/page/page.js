@@ -40,21 +40,32 @@ for (const svg of document.querySelectorAll("figure svg")) {
 }
 // A box that leaves only the rows with every word that is typed.
 const content = document.getElementById("content");
-if (content.dataset.filter) {
+const filter = (hint, parts) => {
   const box = document.createElement("input");
   box.type = "search";
-  box.placeholder = content.dataset.filter;
-  box.setAttribute("aria-label", content.dataset.filter);
+  box.placeholder = hint;
+  box.setAttribute("aria-label", hint);
   box.addEventListener("input", () => {
     const words = box.value.toLowerCase().split(/\s+/);
-    for (const section of content.querySelectorAll("section")) {
-      const rows = [...section.querySelectorAll("tbody tr")];
+    for (const part of parts()) {
+      const rows = [...part.querySelectorAll("tbody tr")];
       for (const row of rows) {
         const text = row.textContent.toLowerCase();
         row.hidden = !words.every((word) => text.includes(word));
       }
-      section.hidden = rows.length > 0 && rows.every((row) => row.hidden);
+      part.hidden = rows.length > 0 && rows.every((row) => row.hidden);
     }
   });
-  content.prepend(box);
+  return box;
+};
+if (content.dataset.filter) {
+  content.prepend(filter(content.dataset.filter, () => content.querySelectorAll("section")));
+} else {
+  for (const table of content.querySelectorAll("table")) {
+    if (table.tBodies[0]?.rows.length > 20) table.parentElement.before(filter("Filter rows", () => [table]));
+  }
+}
+// A table that is wider than the screen says so.
+for (const box of content.querySelectorAll(".table")) {
+  if (box.scrollWidth > box.clientWidth) box.classList.add("scrolls");
 }

@@ -272,7 +272,9 @@ fn sweep_figure(
 ) -> Figure {
     let x = match sweep.stiffness {
         SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
-        SweptStiffness::Skeleton => ChartAxis::log10("1 − 2ν (–)").inverted(),
+        SweptStiffness::Skeleton => ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν")
+            .inverted()
+            .with_labelled_ticks(sweep.values.iter().map(|ratio| (1.0 - 2.0 * ratio, ratio.to_string()))),
     };
     let (subject, word) = subject(showing);
     let title = format!("{subject}, T_v = {time_factor}");
