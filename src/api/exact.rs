@@ -1,8 +1,8 @@
 //! Exact solutions over times and depths.
 
-use crate::api::{scene_of, sentence};
-use crate::cli::commands::exact::parameters_of;
-use crate::cli::overrides::Assignments;
+use crate::api::scene_of;
+use crate::study::asked::Asked;
+use crate::study::overrides::Assignments;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.
@@ -53,10 +53,10 @@ pub fn exact(
                 .to_owned(),
         );
     }
-    let (parameters, kind) = parameters_of(kind, &Assignments { assignments: assignments.to_vec() })
-        .map_err(|error| sentence(&error))?;
+    let asked = Asked::of_solution(kind, &Assignments { assignments: assignments.to_vec() });
+    let Asked { parameters, references, .. } = asked.map_err(|error| error.to_string())?;
     let told = |error: oedometer_exact::exact_error::ExactError| error.to_string();
-    let reference = Reference::new(kind, &parameters, time_factors).map_err(told)?;
+    let reference = Reference::new(references[0], &parameters, time_factors).map_err(told)?;
     let mut values =
         ExactValues { height: parameters.height, load: parameters.load, ..ExactValues::default() };
     for time_factor in time_factors {

@@ -1,6 +1,6 @@
 //! The interface for other languages: names, lists of numbers and `key=value` texts in, lists and plain values out.
 //!
-//! It computes nothing and shares the functions of the command line, so that a number in Python is the number that
+//! It computes nothing and calls what the command line calls, so that a number in Python is the number that
 //! `oedometer` prints. Numbers are in SI; lists over places are `[time][place]`, one time after the other.
 
 pub mod convergence;
@@ -9,15 +9,9 @@ pub mod read;
 pub mod score;
 
 use crate::case::keys::Key;
-use crate::cli::exit;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::{ShelfKey, ShelfProblem};
 use oedometer_mpm::scene::SceneKind;
-
-/// An error as a sentence.
-fn sentence(error: &anyhow::Error) -> String {
-    exit::sentence(error)
-}
 
 /// A solution by its name, and the scene of its column.
 ///

@@ -1,16 +1,15 @@
 //! Scores a result given as lists against the references of a scene.
 
-use crate::api::sentence;
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::cli::commands::score::Asked;
-use crate::cli::commands::score::results::{Comparison, Results};
-use crate::cli::overrides::{Assignments, Outputs};
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::runs::Run;
 use crate::import::{SampledState, states_of};
 use crate::judge::score::Score;
+use crate::judge::score::results::{Comparison, Results};
+use crate::study::asked::Asked;
+use crate::study::overrides::{Assignments, Outputs};
 use oedometer_formats::ImportError;
 use std::path::Path;
 
@@ -54,7 +53,7 @@ pub fn score(
         time_factor: None,
         set: Assignments { assignments: assignments.to_vec() },
     };
-    let asked = Asked::of(scene, &outputs).map_err(|error| sentence(&error))?;
+    let asked = Asked::of_scene(scene, &outputs).map_err(|error| error.to_string())?;
     let case = asked.case();
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
@@ -75,7 +74,7 @@ pub fn score(
         tolerance: 1e-3,
         are_cells_found: false,
     };
-    let results = Results::of(vec![run], &comparison).map_err(|error| sentence(&error))?;
+    let results = Results::of(vec![run], &comparison).map_err(|error| error.to_string())?;
     results
         .scores()
         .first()

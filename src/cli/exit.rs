@@ -1,6 +1,8 @@
 //! Exit codes, and errors as messages.
 
+use crate::judge::score::results::ScoreError;
 use crate::study::diagnostic::StudyError;
+use crate::study::overrides::OverrideError;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_formats::ImportError;
 
@@ -51,20 +53,26 @@ impl Ended {
 impl Exit {
     /// The exit code of an error.
     pub fn of(error: &anyhow::Error) -> Self {
-        match error.downcast_ref::<Ended>() {
-            Some(ended) => ended.exit,
-            None if error.is::<StudyError>() || error.is::<ExactError>() || error.is::<ImportError>() => {
-                Self::Usage
-            }
-            None => Self::CaseFailed,
+        if let Some(ended) = error.downcast_ref::<Ended>() {
+            return ended.exit;
+        }
+        if matches!(error.downcast_ref(), Some(ScoreError::NoTime(_))) {
+            return Self::NothingSelected;
+        }
+        let is_of_input = error.is::<StudyError>() || error.is::<OverrideError>() || error.is::<ScoreError>();
+        if is_of_input || error.is::<ExactError>() || error.is::<ImportError>() {
+            Self::Usage
+        } else {
+            Self::CaseFailed
         }
     }
 }
 
 /// The message of an error.
 pub fn sentence(error: &anyhow::Error) -> String {
-    if let Some(study) = error.downcast_ref::<StudyError>() {
-        return study.to_string();
+    let of_lines = |error: &'_ OverrideError| matches!(error, OverrideError::Study(_));
+    if error.is::<StudyError>() || error.downcast_ref().is_some_and(of_lines) {
+        return error.to_string();
     }
     // A cause that the message already ends with is not repeated.
     let mut told = String::new();

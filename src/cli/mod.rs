@@ -8,7 +8,6 @@ pub mod exit;
 mod help;
 pub mod job_list;
 pub mod output;
-pub mod overrides;
 mod problems;
 pub mod progress;
 pub mod slurm;

@@ -1,11 +1,13 @@
 //! Studies: what was typed (`file`, `inputs`, `reading`), what will run (`check`, `sweep`), and what must be found
 //! (`expectation`).
 
+pub mod asked;
 pub mod check;
 pub mod diagnostic;
 pub mod expectation;
 pub mod file;
 pub mod inputs;
+pub mod overrides;
 pub mod perturbed;
 pub mod reading;
 pub mod shipped;

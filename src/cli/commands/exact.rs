@@ -1,10 +1,12 @@
 //! `oedometer exact`: an exact solution as numbers.
 
+use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::overrides::{Assignments, StudyLines, numbers};
 use crate::cli::problems::{self, Problem};
 use crate::cli::stream::{print_data, say};
+use crate::study::asked::Asked;
+use crate::study::overrides::{Assignments, StudyLines, numbers};
 use clap::ValueEnum;
 use oedometer_exact::ShelfProblem;
 use oedometer_exact::consolidation;
@@ -12,8 +14,6 @@ use oedometer_exact::field_values::Accuracy;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::column_parameters;
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
@@ -103,7 +103,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let names = names.collect::<Vec<_>>().join(", ");
         Ended::usage(format!("no exact solution is called `{}`; there are {names}", arguments.scene))
     })?;
-    let (parameters, kind) = parameters_of(kind, &arguments.set)?;
+    let asked = Asked::of_solution(kind, &arguments.set)?;
+    tell_warnings(&asked.study);
+    let (parameters, kind) = (asked.parameters, asked.references[0]);
     let time_factors = match &arguments.degree {
         Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
         None => numbers("--time-factor", &arguments.time_factor)?,
@@ -271,21 +273,6 @@ fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Forma
         }
         Format::Json => print_data(&json_of(&ExactJson { reference: name, rows, accuracy })?),
     }
-}
-
-/// The parameters of the default column with the assignments, checked like a study's, and the reference for the
-/// equations that they choose.
-pub fn parameters_of(
-    kind: ReferenceKind,
-    set: &Assignments,
-) -> anyhow::Result<(ColumnParameters, ReferenceKind)> {
-    let (set, shelf) = set.of_shelf(kind)?;
-    let mut lines = StudyLines::of("exact", SceneKind::of_solution(kind).name(), "the solution's name")?;
-    lines.assign(&set)?;
-    let study = lines.theory_study()?;
-    let case = &study.planned[0].case;
-    let parameters = ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) };
-    Ok((parameters, kind.of_soil(&case.material)))
 }
 
 /// Time factors at which degrees of consolidation are reached.

@@ -257,10 +257,15 @@ pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> 
         mapping_of(solver, study.scene.has_plane_fields())
             .map_err(|error| Ended::usage(error.to_string()))?;
     }
+    tell_warnings(&study);
+    Ok(study)
+}
+
+/// What is odd about a study, on standard error.
+pub fn tell_warnings(study: &Study) {
     for warning in &study.warnings {
         say!("{warning}");
     }
-    Ok(study)
 }
 
 /// The named studies, or every shipped one where none is named.

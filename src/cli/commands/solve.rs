@@ -3,9 +3,9 @@
 use crate::campaign::case_run::{Cores, run_case_within};
 use crate::campaign::run_report::LongestCase;
 use crate::case::Case;
+use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use crate::cli::stream::{print_data, say};
 use crate::cli::time_notes::note_on_solve;
 use crate::judge::soundness;
@@ -14,6 +14,7 @@ use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceU
 use crate::render::tables::measures::{self, phases_table};
 use crate::study::check::Purpose;
 use crate::study::check::Study;
+use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
 use oedometer_mpm::run::profile::{PhaseTime, profiled};
@@ -143,7 +144,9 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     if let Some(rule) = &arguments.time_step {
         sweep.push(format!("time_step = [{}]", step_rule(rule)?));
     }
-    lines.study(Purpose::Solving, sweep)
+    let study = lines.study(Purpose::Solving, sweep)?;
+    tell_warnings(&study);
+    Ok(study)
 }
 
 /// Keys of a sweep that `solve` takes as options.

@@ -3,14 +3,15 @@
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::tier::Tier;
 use crate::cli::commands::run::jobs_of;
+use crate::cli::commands::run::tell_warnings;
 use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::overrides::{Assignments, StudyLines, TIMING, toml_of};
 use crate::cli::stream::print_data;
 use crate::record::{Probe, Record, Status};
 use crate::render::tables::runs;
 use crate::study::check::Purpose;
+use crate::study::overrides::{Assignments, StudyLines, TIMING, toml_of};
 use oedometer_mpm::critical_step::observed::CriticalStep;
 
 /// Largest relative difference of observed and predicted step at which they agree.
@@ -55,6 +56,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         format!("points_per_cell = [{}]", arguments.points_per_cell),
     ];
     let study = lines.study(Purpose::Solving, sweep)?;
+    tell_warnings(&study);
     let options = RunOptions::whole(Tier::Full, jobs_of(None));
     let mut report = run_study(&study, &options, None, &|_| {});
     if let Some(error) = report.errors.pop() {

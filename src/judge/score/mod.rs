@@ -3,6 +3,7 @@
 pub mod completeness;
 pub mod coverage;
 pub mod diagnosis;
+pub mod results;
 pub mod score_series;
 
 use crate::case::{Norm, Quantity, Sample};

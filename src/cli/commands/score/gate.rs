@@ -2,10 +2,10 @@
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;
-use crate::cli::commands::score::results::{Results, Scored};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::judge::score::completeness::Lack;
+use crate::judge::score::results::{Results, Scored};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_soil::wording::typed;
 

@@ -1,24 +1,22 @@
 //! `oedometer score`: compares a result of another program with the references of a scene.
 
 mod gate;
-pub mod results;
 mod scored_files;
 
 use crate::case::Case;
-use crate::cli::commands::score::results::{Comparison, Results};
+use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
-use crate::cli::overrides::{Outputs, StudyLines};
 use crate::cli::stream::{print_data, say};
 use crate::import::mapping::preset::Preset;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
+use crate::judge::score::results::{Comparison, Results};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
-use crate::study::check::Study;
-use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfParameters};
+use crate::study::asked::Asked;
+use crate::study::overrides::Outputs;
 use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::column_parameters;
 use std::path::PathBuf;
 
 /// Columns behind those of the errors, for results on several meshes.
@@ -85,7 +83,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             "`--time-tolerance {tolerance}` is invalid: expected a number from 0 to below 1"
         )));
     }
-    let asked = Asked::of(&arguments.scene, &arguments.outputs)?;
+    let asked = Asked::of_scene(&arguments.scene, &arguments.outputs)?;
+    tell_warnings(&asked.study);
     let case = asked.case();
     let (mapping, runs) = scored_files::read(arguments, case)?;
     let comparison = Comparison {
@@ -121,54 +120,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     say!("{}", groups_of(case));
     gate::judge(&results, arguments.below, arguments.strict, comparison.references)
-}
-
-/// What a result is compared with: a scene, or a problem of the shelf, with its numbers.
-pub struct Asked {
-    /// The scene with its column as a study of one case; of a problem of the shelf the column that it is told in.
-    study: Study,
-    /// Parameters of the references.
-    pub parameters: ColumnParameters,
-    /// References, the scene's own first.
-    pub references: Vec<ReferenceKind>,
-    /// Requested time factors; all if empty.
-    pub requested: Vec<f64>,
-}
-
-impl Asked {
-    /// The scene or problem of a name.
-    ///
-    /// # Errors
-    /// What is wrong with the scene or an assignment.
-    pub fn of(scene: &str, outputs: &Outputs) -> anyhow::Result<Self> {
-        let on_shelf = scene.parse().ok().filter(|kind| matches!(kind, ReferenceKind::Shelf(_)));
-        let mut outputs = outputs.clone();
-        let mut shelf = ShelfParameters::default();
-        if let Some(kind) = on_shelf {
-            (outputs.set, shelf) = outputs.set.of_shelf(kind)?;
-            if let Some(other) = outputs.reference.take().filter(|other| other != scene) {
-                return Err(Ended::usage(format!("`{scene}` has no reference `{other}`: it is its own")));
-            }
-        }
-        let name = on_shelf.map_or(scene, |kind| SceneKind::of_solution(kind).name());
-        let mut lines = StudyLines::of("score", name, "`--scene`")?;
-        lines.give_outputs(&outputs)?;
-        let is_requested = lines.has("output.time_factors");
-        let study = lines.theory_study()?;
-        let case = &study.planned[0].case;
-        let own = study.references.iter().map(|kind| kind.of_soil(&case.material)).collect();
-        Ok(Self {
-            parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
-            references: on_shelf.map_or(own, |kind| vec![kind]),
-            requested: if is_requested { case.time_factors.to_vec() } else { Vec::new() },
-            study,
-        })
-    }
-
-    /// The case.
-    pub fn case(&self) -> &Case {
-        &self.study.planned[0].case
-    }
 }
 
 /// The size of what the reference neglects, in one line.

@@ -2,7 +2,6 @@
 
 use crate::case::Case;
 use crate::case::quantity::Quantity;
-use crate::cli::exit::{Ended, Exit};
 use crate::import::mapping::Mapping;
 use crate::import::runs::Run;
 use crate::import::{SampledState, not_ended};
@@ -11,9 +10,21 @@ use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
 use crate::judge::score::{Score, score};
 use crate::record::ErrorRow;
+use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_soil::wording::short;
+
+/// Why results have no score.
+#[derive(Debug, thiserror::Error)]
+pub enum ScoreError {
+    /// No state is at a requested time.
+    #[error("no time is one of the requested ones: {0}; --time-tolerance sets how near is near")]
+    NoTime(String),
+    /// A reference refuses its inputs.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+}
 
 /// What results are compared with, and how.
 pub struct Comparison<'a> {
@@ -55,7 +66,10 @@ pub struct Results<'a> {
 
 impl<'a> Results<'a> {
     /// Scores runs.
-    pub fn of(runs: Vec<Run>, comparison: &'a Comparison<'a>) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// When no run is at a requested time, or a reference refuses its inputs.
+    pub fn of(runs: Vec<Run>, comparison: &'a Comparison<'a>) -> Result<Self, ScoreError> {
         let Comparison { parameters, requested, tolerance, .. } = comparison;
         let mut all: Vec<Scored> =
             runs.into_iter().map(|run| Scored { run, score: Score::default() }).collect();
@@ -79,12 +93,7 @@ impl<'a> Results<'a> {
         if all.iter().all(|one| one.run.states.is_empty()) {
             let missing = all.iter().find_map(|one| one.score.warnings.first());
             let sentence = missing.map_or("", |finding| finding.sentence.as_str());
-            return Err(Ended::with(
-                Exit::NothingSelected,
-                format!(
-                    "no time is one of the requested ones: {sentence}; --time-tolerance sets how near is near"
-                ),
-            ));
+            return Err(ScoreError::NoTime(sentence.to_owned()));
         }
         if is_requested {
             times = times_of(&all);
@@ -178,7 +187,7 @@ impl Scored {
     }
 
     /// Compares it with the references, and checks whether it is complete.
-    fn assess(&mut self, held: &Comparison, parameters: &ColumnParameters) -> anyhow::Result<()> {
+    fn assess(&mut self, held: &Comparison, parameters: &ColumnParameters) -> Result<(), ExactError> {
         let missing = std::mem::take(&mut self.score.warnings);
         let states = &self.run.states;
         self.score = score(parameters, held.references, states, held.mapping.sample)?;

@@ -1,9 +1,9 @@
 //! Studies from the command line: `--set`, lists and step rules become the text of a study file, so that one checker
 //! judges both and its messages point at what was typed.
 
-use crate::cli::exit::Ended;
 use crate::study::check::Purpose;
 use crate::study::check::Study;
+use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use oedometer_exact::{ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
 
@@ -12,6 +12,23 @@ pub const TIMING: (&str, &str) = ("timing.repeats", "cases are timed by `oedomet
 /// Keys about running, for commands that run nothing.
 pub const OF_RUNS: [(&str, &str); 3] =
     [("task", "nothing is run"), ("case_seconds", "nothing is run"), ("timing.repeats", "nothing is run")];
+
+/// Why what was typed makes no study.
+#[derive(Debug, thiserror::Error)]
+pub enum OverrideError {
+    /// An assignment, list or rule is wrong by itself.
+    #[error("{0}")]
+    Typed(String),
+    /// The study that they make is wrong.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+}
+
+impl OverrideError {
+    fn typed(message: impl Into<String>) -> Self {
+        Self::Typed(message.into())
+    }
+}
 
 /// Keys of a study file that are set at the command line.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -23,27 +40,31 @@ pub struct Assignments {
 
 impl Assignments {
     /// What is set of a problem of the shelf, and the assignments that are a column's; of other solutions all are.
-    pub fn of_shelf(&self, kind: ReferenceKind) -> anyhow::Result<(Self, ShelfParameters)> {
+    pub fn of_shelf(&self, kind: ReferenceKind) -> Result<(Self, ShelfParameters), OverrideError> {
         let mut shelf = ShelfParameters::default();
         let ReferenceKind::Shelf(problem) = kind else { return Ok((self.clone(), shelf)) };
         let mut others = Self::default();
         for typed in &self.assignments {
             let (key, value) = assignment(typed)?;
             if let Some((_, why)) = without_effect(problem).iter().find(|(refused, _)| *refused == key) {
-                return Err(Ended::usage(format!("`--set {key}` has no effect in `{problem}`: {why}")));
+                return Err(OverrideError::typed(format!(
+                    "`--set {key}` has no effect in `{problem}`: {why}"
+                )));
             }
             match ShelfKey::ALL.iter().find(|own| own.key == key) {
                 None => others.assignments.push(typed.clone()),
                 Some(own) if !own.problems.contains(&problem) => {
                     let problems: Vec<_> = own.problems.iter().map(|one| format!("`{one}`")).collect();
                     let problems = problems.join(", ");
-                    return Err(Ended::usage(format!(
+                    return Err(OverrideError::typed(format!(
                         "`--set {key}` has no effect in `{problem}`: it is for {problems}"
                     )));
                 }
                 Some(own) => match value.parse() {
                     Ok(number) => (own.set)(&mut shelf, number),
-                    Err(_) => return Err(Ended::usage(format!("`{key}` must be a number, got {value}"))),
+                    Err(_) => {
+                        return Err(OverrideError::typed(format!("`{key}` must be a number, got {value}")));
+                    }
                 },
             }
         }
@@ -78,19 +99,19 @@ pub struct Outputs {
 }
 
 /// Turns `KEY=VALUE` into a line of TOML; a value that is not TOML becomes a string.
-fn assignment(typed: &str) -> anyhow::Result<(String, String)> {
+fn assignment(typed: &str) -> Result<(String, String), OverrideError> {
     let Some((key, value)) = typed.split_once('=') else {
-        return Err(Ended::usage(format!(
+        return Err(OverrideError::typed(format!(
             "`--set {typed}` has no value: write KEY=VALUE, like material.porosity=0.45"
         )));
     };
     let (key, value) = (key.trim(), value.trim());
     if value.contains(['\n', '\r']) {
-        return Err(Ended::usage(format!("the value of `{key}` has more than one line")));
+        return Err(OverrideError::typed(format!("the value of `{key}` has more than one line")));
     }
     let is_bare = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
     if !key.split('.').all(|part| !part.is_empty() && part.chars().all(is_bare)) {
-        return Err(Ended::usage(format!(
+        return Err(OverrideError::typed(format!(
             "`{key}` is not a key: write the dotted key of a study file, like column.load"
         )));
     }
@@ -108,7 +129,7 @@ pub struct StudyLines {
 
 impl StudyLines {
     /// The lines of a command about a scene, whose name `by` gave.
-    pub fn of(command: &str, scene: &str, by: &str) -> anyhow::Result<Self> {
+    pub fn of(command: &str, scene: &str, by: &str) -> Result<Self, OverrideError> {
         let mut lines = Self::default();
         lines.give("title", &toml_of(command), &format!("`{command}`"))?;
         lines.give("scene", &toml_of(scene), by)?;
@@ -116,7 +137,7 @@ impl StudyLines {
     }
 
     /// Adds the options about outputs.
-    pub fn give_outputs(&mut self, outputs: &Outputs) -> anyhow::Result<()> {
+    pub fn give_outputs(&mut self, outputs: &Outputs) -> Result<(), OverrideError> {
         if let Some(typed) = &outputs.time_factor {
             let list = toml_of(numbers("--time-factor", typed)?);
             self.give("output.time_factors", &list, "`--time-factor`")?;
@@ -128,10 +149,10 @@ impl StudyLines {
     }
 
     /// Adds a key whose value comes from an option; `by` names the option in messages.
-    pub fn give(&mut self, key: &str, value: &str, by: &str) -> anyhow::Result<()> {
+    pub fn give(&mut self, key: &str, value: &str, by: &str) -> Result<(), OverrideError> {
         if let Some((_, other)) = self.given.iter().find(|(given, _)| given == key) {
             let by = if other == by { "twice".to_owned() } else { format!("by {other} and by {by}") };
-            return Err(Ended::usage(format!("`{key}` is given {by}: leave one out")));
+            return Err(OverrideError::typed(format!("`{key}` is given {by}: leave one out")));
         }
         self.given.push((key.to_owned(), by.to_owned()));
         self.lines.push(format!("{key} = {value}"));
@@ -139,7 +160,7 @@ impl StudyLines {
     }
 
     /// Adds the keys of `--set KEY=VALUE`.
-    pub fn assign(&mut self, set: &Assignments) -> anyhow::Result<()> {
+    pub fn assign(&mut self, set: &Assignments) -> Result<(), OverrideError> {
         for typed in &set.assignments {
             let (key, value) = assignment(typed)?;
             self.give(&key, &value, "`--set`")?;
@@ -148,8 +169,9 @@ impl StudyLines {
     }
 
     /// The keys as one table, for use outside a study.
-    pub fn table(&self) -> anyhow::Result<toml::Table> {
-        toml::from_str(&self.lines.join("\n")).map_err(|error| Ended::usage(error.message().to_owned()))
+    pub fn table(&self) -> Result<toml::Table, OverrideError> {
+        toml::from_str(&self.lines.join("\n"))
+            .map_err(|error| OverrideError::typed(error.message().to_owned()))
     }
 
     /// Whether a key has been given.
@@ -158,9 +180,11 @@ impl StudyLines {
     }
 
     /// Refuses keys that have no effect in this command, each with the reason.
-    pub fn refuse_without_effect(&self, keys: &[(&str, &str)]) -> anyhow::Result<()> {
+    pub fn refuse_without_effect(&self, keys: &[(&str, &str)]) -> Result<(), OverrideError> {
         match keys.iter().find(|(key, _)| self.has(key)) {
-            Some((key, reason)) => Err(Ended::usage(format!("`--set {key}` has no effect here: {reason}"))),
+            Some((key, reason)) => {
+                Err(OverrideError::typed(format!("`--set {key}` has no effect here: {reason}")))
+            }
             None => Ok(()),
         }
     }
@@ -170,20 +194,20 @@ impl StudyLines {
         mut self,
         purpose: Purpose,
         sweep: impl IntoIterator<Item = String>,
-    ) -> anyhow::Result<Study> {
+    ) -> Result<Study, OverrideError> {
         self.lines.push("[[sweep]]".to_owned());
         self.lines.extend(sweep);
         let text = self.lines.join("\n") + "\n";
-        crate::cli::commands::run::checked(&StudySource { name: "command line".to_owned(), text }, purpose)
+        Ok(Study::check_for(&StudySource { name: "command line".to_owned(), text }, purpose)?)
     }
 
     /// Checks the study of one case that is not solved: no grid of this program has to fit its body.
-    pub fn theory_study(self) -> anyhow::Result<Study> {
+    pub fn theory_study(self) -> Result<Study, OverrideError> {
         self.refuse_without_effect(&OF_RUNS)?;
         let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
         let study = self.study(Purpose::Theory, sweep)?;
         if study.planned.is_empty() {
-            return Err(Ended::usage("the assignments leave no column"));
+            return Err(OverrideError::typed("the assignments leave no column"));
         }
         Ok(study)
     }
@@ -195,23 +219,25 @@ pub fn toml_of(value: impl Into<toml::Value>) -> String {
 }
 
 /// Turns `stable=0.5` into a step rule of a study file.
-pub fn step_rule(typed: &str) -> anyhow::Result<String> {
+pub fn step_rule(typed: &str) -> Result<String, OverrideError> {
     let rule = typed
         .split_once('=')
         .and_then(|(rule, value)| Some((rule.trim(), value.trim().parse::<f64>().ok()?)));
     match rule {
         Some((rule, value)) => Ok(format!("{{ {rule} = {} }}", toml_of(value))),
-        None => Err(Ended::usage(format!(
+        None => Err(OverrideError::typed(format!(
             "`{typed}` is not a step rule: write stable=0.5, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4"
         ))),
     }
 }
 
 /// Numbers of a comma-separated list.
-pub fn numbers(name: &str, typed: &str) -> anyhow::Result<Vec<f64>> {
+pub fn numbers(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
     let number = |entry: &str| {
         let entry = entry.trim();
-        entry.parse().map_err(|_| Ended::usage(format!("`{entry}` in `{name} {typed}` is not a number")))
+        entry
+            .parse()
+            .map_err(|_| OverrideError::typed(format!("`{entry}` in `{name} {typed}` is not a number")))
     };
     typed.split(',').map(number).collect()
 }
