@@ -1,5 +1,6 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
+pub mod contender;
 pub mod keys;
 pub mod label;
 pub mod limits;

@@ -9,6 +9,7 @@ pub mod explanation;
 pub mod judgement;
 pub mod path_context;
 pub mod paths;
+pub mod race;
 pub mod scatter;
 pub mod score;
 pub mod soundness;

@@ -106,23 +106,27 @@ impl Path<'_> {
     }
 
     /// Spurious oscillation of the profile at the level that a demand names, else at the finest.
-    ///
-    /// In a column, the variation beyond the net changes that the exact profile has too, over those; in
-    /// a plane, the variation along all rows and columns of points over that of the exact field, less one.
     fn oscillation(&self, demand: &SeriesDemand, measure: &Measure) -> Option<f64> {
-        let record = self.bounded_level(demand);
-        if record.case.scene.has_plane_fields() {
-            let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
-            let field = PlaneField::of(record, measure.time_factor).ok()?;
-            return field.filter(|_| is_measured).map(|field| field.oscillation_index());
-        }
-        let case = &record.case;
-        let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
-        let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
-        let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
-        let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
-        reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
+        oscillation_of(self.bounded_level(demand), measure)
     }
+}
+
+/// Spurious oscillation of the profile of a run.
+///
+/// In a column, the variation beyond the net changes that the exact profile has too, over those; in
+/// a plane, the variation along all rows and columns of points over that of the exact field, less one.
+pub(crate) fn oscillation_of(record: &Record, measure: &Measure) -> Option<f64> {
+    if record.case.scene.has_plane_fields() {
+        let is_measured = (measure.quantity, measure.sample) == (Quantity::Pressure, Sample::Points);
+        let field = PlaneField::of(record, measure.time_factor).ok()?;
+        return field.filter(|_| is_measured).map(|field| field.oscillation_index());
+    }
+    let case = &record.case;
+    let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
+    let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
+    let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
+    let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
+    reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
 }
 
 /// Order in the cell size that a method's operators promise at small strain, where they promise

@@ -8,7 +8,6 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::golden::GoldenError;
 use crate::judge::comparison::cheapest_method::mapped_soils;
-use crate::judge::comparison::situation::{End, Ended, Situation, ends_of};
 use crate::judge::comparison::stability_map::maps_of;
 use crate::judge::comparison::work_precision::{WorkPrecision, worst_error};
 use crate::judge::soundness;
@@ -16,7 +15,7 @@ use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::record_checks::worst_of;
 use crate::record::{Balance, LayerBalance, Record, Status, WallSample};
-use crate::render::answers::{matrix, paper};
+use crate::render::answers::paper;
 use crate::render::tables::measures::checks_table;
 use crate::study::check::Study;
 use crate::study::expectation::Selection;
@@ -188,70 +187,6 @@ fn the_cheapest_is_chosen_by_the_worst_of_all_outputs() {
             assert_eq!((cheapest.record.case.cells, cheapest.error), (8, 1e-3), "output {place}");
             assert!(precision.runs.iter().all(|run| run.on_front == (run.wall.median < 9.0)), "turn {turn}");
             records.reverse();
-        }
-    }
-}
-
-#[test]
-fn the_worst_run_of_a_situation_counts_wherever_it_stands() {
-    let text = text("cells = [4]\nporosity = [0.3, 0.35, 0.4]", "");
-    let study = study_of(&text);
-    let all = records_of(&text);
-    let end = |records: &[Record]| ends_of(&study, records).expect("sound")[0].end;
-    let failed = |record: &mut Record, kind: FailureKind| {
-        let reason = "a test".to_owned();
-        record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
-    };
-    for place in 0..3 {
-        let mut records = all.clone();
-        for (number, record) in records.iter_mut().enumerate() {
-            with_pressures(record, [0.9, 0.9, if number == place { 0.4 } else { 1e-3 }]);
-        }
-        assert_eq!(end(&records), End::Error(0.4), "{place}");
-        failed(&mut records[place], FailureKind::LeftGrid);
-        assert_eq!(end(&records), End::Failed { name: "left-grid", failed: 1, of: 3 });
-        // The failure that most runs have gives its name.
-        for (number, record) in records.iter_mut().enumerate() {
-            failed(record, if number == place { FailureKind::LeftGrid } else { FailureKind::PoresClosed });
-        }
-        assert_eq!(end(&records), End::Failed { name: "pores-closed", failed: 3, of: 3 });
-    }
-}
-
-#[test]
-fn the_matrix_shows_the_worst_study_in_whatever_order_they_come() {
-    let studies = ["one", "two", "three"]
-        .map(|name| Study { name: name.to_owned(), ..study_of(&text("cells = [4]", "")) });
-    let ended = |method: &str, situation, place: usize, end| Ended {
-        situation,
-        method: method.to_owned(),
-        study: &studies[place],
-        end,
-    };
-    let links = |study: &str| format!("{study}.html");
-    let cells = |ends: &[Ended<'_>]| format!("{:?}", matrix::answer(ends, &links));
-    for worst in [
-        End::Error(0.7),
-        End::Locked,
-        End::Oscillates(40.0),
-        End::Failed { name: "unstable", failed: 1, of: 2 },
-    ] {
-        let of = |place: usize| if place == 1 { worst } else { End::Error(0.002) };
-        let mut ends: Vec<Ended<'_>> = Vec::new();
-        for place in 0..3 {
-            ends.push(ended("GC-SRI-patch", Situation::Usual, place, of(place)));
-            ends.push(ended("MPM", Situation::Usual, place, End::Error(0.003)));
-            ends.push(ended("GC-SRI-patch", Situation::Waves, place, End::Error(0.001)));
-        }
-        let wanted = cells(&ends);
-        // The cell of the worst leads to its study.
-        assert!(wanted.contains("two.html"), "{wanted}");
-        for turn in 1..ends.len() {
-            ends.rotate_left(1);
-            // A method is where it was: of equals the first that a study names.
-            assert_eq!(cells(&ends).contains("two.html"), wanted.contains("two.html"), "{turn}");
-            let words = crate::render::report::situations::words_of(&worst).1;
-            assert!(cells(&ends).contains(&words), "{turn}: {words} in {}", cells(&ends));
         }
     }
 }

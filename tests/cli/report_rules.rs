@@ -3,8 +3,8 @@
 
 use crate::program::{call, folder_with};
 use oedometer::{
-    Answers, Block, Ended, Making, Page, Record, RunOptions, Study, StudyResults, StudySource, Table, Tier,
-    answer_page, ends_of, render_html, render_markdown, run_study, situations_page,
+    Answers, Block, Making, Page, RaceRow, Record, RunOptions, Study, StudyResults, StudySource, Table, Tier,
+    answer_page, render_html, render_markdown, run_study, study_page,
 };
 use std::fs;
 use std::sync::LazyLock;
@@ -27,6 +27,19 @@ integrator = ["implicit"]
 cells = [4]
 time_step = [{ growth = 0.2 }]
 jitter = [0.05]
+"#;
+
+/// Every contender on three small meshes.
+const RACED: &str = r#"
+title = "Race: a plate"
+scene = "mandel"
+[output]
+time_factors = [0.1]
+[[sweep]]
+method = ["race"]
+integrator = ["implicit"]
+cells = [10, 20, 30]
+time_step = [{ growth = 0.2 }]
 "#;
 
 /// Pairings of law and continuity at large strain.
@@ -66,16 +79,17 @@ fn study_of(name: &str, text: &str) -> (Study, Vec<Record>) {
 
 /// Run once for all tests.
 static MANY: LazyLock<(Study, Vec<Record>)> = LazyLock::new(|| study_of("many", MANY_METHODS));
+static RACE: LazyLock<(Study, Vec<Record>)> = LazyLock::new(|| study_of("race-plate", RACED));
 static PAIRED: LazyLock<(Study, Vec<Record>)> = LazyLock::new(|| study_of("pairings", PAIRINGS));
 
-fn page_of(all: &[&(Study, Vec<Record>)]) -> (Page, Page) {
+fn page_of(all: &[&(Study, Vec<Record>)]) -> Page {
     let results: Vec<StudyResults<'_>> =
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
-    let ends: Vec<Ended<'_>> =
-        all.iter().flat_map(|(study, records)| ends_of(study, records).expect("sound")).collect();
+    let race: Vec<RaceRow<'_>> =
+        all.iter().filter_map(|(study, records)| RaceRow::of(study, records)).collect();
     let making = Making::default();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, ends: &ends };
-    (answer_page(&answers).expect("a page"), situations_page(&ends))
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &race };
+    answer_page(&answers).expect("a page")
 }
 
 fn tables(page: &Page) -> Vec<&Table> {
@@ -85,7 +99,7 @@ fn tables(page: &Page) -> Vec<&Table> {
 
 #[test]
 fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_name() {
-    let (page, detail) = page_of(&[&MANY, &PAIRED]);
+    let page = page_of(&[&MANY, &PAIRED, &RACE]);
     let markdown = render_markdown(&page).expect("a page");
     for question in [
         "How was it made?",
@@ -93,7 +107,6 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_na
         "Does the method converge, and to what?",
         "Does it reproduce the paper?",
         "What does accuracy cost?",
-        "Where does it lock, where does it break?",
         "Are the published equations right?",
         "One set of material points, or two?",
         "What changed since the golden values?",
@@ -113,21 +126,31 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_left_open_by_na
         converges.rows.len() == 10 && converges.notes.iter().any(|note| note.starts_with("3 more: ")),
         "{converges:?}"
     );
-    // The matrix has a row a situation, and leads to the page that has a row a study.
-    let matrix = page.sections.iter().find(|section| section.id == "breaks").expect("the matrix");
-    let Some(Block::Table(matrix)) = matrix.blocks.get(1) else { panic!("{matrix:?}") };
-    assert_eq!(matrix.rows.len(), 3, "lattice, off the lattice, large strain");
-    assert!(markdown.contains("(situations.md)"), "{markdown}");
-    assert_eq!(detail.sections.len(), 3);
-    assert!(
-        render_html(&page).expect("a page").contains("href=\"studies/many.html\">"),
-        "every cell leads to its study"
-    );
+}
+
+#[test]
+fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_cannot_run() {
+    let page = page_of(&[&RACE]);
+    let choice = page.sections.iter().find(|section| section.id == "choice").expect("answered");
+    let [Block::Paragraph(_), Block::Switch(views), Block::List(_)] = choice.blocks.as_slice() else {
+        panic!("{choice:?}")
+    };
+    let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
+    assert_eq!(words, ["error", "order", "cost"]);
+    let html = render_html(&page).expect("a page");
+    assert!(!html.contains("not tried"), "{html}");
+    // Splines hold no plate; each of the three views has their three cells, with the reason.
+    assert_eq!(html.matches(">n/a</a>").count(), 3 * 3);
+    assert!(html.contains("B2: n/a, a rigid plate holds the nodes of a face"), "{html}");
+    assert!(html.contains("href=\"studies/race-plate.html\" title="), "every cell leads to its situation");
+    let results = StudyResults::new(&RACE.0, &RACE.1, Tier::Full);
+    let own = render_markdown(&study_page(&results).expect("a page")).expect("a page");
+    assert!(own.contains("figures/race-plate-race-0.svg") && own.contains("`GC-SRI-patch`"), "{own}");
 }
 
 #[test]
 fn the_audit_shows_several_times_and_meshes_and_names_what_the_paper_prints() {
-    let (page, _) = page_of(&[&PAIRED]);
+    let page = page_of(&[&PAIRED]);
     let audit = page.sections.iter().find(|section| section.id == "audit").expect("answered");
     let [Block::Paragraph(sentence), Block::Figures(figures), Block::Paragraph(mapping_back)] =
         audit.blocks.as_slice()
@@ -152,7 +175,7 @@ fn the_audit_shows_several_times_and_meshes_and_names_what_the_paper_prints() {
 
 #[test]
 fn the_first_page_is_short_and_free_of_riddles() {
-    let (page, _) = page_of(&[&MANY, &PAIRED]);
+    let page = page_of(&[&MANY, &PAIRED]);
     let html = render_html(&page).expect("a page");
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
     let markdown = render_markdown(&page).expect("a page");
@@ -217,8 +240,7 @@ fn a_shipped_study_is_reported_by_name_with_a_command_that_runs_it_there() {
     // Rendered again: nothing is run, and the files are whole.
     let again = call(at, &["report", "any-soil", "--out", "again", "--from-records"]);
     assert_eq!(again.code, 0, "{}", again.err);
-    for file in ["index.html", "situations.html", "situations.md", "studies/index.html", "studies/README.md"]
-    {
+    for file in ["index.html", "studies/index.html", "studies/README.md"] {
         let text = fs::read_to_string(at.join("again").join(file)).expect(file);
         assert!(!text.is_empty() && !text.contains("study:"), "{file}");
     }

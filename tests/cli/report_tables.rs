@@ -6,8 +6,8 @@
 use crate::program::assert_snapshot;
 use oedometer::{
     Answers, Block, GoldenFile, Making, Page, Provenance, Record, RunOptions, Study, StudyCheck,
-    StudyResults, StudySource, Table, Tier, WallSample, answer_page, ends_of, figures, junit, measures,
-    render_html, render_markdown, run_study, study_page, values_of, verdicts,
+    StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures, render_html,
+    render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
@@ -116,20 +116,18 @@ fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();
-    let ends = ends_of(&study, &records).expect("sound");
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, ends: &ends };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &[] };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
-    assert_eq!(open_questions(&page), 4, "{markdown}");
+    assert_eq!(open_questions(&page), 5, "{markdown}");
     assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");
     assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">small</a>"));
     assert_snapshot("answers_markdown", &markdown);
     // Without records of several methods nothing is recommended.
     let alone: Vec<Record> = records.iter().take(1).cloned().collect();
     let results = [StudyResults::new(&study, &alone, Tier::Full)];
-    let page =
-        answer_page(&Answers { results: &results, changes: None, ends: &[], ..answers }).expect("a page");
-    assert_eq!(open_questions(&page), 8, "nothing is answered without runs to answer from");
+    let page = answer_page(&Answers { results: &results, changes: None, ..answers }).expect("a page");
+    assert_eq!(open_questions(&page), 7, "nothing is answered without runs to answer from");
 }
 
 /// Questions that a page leaves open.

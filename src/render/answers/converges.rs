@@ -1,7 +1,8 @@
 //! Does the method converge, and to what? One row per method, small strain and large strain side by side.
 
+use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
-use crate::render::answers::regime::{MethodPath, PAPERS, Regime};
+use crate::render::answers::regime::{MethodPath, Regime};
 use crate::render::answers::{Answer, Links, Question, links_to, short};
 use crate::render::number;
 use crate::render::page::{Block, Figure};

@@ -1,9 +1,9 @@
 //! What does accuracy cost? Error over wall time with the front named, other programs' measured points, and a comparison
 //! on the same number of cells.
 
+use crate::case::contender::PAPERS;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
-use crate::render::answers::regime::PAPERS;
 use crate::render::answers::{Answer, Links, Question, link, short};
 use crate::render::number;
 use crate::render::page::{Block, Figure};

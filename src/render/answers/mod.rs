@@ -5,16 +5,15 @@
 
 mod audit;
 mod changes;
-mod choice;
 mod converges;
 mod cost;
 mod double_point;
-pub(crate) mod matrix;
 pub(crate) mod paper;
+mod race;
 mod regime;
 
 use crate::golden::compare::Difference;
-use crate::judge::comparison::situation::Ended;
+use crate::judge::race::RaceRow;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::StudyResults;
@@ -32,8 +31,8 @@ pub struct Answers<'a> {
     pub changes: Option<&'a [(String, Difference)]>,
     /// When, where and by which command.
     pub making: &'a Making,
-    /// The result of every method in every situation.
-    pub ends: &'a [Ended<'a>],
+    /// Every contender in every situation of the race.
+    pub race: &'a [RaceRow<'a>],
 }
 
 /// When, where and by which command a report was made.
@@ -156,11 +155,10 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let links = |study: &str| format!("studies/{}.html", slug(study));
     let (small, large) = (regime::small_strain(results), regime::large_strain(results));
     let all = [
-        choice::answer(results, small.as_ref(), large.as_ref(), &links)?,
+        race::answer(answers.race, &links),
         converges::answer(results, small.as_ref(), large.as_ref(), &links),
         paper::answer(results, &links)?,
         cost::answer(results, &links),
-        matrix::answer(answers.ends, &links),
         audit::answer(results, &links),
         double_point::answer(results, &links),
         changes::answer(answers.changes),

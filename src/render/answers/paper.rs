@@ -1,8 +1,8 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
+use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};
-use crate::render::answers::regime::PAPERS;
 use crate::render::answers::{Answer, Links, Question, links_to};
 use crate::render::chart::{Size, Style};
 use crate::render::number;

@@ -14,9 +14,6 @@ use oedometer_convergence::WINDOW;
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 
-/// The paper's method.
-pub const PAPERS: &str = "GC-SRI-patch";
-
 /// The path that represents a method.
 pub struct MethodPath<'a> {
     /// The method.

@@ -70,6 +70,8 @@ pub enum Block {
     Figures(Vec<Figure>),
     /// A highlighted sentence, lightly marked.
     Callout(Mood, String),
+    /// Blocks of which one is shown at a time, the first one first, each with the word that shows it.
+    Switch(Vec<(String, Vec<Block>)>),
     /// Blocks that the reader opens.
     Details {
         /// The visible line.
@@ -137,8 +139,10 @@ fn all_blocks(page: &Page) -> Vec<&Block> {
     fn collect<'a>(blocks: &'a [Block], out: &mut Vec<&'a Block>) {
         for block in blocks {
             out.push(block);
-            if let Block::Details { blocks, .. } = block {
-                collect(blocks, out);
+            match block {
+                Block::Details { blocks, .. } => collect(blocks, out),
+                Block::Switch(views) => views.iter().for_each(|(_, blocks)| collect(blocks, out)),
+                _ => {}
             }
         }
     }

@@ -17,6 +17,7 @@ const SCRIPT: &str = include_str!("page.js");
 struct Written<'a> {
     figures: usize,
     tables: usize,
+    switches: usize,
     files: Option<&'a str>,
 }
 
@@ -136,6 +137,28 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
             out.push_str("</div>\n");
         }
         Block::Callout(mood, text) => out.push_str(&html_callout(*mood, text)),
+        Block::Switch(views) => {
+            written.switches += 1;
+            out.push_str("<div class=\"switch\">\n");
+            for (place, (word, _)) in views.iter().enumerate() {
+                let (id, on) =
+                    (format!("view-{}-{place}", written.switches), if place == 0 { " checked" } else { "" });
+                let name = written.switches;
+                let _ = writeln!(
+                    out,
+                    "<input type=\"radio\" name=\"view-{name}\" id=\"{id}\"{on}><label for=\"{id}\">{}</label>",
+                    escape::html(word)
+                );
+            }
+            for (_, blocks) in views {
+                out.push_str("<div>\n");
+                for block in blocks {
+                    html_block(block, out, written)?;
+                }
+                out.push_str("</div>\n");
+            }
+            out.push_str("</div>\n");
+        }
         Block::Details { summary, blocks } => {
             let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
             for block in blocks {
@@ -248,6 +271,12 @@ fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, Re
         Block::Figure(figure) => markdown_figure(figure),
         Block::Figures(figures) => figures.iter().map(markdown_figure).collect::<Vec<_>>().join("\n\n"),
         Block::Callout(mood, text) => markdown_callout(*mood, text),
+        Block::Switch(views) => {
+            let details = |(word, blocks): &(String, Vec<Block>)| {
+                markdown_block(&Block::Details { summary: word.clone(), blocks: blocks.clone() }, written)
+            };
+            views.iter().map(details).collect::<Result<Vec<_>, _>>()?.join("\n\n")
+        }
         Block::Details { summary, blocks } => {
             let inside: Result<Vec<_>, _> =
                 blocks.iter().map(|block| markdown_block(block, written)).collect();

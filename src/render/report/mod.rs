@@ -7,8 +7,8 @@ pub(crate) mod labels;
 pub(crate) mod layer;
 mod maps;
 pub mod pages;
+mod race;
 pub(crate) mod refinement;
-pub mod situations;
 pub mod study_page;
 pub(crate) mod theory_lines;
 

@@ -3,7 +3,9 @@
 use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::{StudyResults, checks, cost, findings, layer, maps, refinement, theory_lines};
+use crate::render::report::{
+    StudyResults, checks, cost, findings, layer, maps, race, refinement, theory_lines,
+};
 use crate::render::table::Mood;
 use crate::render::tables::{runs, uncertainties};
 use crate::study::expectation::Axis;
@@ -25,7 +27,8 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     blocks.extend(maps::cheapest_methods(results));
     blocks.extend(layer::blocks(results)?);
     blocks.extend(theory_lines::blocks(results)?);
-    for axis in Axis::REFINEMENTS {
+    blocks.extend(race::blocks(results));
+    for axis in Axis::REFINEMENTS.into_iter().filter(|_| !study.is_race) {
         blocks.extend(refinement::blocks(results, axis));
     }
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));

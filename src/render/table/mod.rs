@@ -117,8 +117,61 @@ pub enum Cell {
         /// The target of the link: a path or an address.
         target: String,
     },
+    /// One of many small cells on a background that says how good it is, with a link to what it comes from.
+    Shaded {
+        /// The background.
+        shade: Shade,
+        /// Its text, a few letters.
+        words: String,
+        /// The number that it is sorted by.
+        value: Option<f64>,
+        /// What is shown of it on request.
+        title: String,
+        /// The target of the link: a path or an address.
+        target: String,
+    },
     /// A missing value and the reason for it.
     Missing(String),
+}
+
+/// The background of a cell: how good it is beside the others of its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shade {
+    /// The best, or as good as the best.
+    Best,
+    /// Nearly as good.
+    Good,
+    /// Less good.
+    Middling,
+    /// Far from the best.
+    Poor,
+    /// Without a usable result.
+    Failed,
+    /// Not applicable, or not measured.
+    Empty,
+}
+
+impl Shade {
+    /// The shade of a ratio to the best of a row.
+    pub fn of_ratio(ratio: f64) -> Self {
+        match ratio {
+            ratio if ratio <= 1.0 => Self::Best,
+            ratio if ratio <= 2.0 => Self::Good,
+            ratio if ratio <= 10.0 => Self::Middling,
+            _ => Self::Poor,
+        }
+    }
+
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Best => "s1",
+            Self::Good => "s2",
+            Self::Middling => "s3",
+            Self::Poor => "s4",
+            Self::Failed => "s5",
+            Self::Empty => "s6",
+        }
+    }
 }
 
 /// How a judgement is to be read.
@@ -189,6 +242,7 @@ impl Cell {
             | Self::Seconds(v)
             | Self::Number(v) => Some(*v),
             Self::Count(n) => Some(*n as f64),
+            Self::Shaded { value, .. } => *value,
             _ => None,
         }
     }
@@ -196,7 +250,10 @@ impl Cell {
     /// The cell as text; the reason for a missing value is left to the footnotes.
     pub(crate) fn show(&self) -> String {
         match self {
-            Self::Text(text) | Self::Code(text) | Self::Link { words: text, .. } => text.clone(),
+            Self::Text(text)
+            | Self::Code(text)
+            | Self::Link { words: text, .. }
+            | Self::Shaded { words: text, .. } => text.clone(),
             Self::Error(v) => number::error(*v),
             Self::Order(v) => number::order(*v),
             Self::OrderWithin(v, half) => {
@@ -236,6 +293,11 @@ impl Table {
     pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
         self.notes.extend(notes);
         self
+    }
+
+    /// Whether it is a matrix of many small cells.
+    pub(crate) fn is_dense(&self) -> bool {
+        self.rows.iter().flatten().any(|cell| matches!(cell, Cell::Shaded { .. }))
     }
 
     /// Refuses a row with too few or too many cells.

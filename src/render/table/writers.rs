@@ -85,7 +85,8 @@ impl Table {
         self.check()?;
         let footnotes = self.footnotes();
         let class = |align| if align == Align::Left { "l" } else { "r" };
-        let mut out = String::from("<div class=\"table\">\n<table>\n");
+        let dense = if self.is_dense() { " dense" } else { "" };
+        let mut out = format!("<div class=\"table{dense}\">\n<table>\n");
         if !self.title.is_empty() {
             let _ = writeln!(out, "<caption>{}</caption>", html(&self.title));
         }
@@ -101,7 +102,11 @@ impl Table {
             for (cell, column) in row.iter().zip(&self.columns) {
                 let value = cell.value().map_or(String::new(), |value| format!(" data-v=\"{value:.5e}\""));
                 let is_long = matches!(cell, Cell::Text(text) if text.chars().count() > LONG);
-                let class = format!("{}{}", class(column.align), if is_long { " long" } else { "" });
+                let more = match cell {
+                    Cell::Shaded { shade, .. } => format!(" {}", shade.class()),
+                    _ => if is_long { " long" } else { "" }.to_owned(),
+                };
+                let class = format!("{}{more}", class(column.align));
                 let _ = write!(out, "<td class=\"{class}\"{value}>{}</td>", in_html(cell, &footnotes));
             }
             out.push_str("</tr>\n");
@@ -207,7 +212,7 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
         (Cell::Evidence { mood, words, target }, _) => format!("{} {}", mood.mark(), link(words, target)),
         (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
         // Only words are escaped: a number may start with a minus.
-        (Cell::Text(_), (text, None)) => markdown(&text),
+        (Cell::Text(_) | Cell::Shaded { .. }, (text, None)) => markdown(&text),
         (_, (text, None)) => text,
     }
 }
@@ -225,6 +230,10 @@ fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
         (Cell::Evidence { mood, words, target }, _) => {
             let (class, target, mark) = (mood.class(), plain_html(target), mood.mark());
             format!("<a class=\"{class}\" href=\"{target}\">{mark} {}</a>", html(words))
+        }
+        (Cell::Shaded { words, title, target, .. }, _) => {
+            let [target, title] = [target, title].map(|text| plain_html(text));
+            format!("<a href=\"{target}\" title=\"{title}\">{}</a>", html(words))
         }
         (Cell::Missing(reason), (text, mark)) => {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup>")).unwrap_or_default();
@@ -262,6 +271,7 @@ fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> (String, String) {
         | Cell::Evidence { words: text, .. } => words(text),
         Cell::OrderWithin(value, half) => return (number::exact(*value), number::exact(*half)),
         Cell::Count(count) => count.to_string(),
+        Cell::Shaded { value: None, words: text, .. } => words(text),
         other => other.value().map_or(String::new(), number::exact),
     };
     (value, String::new())

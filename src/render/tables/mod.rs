@@ -3,6 +3,7 @@
 pub mod explanation;
 pub mod golden_changes;
 pub mod measures;
+pub mod race;
 pub mod runs;
 pub mod scores;
 pub mod uncertainties;

@@ -71,6 +71,10 @@ pub struct Study {
     pub may_start_solvers: bool,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
+    /// Whether all contenders of the race are among its methods.
+    pub is_race: bool,
+    /// Contenders that cannot run here, by their names, each with the reason.
+    pub not_applicable: Vec<(&'static str, String)>,
     /// What is odd and runs all the same, as a person reads it.
     pub warnings: Vec<String>,
 }
@@ -96,6 +100,8 @@ impl Study {
             multiplied_out: 0,
             purpose,
             solvers: Vec::new(),
+            is_race: false,
+            not_applicable: Vec::new(),
             warnings: Vec::new(),
         };
         let study = checker.study(file);
@@ -112,9 +118,9 @@ impl Study {
         self.solvers.iter().find(|solver| case.method == Solver::Attached(solver.attached))
     }
 
-    /// Whether an expectation says that a record is to end as it did.
+    /// Whether an expectation says that a record is to end as it did. How a contender of a race ends is a result.
     pub fn foresees(&self, record: &Record) -> bool {
-        self.case_expectations.iter().any(|expectation| expectation.foresees(record))
+        self.is_race || self.case_expectations.iter().any(|expectation| expectation.foresees(record))
     }
 
     /// The cases of a tier.
@@ -132,6 +138,10 @@ struct Checker<'a> {
     purpose: Purpose,
     /// Attached solvers, whose names are methods too.
     solvers: Vec<ExternalSolver>,
+    /// Whether a sweep names the race.
+    is_race: bool,
+    /// Contenders of a race that the study refuses, with the reason.
+    not_applicable: Vec<(&'static str, String)>,
     /// Warnings, ready to print.
     warnings: Vec<String>,
 }
@@ -210,8 +220,6 @@ impl Checker<'_> {
                 Some(list) => self.time_factors(list).into(),
                 None => time_factors.clone(),
             };
-            let Some(mut sweep) = self.sweep(table, &start, &common, &base) else { continue };
-            self.default_integrator((table, &start), &common, &base, &mut sweep);
             let loaded = |case: Case| {
                 let mut case = case.for_attached();
                 case.column.points.name_water_points(case.points_per_cell);
@@ -220,11 +228,18 @@ impl Checker<'_> {
                 }
                 case
             };
-            self.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(loaded));
-            planner.reserve(sweep.count().unwrap_or(0));
-            for case in sweep.cases(&base).map(loaded) {
-                planner.put(case, table.tier);
-            }
+            self.for_each_entry(table, |checker, entry| {
+                let before = checker.diagnostics.len();
+                let Some(mut sweep) = checker.sweep(table, &start, &common, &base, entry) else { return };
+                checker.default_integrator((table, &start), &common, &base, &mut sweep);
+                checker.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(loaded));
+                // What cannot be fails the study, or is left out of a race.
+                let is_kept = entry.is_none() || checker.diagnostics.len() == before;
+                planner.reserve(sweep.count().unwrap_or(0));
+                for case in sweep.cases(&base).map(loaded).filter(|_| is_kept) {
+                    planner.put(case, table.tier);
+                }
+            });
         }
         base.time_factors = time_factors;
         for meshes in given {
@@ -256,6 +271,8 @@ impl Checker<'_> {
             solvers: std::mem::take(&mut self.solvers),
             may_start_solvers: false,
             timing_repeats: timing_repeats.unwrap_or(0),
+            is_race: self.is_race,
+            not_applicable: std::mem::take(&mut self.not_applicable),
             warnings: std::mem::take(&mut self.warnings),
         }
     }

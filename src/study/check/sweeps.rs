@@ -1,5 +1,6 @@
 //! Checks of the blocks `[[sweep]]`: their axes, the cases they multiply out to, the integrator and labels of these.
 
+use crate::case::contender::{CONTENDERS, Contender, RACE};
 use crate::case::keys::{Key, Value};
 use crate::case::planned::PlannedCase;
 use crate::case::work_estimate::estimated_seconds;
@@ -26,13 +27,48 @@ const MOST_BYTES: f64 = 32e9;
 const LONGEST_BY_DEFAULT: f64 = 120.0;
 
 impl Checker<'_> {
-    /// A block of cases, its axes checked one by one.
+    /// Runs a check of a block: once, or for every contender where the block names the race. A contender that the check
+    /// refuses cannot run in this study, with the reason; a block that no contender can run is a mistake of its own.
+    pub(super) fn for_each_entry(
+        &mut self,
+        table: &SweepTable,
+        mut check: impl FnMut(&mut Self, Option<&'static Contender>),
+    ) {
+        let is_race = |one: &One| matches!(&**one, TypedInput::MethodName(name) if name == RACE);
+        if !matches!(table.inputs.list("method"), [one] if is_race(one)) {
+            check(self, None);
+            return;
+        }
+        self.is_race = true;
+        let before = self.diagnostics.len();
+        let mut refused: Vec<(&'static str, Vec<Diagnostic>)> = Vec::new();
+        for contender in CONTENDERS.iter() {
+            check(self, Some(contender));
+            let complaints = self.diagnostics.split_off(before);
+            if !complaints.is_empty() {
+                refused.push((contender.name, complaints));
+            }
+        }
+        if refused.len() == CONTENDERS.len() {
+            self.diagnostics.extend(refused.swap_remove(0).1);
+            return;
+        }
+        for (name, complaints) in refused {
+            if self.not_applicable.iter().all(|(known, _)| *known != name) {
+                let why = complaints[0].message.split(": a case").next().unwrap_or_default();
+                self.not_applicable.push((name, why.to_owned()));
+            }
+        }
+    }
+
+    /// A block of cases, its axes checked one by one; the methods of a race are those of an entry.
     pub(super) fn sweep(
         &mut self,
         table: &SweepTable,
         start: &Range<usize>,
         common: &Common,
         base: &Case,
+        entry: Option<&Contender>,
     ) -> Option<Sweep> {
         let before = self.diagnostics.len();
         for (name, example) in [("method", "[\"GC-SRI-patch\"]"), ("cells", "[5, 10, 20]")] {
@@ -43,7 +79,12 @@ impl Checker<'_> {
         }
         let mut keys = Vec::new();
         for key in Key::of("sweep") {
-            if let Some(typed) = table.inputs.typed(key.name) {
+            if let Some(value) = entry.and_then(|entry| entry.value(key.name, base.scene)) {
+                let place = table.inputs.span(key.name).unwrap_or(start.clone());
+                keys.extend(
+                    self.entered(value, place, base.scene).map(|value| SweptKey { key, values: vec![value] }),
+                );
+            } else if let Some(typed) = table.inputs.typed(key.name) {
                 self.is_filled(key.name, typed.span(), table.inputs.list(key.name).len());
                 let one = |one: &One| self.input(key, one, key.name, &common.seed);
                 let values = table.inputs.list(key.name).iter().filter_map(one).collect();

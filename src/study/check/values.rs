@@ -106,6 +106,12 @@ impl Checker<'_> {
         self.method_fits(Solver::Own(method), place, scene)
     }
 
+    /// An input of a contender, where the scene allows it.
+    pub(super) fn entered(&mut self, value: Value, span: TextSpan, scene: SceneKind) -> Option<Value> {
+        let Value::Method(method) = value else { return Some(value) };
+        self.method_fits(method, span, scene).map(Value::Method)
+    }
+
     /// The method, where its scene allows it.
     fn method_fits(&mut self, method: Solver, span: TextSpan, scene: SceneKind) -> Option<Solver> {
         let configuration = method.own().and_then(|method| method.configuration);

@@ -2,16 +2,15 @@
 //! files of their own.
 
 use crate::golden::compare::Difference;
-use crate::judge::comparison::situation::{Ended, ends_of};
+use crate::judge::race::RaceRow;
 use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::{Answers, Making, answer_page};
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::StudyResults;
 use crate::render::report::pages::index_page;
-use crate::render::report::situations::situations_page;
 use crate::render::report::study_page::study_page;
-use oedometer_exact::exact_error::ExactError;
+use crate::render::tables::race;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -33,17 +32,14 @@ pub fn write(
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
     write_both(&studies, "index", "README", &index_page(results))?;
-    let ends: Result<Vec<Vec<Ended<'_>>>, ExactError> = results
-        .par_iter()
-        .map(|one| ends_of(one.study, one.records))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .collect();
-    let ends = ends?.concat();
-    write_both(out, "situations", "situations", &situations_page(&ends))?;
+    let rows: Vec<RaceRow<'_>> =
+        results.iter().filter_map(|one| RaceRow::of(one.study, one.records)).collect();
+    if !rows.is_empty() {
+        write_page(&out.join("tables/race.csv"), &race::table_of(&rows).to_plain_csv()?)?;
+    }
 
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, making: &making, ends: &ends };
+    let answers = Answers { results, changes, making: &making, race: &rows };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
     let readme = results.iter().fold(render_markdown(&front)?, |text, one| match path_from(out, &one.file) {

@@ -1,0 +1,134 @@
+//! The contenders of the race: what a sweep with `method = ["race"]` runs, one line each.
+
+use crate::case::Case;
+use crate::case::keys::{Key, Value};
+use crate::case::solver::Solver;
+use oedometer_mpm::method::{
+    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+};
+use oedometer_mpm::scene::SceneKind;
+use std::sync::LazyLock;
+
+/// The word that stands for all contenders among the methods of a sweep.
+pub const RACE: &str = "race";
+/// The paper's method.
+pub const PAPERS: &str = "GC-SRI-patch";
+
+/// Inputs of a contender beside its method.
+type Inputs = &'static [(&'static str, Value)];
+
+/// One contender: a method, with choices of the integrator where it has some of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Contender {
+    /// Its name in tables.
+    pub name: &'static str,
+    method: Method,
+    inputs: Inputs,
+}
+
+/// Choices that matter for points that move, and for no others.
+const OF_MOVING_POINTS: [&str; 2] = ["affine", "stress_slopes"];
+const SLOPES: Inputs = &[("affine", Value::Flag(true)), ("stress_slopes", Value::Flag(true))];
+
+/// A combination of operators that has no name as a method.
+const fn operators(
+    basis: Basis,
+    strain: StrainGradient,
+    pressure: PressureIntegration,
+    recovery: Recovery,
+) -> Option<Method> {
+    Some(Method { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None })
+}
+
+/// The lines: a name, its operators where the name is not that of a method, and its other inputs.
+const LINES: [(&str, Option<Method>, Inputs); 24] = {
+    use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
+    use PressureIntegration::{Points, Sri};
+    use Recovery::{Constant, Patch};
+    use StrainGradient::Standard;
+    [
+        ("MPM", None, &[]),
+        ("GIMP", None, &[]),
+        ("CPDI", operators(Cpdi, Standard, Points, Constant), &[]),
+        ("GIMP-mean", None, &[]),
+        ("GIMP-null-space", None, &[]),
+        ("VP", None, &[]),
+        ("GIMP-SRI", None, &[]),
+        ("GIMP-SRI-nodal", None, &[]),
+        ("GIMP-SRI-patch", None, &[]),
+        ("uGIMP-SRI-patch", None, &[]),
+        ("GC-SRI-patch", None, &[]),
+        ("GIMP-Bbar", None, &[]),
+        ("GIMP-Bbar-patch", None, &[]),
+        ("GC-Bbar-patch", None, &[]),
+        ("CPDI-SRI-patch", None, &[]),
+        ("CE-SRI-patch", None, &[]),
+        ("GC-SRI-patch-cells", None, &[]),
+        ("CE-SRI-patch-cells", None, &[]),
+        ("TL-GIMP-SRI-patch", None, &[]),
+        ("TL-GC-SRI-patch", None, &[]),
+        ("B2", operators(Bspline2, Standard, Points, Constant), &[]),
+        ("B2-SRI-patch", operators(Bspline2, Standard, Sri, Patch), &[]),
+        ("B3-SRI-patch", operators(Bspline3, Standard, Sri, Patch), &[]),
+        ("GIMP-SRI-patch-slopes", operators(Cpgimp, Standard, Sri, Patch), SLOPES),
+    ]
+};
+
+/// All contenders.
+pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
+    let of_line = |(name, method, inputs): &(&'static str, Option<Method>, Inputs)| {
+        let method = method.or_else(|| Method::named(name)).expect("a test names every method");
+        Contender { name, method, inputs }
+    };
+    LINES.iter().map(of_line).collect()
+});
+
+impl Contender {
+    /// Its method in a scene. Where nothing moves, shape functions are those of the initial configuration anyway: a
+    /// method with the prefix `TL-` is the one without it.
+    pub fn method_in(&self, scene: SceneKind) -> Solver {
+        let is_plain = scene.configuration() == Configuration::Frozen;
+        let configuration = self.method.configuration.filter(|_| !is_plain);
+        Solver::Own(Method { configuration, ..self.method })
+    }
+
+    /// Its value of an input in a scene, where it has one of its own.
+    pub fn value(&self, key: &str, scene: SceneKind) -> Option<Value> {
+        let is_idle = scene.configuration() == Configuration::Frozen && OF_MOVING_POINTS.contains(&key);
+        let own = || self.inputs.iter().find(|(name, _)| *name == key).map(|(_, value)| *value);
+        if key == "method" { Some(Value::Method(self.method_in(scene))) } else { own().filter(|_| !is_idle) }
+    }
+
+    /// Whether a case of the race is its own.
+    pub fn runs(&self, case: &Case) -> bool {
+        let contested = LINES.iter().flat_map(|line| line.2).map(|(name, _)| *name);
+        case.method == self.method_in(case.scene)
+            && contested.filter_map(|name| Key::named(name, "sweep")).all(|key| {
+                let usual = || key.get(&Case::seed(case.task, case.scene));
+                key.get(case) == self.value(key.name, case.scene).unwrap_or_else(usual)
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_contender_has_a_method_and_a_name_of_its_own() {
+        assert!(CONTENDERS.len() >= 20);
+        for (place, one) in CONTENDERS.iter().enumerate() {
+            assert!(CONTENDERS[..place].iter().all(|other| other.name != one.name), "{}", one.name);
+            assert!(one.inputs.iter().all(|(key, _)| Key::named(key, "sweep").is_some()), "{}", one.name);
+        }
+    }
+
+    #[test]
+    fn where_nothing_moves_a_total_method_is_the_plain_one() {
+        let of = |name: &str, scene| {
+            CONTENDERS.iter().find(|one| one.name == name).map(|one| one.method_in(scene))
+        };
+        assert_eq!(of("TL-GC-SRI-patch", SceneKind::Terzaghi), of("GC-SRI-patch", SceneKind::Terzaghi));
+        assert_ne!(of("TL-GC-SRI-patch", SceneKind::XieLeo), of("GC-SRI-patch", SceneKind::XieLeo));
+    }
+}

@@ -1,0 +1,278 @@
+//! Which method should I take? Every contender in every situation, and sentences computed from it.
+
+use crate::case::contender::PAPERS;
+use crate::judge::race::grid::{Grid, Overall, Score};
+use crate::judge::race::{Ended, RaceCell, RaceRow, grid_of};
+use crate::render::answers::{Answer, Links, Question};
+use crate::render::number;
+use crate::render::page::Block;
+use crate::render::report::labels::is_settled;
+use crate::render::table::{Cell, Shade, Table, TableColumn, columns};
+use oedometer_soil::wording::count_of;
+
+const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
+
+/// Words for the groups of situations.
+const GROUPS: [(&str, &str); 7] = [
+    ("column", "columns at small strain"),
+    ("points", "points out of place"),
+    ("waves", "waves and explicit steps"),
+    ("layer", "undrained layers and slabs"),
+    ("strain", "columns at large strain"),
+    ("plane", "large strain in the plane"),
+    ("rest", "rest under weight"),
+];
+
+/// The matrix with its switch, and the sentences.
+pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
+    if rows.is_empty() {
+        return QUESTION
+            .open("a study whose sweeps name `method = [\"race\"]`, as `oedometer report race` runs them");
+    }
+    let grid = grid_of(rows);
+    let ranked = grid.by_rank();
+    let view = |cell: &dyn Fn(usize, usize) -> Cell| table_of(rows, &ranked, links, cell);
+    let target = |row: usize| links(&rows[row].study.name);
+    let errors = view(&|row, contender| error_cell(&grid, row, &rows[row].contenders[contender], contender, target(row)))
+        .note(format!(
+            "Largest error of pressure, effective stress and settlement (of a plane, displacement), in %, on the finest mesh \
+             that every contender ran; at rest the largest velocity over the conductivity; for the critical step the \
+             formula's step over the observed one. Shades: as good as the best of the row, within a factor of 2, within 10, \
+             beyond, no usable result (an error of 100 % and more, or ✗ a run that failed); n/a what the method cannot do by its definition. Columns by mean rank over the \
+             situations that a contender can run in (that of the first is {:.1})",
+            ranked.first().map_or(f64::NAN, |one| one.mean_rank)
+        ));
+    let orders = view(&|row, contender| order_cell(&rows[row].contenders[contender], target(row))).note(
+        "Order of the pressure at the points on three meshes; ~ marks an order that is not settled (pre-asymptotic, limited \
+         by a floor, or by cancelling errors)",
+    );
+    let costs = view(&|row, contender| cost_cell(&rows[row], contender, target(row))).note(
+        "Processor time to a largest error of 1 %, between meshes by powers; – where the finest mesh does not reach it. Of the \
+         coarsest mesh where that is good enough already. Times of a millisecond vary by a fifth from run to run",
+    );
+    let views = [("error", errors), ("order", orders), ("cost", costs)];
+    let views = views.map(|(word, table)| (word.to_owned(), vec![Block::Table(table)]));
+    let mut sentences = sentences(&grid);
+    let first = sentences.remove(0);
+    let files = "[Every cell with all its measures](tables/race.csv).";
+    QUESTION.told(format!("{first} {files}"), vec![Block::Switch(views.to_vec()), Block::List(sentences)])
+}
+
+fn table_of(
+    rows: &[RaceRow<'_>],
+    ranked: &[Overall],
+    links: Links<'_>,
+    cell: &dyn Fn(usize, usize) -> Cell,
+) -> Table {
+    let mut heads = columns("situation");
+    heads.extend(ranked.iter().map(|one| TableColumn::number(rows[0].contenders[one.contender].name)));
+    let row = |place: usize| {
+        let (words, target) = (rows[place].title().to_owned(), links(&rows[place].study.name));
+        let cells = ranked.iter().map(|one| cell(place, one.contender));
+        std::iter::once(Cell::Link { words, target }).chain(cells).collect()
+    };
+    Table::of("", heads, (0..rows.len()).map(row).collect::<Vec<Vec<Cell>>>())
+}
+
+/// What a cell says that has no number.
+fn without_number(cell: &RaceCell, target: String) -> Option<Cell> {
+    let (shade, words) = match &cell.ended {
+        Ended::Well => return None,
+        Ended::Failed(..) => (Shade::Failed, "✗"),
+        Ended::NotApplicable(_) => (Shade::Empty, "n/a"),
+    };
+    let (name, why) = cell.ended.words();
+    let title = format!("{}: {name}, {why}", cell.name);
+    Some(Cell::Shaded { shade, words: words.to_owned(), value: None, title, target })
+}
+
+fn error_cell(grid: &Grid, row: usize, cell: &RaceCell, contender: usize, target: String) -> Cell {
+    let ratio = grid.rows[row].ratio(contender);
+    if let Some(cell) = without_number(cell, target.clone()) {
+        return cell;
+    }
+    let is_error = cell.errors.iter().any(Option::is_some);
+    let words = cell
+        .score
+        .map_or("✗".to_owned(), |score| if is_error { in_percent(score) } else { number::error(score) });
+    let (shade, title) = match ratio {
+        Some(ratio) => {
+            (Shade::of_ratio(ratio), format!("{}: {ratio:.1} times the best of the row", cell.name))
+        }
+        None => (Shade::Failed, format!("{}: no usable result", cell.name)),
+    };
+    Cell::Shaded { shade, words, value: cell.score, title, target }
+}
+
+fn order_cell(cell: &RaceCell, target: String) -> Cell {
+    if let Some(cell) = without_number(cell, target.clone()) {
+        return cell;
+    }
+    let (value, title) = (cell.order, cell.class.map_or("not measured", |class| class.name()).to_owned());
+    let settled = cell.class.is_some_and(is_settled);
+    let words =
+        value.map_or("–".to_owned(), |order| format!("{order:.1}{}", if settled { "" } else { "~" }));
+    let shade = match value {
+        Some(order) if order >= 1.7 => Shade::Best,
+        Some(order) if order >= 1.3 => Shade::Good,
+        Some(order) if order >= 0.7 => Shade::Middling,
+        Some(_) => Shade::Poor,
+        None => Shade::Empty,
+    };
+    Cell::Shaded { shade, words, value, title: format!("{}: {title}", cell.name), target }
+}
+
+fn cost_cell(row: &RaceRow<'_>, contender: usize, target: String) -> Cell {
+    let cell = &row.contenders[contender];
+    if let Some(cell) = without_number(cell, target.clone()) {
+        return cell;
+    }
+    let least = row.contenders.iter().filter_map(|one| one.cost[0]).fold(f64::INFINITY, f64::min);
+    let value = cell.cost[0];
+    let words = value.map_or("–".to_owned(), |seconds| number::seconds(seconds));
+    let tenth = cell.cost[1].map_or("not reached".to_owned(), number::seconds);
+    let title = format!("{}: 0.1 % {tenth}", cell.name);
+    // A cost within a quarter of the least is as good.
+    let shade = value.map_or(Shade::Empty, |seconds| Shade::of_ratio(seconds / least / 1.25));
+    Cell::Shaded { shade, words, value, title, target }
+}
+
+/// A share in percent, two digits.
+fn in_percent(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent < 0.001 => "<0.001".to_owned(),
+        percent if percent < 0.0995 => format!("{percent:.3}"),
+        percent if percent < 0.995 => format!("{percent:.2}"),
+        percent if percent < 9.95 => format!("{percent:.1}"),
+        percent if percent < 999.5 => format!("{percent:.0}"),
+        percent => format!("{percent:.0e}"),
+    }
+}
+
+/// The sentences that follow from a grid: the one method to take, then one for each group, the paper's method, and the
+/// situations that decide.
+fn sentences(grid: &Grid) -> Vec<String> {
+    let all = grid.everywhere();
+    let Some(one) = grid.one_for(&all) else {
+        return vec!["No contender has a usable result in any situation.".to_owned()];
+    };
+    let mut told = vec![the_one(grid, &one)];
+    told.extend(grid.groups().into_iter().filter_map(|(group, places)| best_of_group(grid, group, &places)));
+    told.extend(of_the_paper(grid));
+    told.push(what_decides(grid, one.contender));
+    told
+}
+
+fn the_one(grid: &Grid, one: &Overall) -> String {
+    let (name, of) = (&grid.contenders[one.contender], grid.rows.len());
+    let results = match one.without {
+        0 => format!("it has a result in all {}", count_of(of, "situation", "situations")),
+        lacking => {
+            let places = grid
+                .everywhere()
+                .into_iter()
+                .filter(|place| grid.rows[*place].ratio(one.contender).is_none());
+            let names: Vec<String> = places.map(|place| quoted(grid, place)).collect();
+            format!(
+                "no contender has a usable result in every situation, and it lacks one in {lacking} of {of} ({})",
+                names.join(", ")
+            )
+        }
+    };
+    let worst = one.worst_at.map_or(String::new(), |place| {
+        format!(", its error is at most {} times the best ({})", times(one.worst_ratio), quoted(grid, place))
+    });
+    format!(
+        "If you may have only one method, take **`{name}`**: {results}{worst}, and it is within a factor of 2 of the best in {} \
+         of {of}.",
+        one.nearly_best
+    )
+}
+
+fn best_of_group(grid: &Grid, group: &str, places: &[usize]) -> Option<String> {
+    let best = grid.one_for(places)?;
+    let words = GROUPS.iter().find(|(known, _)| *known == group).map_or(group, |(_, words)| words);
+    let alike = (0..grid.contenders.len()).map(|one| grid.overall(one, places));
+    let alike = alike.filter(|one| {
+        one.contender != best.contender && one.without == best.without && one.worst_ratio <= best.worst_ratio
+    });
+    let tied: Vec<String> = alike.map(|one| format!("`{}`", grid.contenders[one.contender])).collect();
+    let tied = if tied.is_empty() { String::new() } else { format!(", tied with {}", tied.join(", ")) };
+    let lacking = match best.without {
+        0 => String::new(),
+        lacking => format!("; without a result in {lacking}"),
+    };
+    Some(format!(
+        "**{}** ({}): `{}`, at most {} times the best error{lacking}{tied}.",
+        crate::render::report::labels::capitalised(words),
+        count_of(places.len(), "situation", "situations"),
+        grid.contenders[best.contender],
+        times(best.worst_ratio)
+    ))
+}
+
+/// Where the paper's method is best and worst.
+fn of_the_paper(grid: &Grid) -> Option<String> {
+    let paper = grid.contenders.iter().position(|name| name == PAPERS)?;
+    let overall = grid.overall(paper, &grid.everywhere());
+    let rank = 1 + grid.by_rank().iter().position(|one| one.contender == paper)?;
+    let (mut failed, mut first) = (Vec::new(), Vec::new());
+    for (place, row) in grid.rows.iter().enumerate() {
+        if row.scores[paper] == Score::Failed {
+            failed.push(quoted(grid, place));
+        } else if row.rank(paper) == Some(1) {
+            first.push(quoted(grid, place));
+        }
+    }
+    let best = match first.as_slice() {
+        [] => "it is first in no situation".to_owned(),
+        all => format!("it is first, alone or tied, in {} ({})", all.len(), all.join(", ")),
+    };
+    let worst = overall.worst_at.filter(|_| overall.worst_ratio > 1.0).map_or(String::new(), |place| {
+        format!(
+            "; it is farthest from the best in {}, {} times its error",
+            quoted(grid, place),
+            times(overall.worst_ratio)
+        )
+    });
+    let failed = if failed.is_empty() {
+        String::new()
+    } else {
+        format!("; it has no result in {}", failed.join(", "))
+    };
+    Some(format!(
+        "**The paper's method**, `{PAPERS}`, is number {rank} of {} by mean rank ({:.1} over {}): {best}{worst}{failed}.",
+        grid.contenders.len(),
+        overall.mean_rank,
+        count_of(overall.ranked_in, "situation", "situations")
+    ))
+}
+
+/// How the choice of one method depends on single situations.
+fn what_decides(grid: &Grid, winner: usize) -> String {
+    let (deciding, of) = (grid.deciding_situations(), grid.rows.len());
+    let changes: Vec<String> = deciding
+        .iter()
+        .map(|(place, other)| {
+            format!("without {} it would be `{}`", quoted(grid, *place), grid.contenders[*other])
+        })
+        .collect();
+    let name = &grid.contenders[winner];
+    match changes.as_slice() {
+        [] => format!("**Leaving out any one** of the {of} situations, the choice stays `{name}`."),
+        all => format!(
+            "**Leaving out one situation** changes the choice of `{name}` in {} of {of}: {}.",
+            all.len(),
+            all.join("; ")
+        ),
+    }
+}
+
+fn quoted(grid: &Grid, place: usize) -> String {
+    format!("“{}”", grid.rows[place].situation)
+}
+
+/// A ratio, two digits.
+fn times(ratio: f64) -> String {
+    if ratio < 9.95 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }
+}

@@ -1,0 +1,92 @@
+//! The page of a situation of the race: the errors of every contender against the mesh, and all its measures.
+
+use crate::case::contender::PAPERS;
+use crate::judge::race::{RaceCell, RaceRow};
+use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::page::{Block, Figure};
+use crate::render::report::StudyResults;
+use crate::render::report::labels::ticks;
+use crate::render::table::{Cell, Table, columns};
+
+/// Series that a figure names.
+const NAMED: usize = 7;
+/// The grey slot of the colours.
+const GREY: usize = 7;
+/// Methods that every figure names, after the best.
+const ALWAYS: [&str; 2] = [PAPERS, "MPM"];
+
+/// Figures and the table of a situation; empty for any other study.
+pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
+    let Some(row) = RaceRow::of(results.study, results.records) else { return Vec::new() };
+    let mut ranked: Vec<&RaceCell> = row.contenders.iter().collect();
+    let score = |cell: &RaceCell| match cell.ended.words().0 {
+        "ok" => cell.score.unwrap_or(f64::INFINITY),
+        "n/a" => f64::NAN,
+        _ => f64::INFINITY,
+    };
+    ranked.sort_by(|a, b| score(a).total_cmp(&score(b)));
+    let last = if results.study.scene.has_plane_fields() { "displacement" } else { "settlement" };
+    let figures = ["pressure", "effective stress", last].into_iter().enumerate();
+    let figures: Vec<Figure> =
+        figures.filter_map(|(place, quantity)| figure(results, &ranked, place, quantity)).collect();
+    let mut blocks = vec![Block::Heading("Every contender".to_owned())];
+    if !figures.is_empty() {
+        blocks.push(Block::Figures(figures));
+    }
+    blocks.push(Block::Table(table_of(&row, &ranked)));
+    blocks
+}
+
+/// The figure of one error of all contenders, with the names of seven.
+fn figure(results: &StudyResults<'_>, ranked: &[&RaceCell], place: usize, quantity: &str) -> Option<Figure> {
+    let points = |cell: &RaceCell| -> Vec<(f64, f64)> {
+        cell.levels.iter().filter_map(|(size, errors)| Some((*size, errors[place]?))).collect()
+    };
+    let drawn: Vec<(&str, Vec<(f64, f64)>)> =
+        ranked.iter().map(|cell| (cell.name, points(cell))).filter(|(_, points)| points.len() > 1).collect();
+    let sizes = drawn.iter().flat_map(|(_, points)| points).map(|(size, _)| *size);
+    let mut chart = Chart::new(
+        format!("Error of the {quantity}"),
+        ChartAxis::log10("cell size h (m)").with_ticks(ticks(sizes)),
+        ChartAxis::log10(format!("relative L_2 error, {quantity} (–)")),
+    );
+    chart.size = Size::PANEL;
+    let always = drawn.iter().filter(|(name, _)| ALWAYS.contains(name));
+    let best = drawn.iter().filter(|(name, _)| !ALWAYS.contains(name)).take(NAMED - ALWAYS.len());
+    let named: Vec<&(&str, Vec<(f64, f64)>)> = best.chain(always).collect();
+    let others = drawn.iter().filter(|one| named.iter().all(|other| other.0 != one.0));
+    for (_, points) in others {
+        let other = Series::new("the other contenders", points.clone());
+        chart.series.push(other.style(Style::Line).slot(GREY));
+    }
+    for (slot, (name, points)) in named.into_iter().enumerate() {
+        chart.series.push(Series::new(*name, points.clone()).slot(slot));
+    }
+    let caption = "The five contenders with the smallest largest error, the paper's method and MPM by name.";
+    (!drawn.is_empty()).then(|| results.figure(&format!("race-{place}"), chart, caption))
+}
+
+/// Every contender with its measures, the best first.
+fn table_of(row: &RaceRow<'_>, ranked: &[&RaceCell]) -> Table {
+    let number = |value: Option<f64>, kind: fn(f64) -> Cell| Cell::of(value, kind, "");
+    let rows = ranked.iter().map(|cell| {
+        let (ended, why) = cell.ended.words();
+        let ended = if why.is_empty() { ended.to_owned() } else { format!("{ended}: {why}") };
+        let mut cells: Vec<Cell> = vec![Cell::Code(cell.name.to_owned())];
+        cells.extend(cell.errors.map(|error| number(error, Cell::Error)));
+        cells.push(number(cell.order, Cell::Order));
+        cells.push(cell.class.map_or("", |class| class.name()).into());
+        cells.extend(cell.cost.map(|cost| number(cost, Cell::Seconds)));
+        cells.extend([cell.oscillation, cell.locking, cell.step_ratio].map(|one| number(one, Cell::Number)));
+        cells.push(number(cell.scatter, Cell::Percent));
+        cells.push(ended.into());
+        cells
+    });
+    let heads = "contender | > pressure | > effective stress | > settlement or displacement | > order | class | > 1 % | > 0.1 % \
+                 | > oscillation | > locking | > critical step | > half the step | ended";
+    Table::of(format!("Errors on {} cells", row.cells), columns(heads), rows).note(
+        "order and class of the pressure; 1 %, 0.1 %: processor time to that largest error; oscillation: variation of the \
+         pressure beyond the exact one's; locking: computed over exact settlement, in the plane one minus the error of the \
+         displacement; critical step over the formula's; half the step: change of the largest error by it",
+    )
+}
