@@ -93,8 +93,9 @@ impl StudyCheck {
             }),
             // Partial results of a failed run are not judged.
             unsound: notes(&|record| match record.status {
-                Status::Ok => soundness::complaints(record),
-                Status::Failed(_) => Vec::new(),
+                // How sound a contender's runs are is a result of the race.
+                Status::Ok if !study.is_race => soundness::complaints(record),
+                _ => Vec::new(),
             }),
             judgements: judge_study(study, records, tier),
             warnings: slow.into_iter().chain(absent.warnings()).chain(differing_repeats(records)).collect(),

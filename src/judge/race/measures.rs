@@ -4,6 +4,7 @@ use crate::case::contender::Contender;
 use crate::case::{Quantity, Sample};
 use crate::judge::path_context;
 use crate::judge::paths::{Path, first_error, first_measure};
+use crate::judge::soundness;
 use crate::measure::statistics::{largest, median};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -110,6 +111,11 @@ pub fn score_of(record: &Record) -> Option<f64> {
 pub fn scatter_of(one: &Record, other: &Record) -> Option<f64> {
     let (one, other) = (score_of(one)?, score_of(other)?);
     Some((other / one - 1.0).abs())
+}
+
+/// The first complaint about the balances of a run that ended well.
+pub fn complaint_of(record: &Record) -> Option<String> {
+    if record.status == Status::Ok { soundness::complaints(record).into_iter().next() } else { None }
 }
 
 /// Oscillation index of the pressure at the last output.

@@ -56,6 +56,8 @@ pub struct RaceCell {
     pub scatter: Option<f64>,
     /// How the runs ended.
     pub ended: Ended,
+    /// What is wrong with a balance of the run on the common mesh, where something is.
+    pub complaint: Option<String>,
 }
 
 /// How the runs of a cell ended.
@@ -69,13 +71,13 @@ pub enum Ended {
     NotApplicable(String),
 }
 
-impl Ended {
-    /// `ok`, the failure by its name, or `n/a`; and the reason.
-    pub fn words(&self) -> (&str, &str) {
-        match self {
-            Self::Well => ("ok", ""),
-            Self::Failed(name, why) => (name, why),
-            Self::NotApplicable(why) => ("n/a", why),
+impl RaceCell {
+    /// `ok`, the failure by its name, or `n/a`; and the reason, of a run that ended well what is wrong with its balances.
+    pub fn ending(&self) -> (&str, &str) {
+        match &self.ended {
+            Ended::Well => ("ok", self.complaint.as_deref().unwrap_or_default()),
+            Ended::Failed(name, why) => (name, why),
+            Ended::NotApplicable(why) => ("n/a", why),
         }
     }
 }
@@ -133,6 +135,7 @@ fn cell_of(study: &Study, contender: &Contender, runs: &Runs<'_>, cells: usize) 
         score: on_mesh.and_then(score_of),
         scatter: on_mesh.zip(runs.second_step).and_then(|(one, other)| scatter_of(one, other)),
         ended,
+        complaint: on_mesh.and_then(measures::complaint_of),
     }
 }
 

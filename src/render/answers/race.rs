@@ -81,7 +81,7 @@ fn without_number(cell: &RaceCell, target: String) -> Option<Cell> {
         Ended::Failed(..) => (Shade::Failed, "✗"),
         Ended::NotApplicable(_) => (Shade::Empty, "n/a"),
     };
-    let (name, why) = cell.ended.words();
+    let (name, why) = cell.ending();
     let title = format!("{}: {name}, {why}", cell.name);
     Some(Cell::Shaded { shade, words: words.to_owned(), value: None, title, target })
 }

@@ -19,7 +19,7 @@ const ALWAYS: [&str; 2] = [PAPERS, "MPM"];
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let Some(row) = RaceRow::of(results.study, results.records) else { return Vec::new() };
     let mut ranked: Vec<&RaceCell> = row.contenders.iter().collect();
-    let score = |cell: &RaceCell| match cell.ended.words().0 {
+    let score = |cell: &RaceCell| match cell.ending().0 {
         "ok" => cell.score.unwrap_or(f64::INFINITY),
         "n/a" => f64::NAN,
         _ => f64::INFINITY,
@@ -70,7 +70,7 @@ fn figure(results: &StudyResults<'_>, ranked: &[&RaceCell], place: usize, quanti
 fn table_of(row: &RaceRow<'_>, ranked: &[&RaceCell]) -> Table {
     let number = |value: Option<f64>, kind: fn(f64) -> Cell| Cell::of(value, kind, "");
     let rows = ranked.iter().map(|cell| {
-        let (ended, why) = cell.ended.words();
+        let (ended, why) = cell.ending();
         let ended = if why.is_empty() { ended.to_owned() } else { format!("{ended}: {why}") };
         let mut cells: Vec<Cell> = vec![Cell::Code(cell.name.to_owned())];
         cells.extend(cell.errors.map(|error| number(error, Cell::Error)));

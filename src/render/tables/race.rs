@@ -15,7 +15,7 @@ pub fn table_of(situations: &[RaceRow<'_>]) -> Table {
 
 fn row(situation: &RaceRow<'_>, cell: &RaceCell) -> Vec<Cell> {
     let number = |value: Option<f64>| Cell::of(value, Cell::Number, "");
-    let (ended, reason) = cell.ended.words();
+    let (ended, reason) = cell.ending();
     let mut row: Vec<Cell> =
         vec![situation.name().into(), cell.name.into(), Cell::Count(situation.cells as u64)];
     row.extend(cell.errors.map(number));
