@@ -441,23 +441,9 @@ fn critical_steps_stand_beside_their_cases_in_table_and_figure() {
 }
 
 #[test]
-fn answers_name_the_best_method_with_its_own_orders_and_error() {
+fn answers_tell_the_orders_of_each_method() {
     let reported = &*REPORTED;
-    let references = ["MPM", "GC-SRI-patch"].map(|method| {
-        let largest = QUANTITIES
-            .iter()
-            .filter(|quantity| quantity.2 != "centres")
-            .map(|quantity| reported.error(method, 23, quantity.0, "terzaghi", LAST))
-            .fold(0.0, f64::max);
-        (method, largest)
-    });
-    let percent = |text: &str| number(text.trim_end_matches(" %")) / 100.0;
-    let (header, rows) = table(&reported.path("tables/answers-table-3.csv"));
-    for (method, largest) in references {
-        let place = header.iter().position(|name| name == method).expect("a column of the method");
-        assert_near(percent(&rows[0][place]), largest, 0.0051, method);
-    }
-    let (_, rows) = table(&reported.path("tables/answers-table-2.csv"));
+    let (_, rows) = table(&reported.path("tables/answers-table-1.csv"));
     let mut seen = 0;
     for row in rows {
         let method = row[0].split(',').next().expect("a method");
