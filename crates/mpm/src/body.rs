@@ -33,8 +33,11 @@ pub struct Problem<const D: usize> {
     pub points: Points<D>,
     /// Points of the water in their initial state, where it has points of its own.
     pub water: Option<Points<D>>,
-    /// Soil.
+    /// Soil that scales are made of, and what all soils have in common: water, gravity, density of the grains, law,
+    /// continuity and mean of the conductivity.
     pub material: Material,
+    /// Soils by the number that points have of theirs; `[material]` where the body is of one.
+    pub soils: Vec<Material>,
     /// Operators.
     pub method: Method,
     /// Configuration of the shape functions.
@@ -77,6 +80,7 @@ impl<const D: usize> Problem<D> {
         points.pressure.iter_mut().for_each(|pressure| *pressure *= factor);
         points.effective_stress.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
         self.balanced_weight.iter_mut().flatten().flatten().for_each(|stress| *stress *= factor);
+        points.history.iter_mut().for_each(|history| history.yield_stress *= factor);
         points.solid_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
         points.water_velocity.iter_mut().flatten().for_each(|velocity| *velocity *= factor);
         if let Some(water) = &mut self.water {
@@ -85,6 +89,16 @@ impl<const D: usize> Problem<D> {
         }
         self.initial_gradient.iter_mut().flatten().for_each(|gradient| *gradient *= factor);
         self
+    }
+
+    /// The least of a quantity over the soils.
+    pub fn least_of_soils(&self, quantity: impl Fn(&Material) -> f64) -> f64 {
+        self.soils.iter().map(quantity).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The most of a quantity over the soils.
+    pub fn most_of_soils(&self, quantity: impl Fn(&Material) -> f64) -> f64 {
+        self.soils.iter().map(quantity).fold(0.0, f64::max)
     }
 }
 
@@ -99,10 +113,13 @@ pub struct Body<const D: usize> {
     pub nodes: Nodes<D>,
     /// Cell fields.
     pub cells: Cells<D>,
-    /// Soil.
+    /// Soil that scales are made of, and what all soils have in common: water, gravity, density of the grains, law,
+    /// continuity and mean of the conductivity. What depends on the place is asked of [`soil_of`](Self::soil_of).
     pub material: Material,
-    /// Law of the skeleton with its stiffness.
-    pub stress_law: StressLaw,
+    /// Soils by the number that points have of theirs.
+    pub soils: Vec<Material>,
+    /// Law of each soil with its stiffness.
+    pub stress_laws: Vec<StressLaw>,
     /// Operators.
     pub method: Method,
     /// Configuration of the shape functions.
@@ -158,6 +175,7 @@ impl<const D: usize> Body<D> {
             support,
             points,
             material,
+            soils,
             method,
             configuration,
             load,
@@ -176,7 +194,7 @@ impl<const D: usize> Body<D> {
         let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
         let domains = Domains::of(method, configuration, &points);
         let strains_vertically =
-            load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none();
+            load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none() && soils.len() == 1;
         // Domains that turn have lengths of their own.
         let confined = (strains_vertically && domains.is_none())
             .then(|| ConfinedPoints::of(&points, &material, method.domains_follow()))
@@ -184,7 +202,7 @@ impl<const D: usize> Body<D> {
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
-            stress_law: material.stress_law(),
+            stress_laws: soils.iter().map(Material::stress_law).collect(),
             surface: LoadedSurface::of(&points, load)
                 .shaped(load_shape, &points)
                 .spread_by(method.basis, support)
@@ -208,6 +226,7 @@ impl<const D: usize> Body<D> {
             grid,
             points,
             material,
+            soils,
             method,
             configuration,
             is_pushed_forward: configuration == Configuration::Total,
@@ -265,6 +284,24 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Soil of a point.
+    #[inline]
+    pub fn soil_of(&self, point: usize) -> &Material {
+        self.points.soil_among(&self.soils, point)
+    }
+
+    /// Law of a point's soil with its stiffness.
+    #[inline]
+    pub fn stress_law_of(&self, point: usize) -> &StressLaw {
+        &self.stress_laws[usize::from(self.points.soil[point])]
+    }
+
+    /// Whether the law of its soils has a history.
+    #[inline]
+    pub fn has_history(&self) -> bool {
+        !self.points.history.is_empty()
+    }
+
     /// Brings operators and masses up to the points' places and volumes: all of them where points
     /// move, what follows the volumes where shape functions stay on the initial configuration.
     pub fn follow_points(&mut self) {
@@ -277,7 +314,7 @@ impl<const D: usize> Body<D> {
     /// Brings the operators alone up to the points' places and volumes.
     pub(crate) fn follow_places(&mut self) {
         if self.is_pushed_forward {
-            self.cells.sum_volumes(&self.points, self.material.porosity);
+            self.cells.sum_volumes(&self.points, &self.soils);
             self.cells.average_deformation(&self.points);
         } else if self.configuration.moves_points() {
             self.build_operators();
@@ -322,7 +359,7 @@ impl<const D: usize> Body<D> {
     /// Builds every operator of the method on the points' present places, and puts the load on
     /// the surface there.
     pub fn build_operators(&mut self) {
-        self.cells.locate(&self.grid, &self.points, self.material.porosity);
+        self.cells.locate(&self.grid, &self.points, &self.soils);
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }

@@ -45,7 +45,7 @@ impl<const D: usize> Body<D> {
         let Some(forced) = &mut self.forcing else { return };
         forced.find_middle(&self.points);
         forced.swap_middle(&mut self.points);
-        self.cells.sum_volumes(&self.points, self.material.porosity);
+        self.cells.sum_volumes(&self.points, &self.soils);
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
         }
@@ -68,7 +68,7 @@ impl<const D: usize> Body<D> {
         self.evaluate_sites(|body, place, porosity| {
             let back = body.half_step_back(place, dt);
             let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));
-            dt * body.material.water_bulk_modulus / porosity * (body.source_at(place) - gained)
+            dt * body.coupling_at(place, porosity) * (body.source_at(place) - gained)
         });
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;

@@ -85,7 +85,7 @@ impl<const D: usize> Body<D> {
         let pressures = rows.at_points(site_pressures);
         for point in 0..self.points.len() {
             let (gradient, dilation) = self.gradient_of(point, rows, strained);
-            let stress = self.stress_law.elastic_stress(&gradient, dilation);
+            let stress = self.stress_law_of(point).elastic_stress(&gradient, dilation);
             let of_basis = self.basis.value(self.grid.node_stride(), point, displacements);
             let moved = self.carrying(point, displacements, of_basis);
             self.points.pressure[point] += pressures[point];

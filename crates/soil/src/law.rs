@@ -22,11 +22,14 @@ pub enum Law {
     /// Hyperelastic, `σ' = [μ (F Fᵀ − I) + λ ln J I]/J` (Simo & Pister 1984; docs/theory.md, Eq. 28), and
     /// `k = k_0 J²`: a stress that no path through shear or rotation changes.
     NeoHookean,
+    /// Oedometric law with a memory: a constant modulus up to the largest effective stress so far, a lower one for first
+    /// loading beyond it, and constant conductivity (docs/theory.md, section 2).
+    Preconsolidated,
 }
 
 words!(
     Law: Linear "linear", LogLinear "log-linear", PorosityDependent "porosity-dependent",
-    Engineering "engineering", NeoHookean "neo-hookean"
+    Engineering "engineering", NeoHookean "neo-hookean", Preconsolidated "preconsolidated"
 );
 
 impl Law {
@@ -41,6 +44,13 @@ impl Law {
         self == Self::NeoHookean
     }
 
+    /// Whether the stress depends on a [`History`], so that every update has to read and to keep one, and no stiffness of
+    /// the start serves for a whole run.
+    #[inline]
+    pub fn has_history(self) -> bool {
+        self == Self::Preconsolidated
+    }
+
     /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
     /// a step from one volume ratio to another: at their geometric mean, of second order. Of a hyperelastic law,
     /// which no rate is integrated of, that of the start.
@@ -48,7 +58,9 @@ impl Law {
     pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
         match self {
             // The engineering law has E_0/J against dJ, and that is E_0 against dJ/J.
-            Self::Linear | Self::LogLinear | Self::Engineering | Self::NeoHookean => 1.0,
+            Self::Linear | Self::LogLinear | Self::Engineering | Self::NeoHookean | Self::Preconsolidated => {
+                1.0
+            }
             Self::PorosityDependent => 1.0 / (before * after).sqrt(),
         }
     }
@@ -61,7 +73,7 @@ impl Law {
         match self {
             Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
             Self::PorosityDependent => strain / (1.0 + strain),
-            Self::NeoHookean => f64::NAN,
+            Self::NeoHookean | Self::Preconsolidated => f64::NAN,
         }
     }
 
@@ -73,7 +85,7 @@ impl Law {
             Self::LogLinear | Self::Engineering => -elementary::exp_m1(-compression),
             Self::PorosityDependent => compression / (1.0 + compression),
             Self::Linear => compression,
-            Self::NeoHookean => f64::NAN,
+            Self::NeoHookean | Self::Preconsolidated => f64::NAN,
         }
     }
 }
@@ -142,6 +154,24 @@ pub struct StrainIncrement<const D: usize> {
     pub volume_ratio: [f64; 2],
 }
 
+/// What a soil keeps at a point beside the stresses in the plane of the problem, of laws that
+/// [have one](Law::has_history).
+///
+/// Whoever updates a stress starts from the history of an accepted state and writes the new one beside the new stress:
+/// an implicit stage from its anchored points, an explicit step from the points themselves. A trial that is given up is
+/// forgotten with its points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct History {
+    /// Effective stress normal to the plane of the problem, Pa, tension positive; in a column that of both lateral
+    /// directions.
+    pub lateral_stress: f64,
+    /// Stress at which the soil yields now, Pa: of [`Law::Preconsolidated`] the largest vertical effective stress so far,
+    /// compression positive.
+    pub yield_stress: f64,
+    /// Equivalent plastic strain.
+    pub plastic_strain: f64,
+}
+
 /// A law with the stiffness of a soil: what an effective stress follows from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressLaw {
@@ -149,6 +179,8 @@ pub struct StressLaw {
     pub law: Law,
     /// Stiffness in the initial state.
     pub stiffness: Stiffness,
+    /// Modulus of first loading over that of the initial state, at most 1; 1 where they are one.
+    pub virgin_share: f64,
 }
 
 impl StressLaw {
@@ -164,14 +196,15 @@ impl StressLaw {
         stress
     }
 
-    /// Takes the state of the soil at a point through a step. The state is the effective stress, Pa; a law with a memory
-    /// would have its variables beside it. `deformation` is the deformation gradient since the start, which hyperelastic
-    /// laws ask for.
+    /// Takes the state of the soil at a point through a step: the effective stress, Pa, and of laws that have one the
+    /// history; others leave it alone. `deformation` is the deformation gradient since the start, which hyperelastic laws
+    /// ask for.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
     pub fn update<const D: usize>(
         &self,
         stress: &mut Tensor<D>,
+        history: &mut History,
         strain: &StrainIncrement<D>,
         deformation: impl FnOnce() -> Tensor<D>,
     ) {
@@ -181,7 +214,15 @@ impl StressLaw {
             return;
         }
         let change = self.elastic_stress(&strain.gradient, strain.dilation);
-        let modulus = self.law.modulus_ratio(before, after);
+        let modulus = if self.law == Law::Preconsolidated {
+            self.preconsolidated_share(
+                -stress[D - 1][D - 1],
+                -change[D - 1][D - 1],
+                &mut history.yield_stress,
+            )
+        } else {
+            self.law.modulus_ratio(before, after)
+        };
         for i in 0..D {
             for j in 0..D {
                 stress[i][j] += modulus * change[i][j];
@@ -190,10 +231,52 @@ impl StressLaw {
     }
 }
 
+impl StressLaw {
+    /// Secant modulus over the initial one of a step from a vertical compression, Pa, that would grow by `elastic` at the
+    /// initial modulus. What of it goes beyond the yield stress goes at the modulus of first loading, and takes the yield
+    /// stress along: exact for a step of any size.
+    #[inline]
+    fn preconsolidated_share(&self, compression: f64, elastic: f64, yield_stress: &mut f64) -> f64 {
+        let beyond = elastic.min(compression + elastic - *yield_stress);
+        if beyond <= 0.0 {
+            return 1.0;
+        }
+        let gained = elastic - beyond + self.virgin_share * beyond;
+        *yield_stress = compression + gained;
+        gained / elastic
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::material::Material;
+
+    #[test]
+    fn a_preconsolidated_soil_is_stiff_up_to_its_largest_stress_whatever_the_steps() {
+        let soil = Material {
+            law: Law::Preconsolidated,
+            reload_modulus: 4.8e6,
+            preconsolidation: 3e4,
+            ..Material::default()
+        };
+        // E_oed = 1.2 MPa: strains to 30 and on to 60 kPa, back to 20 and on to 80 kPa.
+        let path = [3e4 / 4.8e6 + 3e4 / 1.2e6, -4e4 / 4.8e6, 4e4 / 4.8e6 + 2e4 / 1.2e6];
+        for steps in [1, 7] {
+            let mut history = History { yield_stress: soil.preconsolidation, ..History::default() };
+            let mut stress = [[0.0; 2]; 2];
+            for (strain, expected) in path.into_iter().zip([6e4, 2e4, 8e4]) {
+                let mut gradient = [[0.0; 2]; 2];
+                gradient[1][1] = -strain / f64::from(steps);
+                let increment = StrainIncrement { gradient, dilation: 0.0, volume_ratio: [1.0; 2] };
+                for _ in 0..steps {
+                    soil.stress_law().update(&mut stress, &mut history, &increment, || gradient);
+                }
+                assert!((stress[1][1] + expected).abs() < 1e-8, "{steps}: {stress:?} for {expected}");
+            }
+            assert!((history.yield_stress - 8e4).abs() < 1e-8);
+        }
+    }
 
     #[test]
     fn a_uniaxial_strain_meets_the_oedometric_modulus() {

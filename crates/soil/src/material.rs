@@ -32,6 +32,17 @@ pub struct Material {
     /// Mean of the conductivity at a node. Left out of the identity of a case where it is the paper's.
     #[serde(default, skip_serializing_if = "ConductivityMean::is_paper")]
     pub conductivity_mean: ConductivityMean,
+    /// Oedometric modulus of unloading and reloading, Pa, of a preconsolidated soil; zero of others.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub reload_modulus: f64,
+    /// Largest vertical effective stress so far, Pa, of a preconsolidated soil; zero of others.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub preconsolidation: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for Material {
@@ -50,6 +61,8 @@ impl Default for Material {
             gravity: 9.81,
             continuity: Continuity::Conservative,
             conductivity_mean: ConductivityMean::Points,
+            reload_modulus: 0.0,
+            preconsolidation: 0.0,
         }
     }
 }
@@ -107,12 +120,35 @@ impl Material {
     /// The law with its stiffness, by which stresses are updated.
     #[inline]
     pub fn stress_law(&self) -> StressLaw {
-        StressLaw { law: self.law, stiffness: self.stiffness() }
+        StressLaw { law: self.law, stiffness: self.stiffness(), virgin_share: 1.0 / self.stiffening() }
+    }
+
+    /// Oedometric modulus of the initial state over that of first loading: above 1 where the soil is preconsolidated.
+    fn stiffening(&self) -> f64 {
+        match self.law {
+            Law::Preconsolidated => self.reload_modulus / self.oedometric_modulus(),
+            _ => 1.0,
+        }
+    }
+
+    /// Oedometric modulus of the initial state, Pa, the stiffest that the soil has: that of reloading where it is
+    /// preconsolidated.
+    #[inline]
+    pub fn initial_modulus(&self) -> f64 {
+        self.oedometric_modulus() * self.stiffening()
     }
 
     /// Isotropic stiffness in the initial state.
     #[inline]
     pub fn stiffness(&self) -> Stiffness {
+        if self.law == Law::Preconsolidated {
+            let first_loading = Self { law: Law::Linear, ..*self }.stiffness();
+            let stiffening = self.stiffening();
+            return Stiffness {
+                lame: stiffening * first_loading.lame,
+                shear: stiffening * first_loading.shear,
+            };
+        }
         let shear = self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio));
         Stiffness { lame: self.oedometric_modulus() - 2.0 * shear, shear }
     }

@@ -101,7 +101,7 @@ impl Diffusion {
             Law::LogLinear | Law::Engineering => (volume.recip(), volume, volume.recip()),
             Law::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
             // Refused before: nothing follows from what is no number.
-            Law::NeoHookean => (f64::NAN, f64::NAN, f64::NAN),
+            Law::NeoHookean | Law::Preconsolidated => (f64::NAN, f64::NAN, f64::NAN),
         };
         let pores = volume - (1.0 - self.porosity);
         let dropped = match self.model.continuity {

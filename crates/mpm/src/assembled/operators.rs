@@ -72,8 +72,8 @@ fn numbered<T: Copy>(row: &[(usize, T)], number: &[Option<usize>]) -> Vec<(usize
 /// `P`, `[node] → (node, 1)`.
 fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, f64)>> {
     let mut rows = vec![Vec::new(); body.nodes.len()];
-    let soil = &body.material;
     for point in 0..body.points.len() {
+        let soil = body.soil_of(point);
         let mass = body.points.initial_volume[point] * (1.0 - soil.porosity) * soil.grain_density;
         let mut weights = Vec::new();
         body.basis.visit(body.grid.node_stride(), point, |node, weight, _| {

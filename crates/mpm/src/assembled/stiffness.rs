@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::operators::volumetric::{VectorRow, VolumetricRows};
+use oedometer_soil::law::StressLaw;
 use oedometer_soil::tensor::{Tensor, Vector, dot};
 
 /// A sparse matrix of `D × D` blocks between nodes.
@@ -131,7 +132,9 @@ impl<const D: usize> Body<D> {
             let volume = self.points.volume(point);
             stresses.clear();
             stresses.extend(
-                self.strain_row(point, rows).iter().map(|entry| (entry.node, self.unit_stresses(entry))),
+                self.strain_row(point, rows)
+                    .iter()
+                    .map(|entry| (entry.node, unit_stresses(self.stress_law_of(point), entry))),
             );
             for (row, force) in self.basis.gradient_row(&self.grid, point) {
                 let (row, mut place) = (&mut blocks.rows[row], 0);
@@ -146,16 +149,6 @@ impl<const D: usize> Body<D> {
             }
         }
         blocks
-    }
-
-    /// Stress at a point of a unit displacement along each direction.
-    fn unit_stresses(&self, entry: &StrainEntry<D>) -> [Tensor<D>; D] {
-        std::array::from_fn(|e| {
-            let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
-            unit[e] = 1.0;
-            entry.add_to(&mut displaced, &unit);
-            self.stress_law.elastic_stress(&displaced, entry.dilation[e])
-        })
     }
 
     /// `A = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, `[node] → (site, N/Pa)`.
@@ -184,6 +177,16 @@ impl<const D: usize> Body<D> {
         }
         forces
     }
+}
+
+/// Stress by a law of a unit displacement along each direction.
+fn unit_stresses<const D: usize>(law: &StressLaw, entry: &StrainEntry<D>) -> [Tensor<D>; D] {
+    std::array::from_fn(|e| {
+        let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
+        unit[e] = 1.0;
+        entry.add_to(&mut displaced, &unit);
+        law.elastic_stress(&displaced, entry.dilation[e])
+    })
 }
 
 /// `K_p = A Q D`: force of the pressures of an undrained body over its displacements, N/m, with its sign

@@ -9,7 +9,7 @@ use oedometer_soil::material::Material;
 pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
     let (n, coupling) = (porosity, soil.water_bulk_modulus / porosity);
     let (solid, water) = ((1.0 - n) * soil.grain_density, n * soil.water_density);
-    let ss = (soil.oedometric_modulus() + coupling * (1.0 - n) * (1.0 - n)) / solid;
+    let ss = (soil.initial_modulus() + coupling * (1.0 - n) * (1.0 - n)) / solid;
     let ww = coupling * n * n / water;
     let sw_squared = elementary::powi(coupling * n * (1.0 - n), 2) / (solid * water);
     let mean = 0.5 * (ss + ww);
@@ -20,7 +20,7 @@ pub fn fastest_wave_speed(soil: &Material, porosity: f64) -> f64 {
 pub fn undrained_wave_speed(soil: &Material) -> f64 {
     let n = soil.porosity;
     let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
-    ((soil.oedometric_modulus() + soil.coupling_modulus()) / density).sqrt()
+    ((soil.initial_modulus() + soil.coupling_modulus()) / density).sqrt()
 }
 
 /// Limit, s, by formula, safe for every method (docs/theory.md, Eq. 11): `Δt_w(√(1+z²) − z)` with `Δt_w = h/c` and
@@ -48,14 +48,14 @@ pub fn semi_implicit_limit(soil: &Material, cell_size: f64, dimensions: usize) -
     let n = soil.porosity;
     let per_length = 2.0 / cell_size;
     let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
-    let square = soil.oedometric_modulus() / inertia * per_length * per_length;
+    let square = soil.initial_modulus() / inertia * per_length * per_length;
     let damping = soil.unit_weight_of_water() / (soil.hydraulic_conductivity * inertia);
     let column = (damping + (damping * damping + 4.0 * square).sqrt()) / square;
     if dimensions == 1 {
         return column;
     }
     let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
-    column.min(cell_size / (soil.oedometric_modulus() / density).sqrt())
+    column.min(cell_size / (soil.initial_modulus() / density).sqrt())
 }
 
 #[cfg(test)]

@@ -148,15 +148,16 @@ pub fn critical_step<const D: usize>(
     }
     let observed = observed_step(&problem, settings, &probes, observer)?;
     let cell_size = problem.grid.cell_size;
-    let soil = &problem.material;
     Ok(CriticalStep {
         predicted,
         creeping_from,
         unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
-        wave_limit: cell_size / formula::fastest_wave_speed(soil, soil.porosity),
-        drag_limit: drag::step_limit(soil),
-        combined_limit: formula::combined_limit(soil, cell_size, settings.drag),
+        wave_limit: problem
+            .least_of_soils(|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity)),
+        drag_limit: problem.least_of_soils(drag::step_limit),
+        combined_limit: problem
+            .least_of_soils(|soil| formula::combined_limit(soil, cell_size, settings.drag)),
         probes,
     })
 }

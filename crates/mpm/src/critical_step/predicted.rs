@@ -7,6 +7,7 @@ use crate::critical_step::{formula, spectral_radius};
 use crate::explicit::ExplicitSettings;
 use crate::method::{PressureIntegration, Recovery};
 use crate::state::grid::Grid;
+use oedometer_soil::material::Material;
 use std::fmt;
 
 /// Cells of the column for which the critical step of a run is computed.
@@ -100,10 +101,14 @@ pub fn predict<const D: usize>(
     settings: &ExplicitSettings,
     most_cells: usize,
 ) -> Prediction<D> {
-    let safe = formula::combined_limit(&problem.material, problem.grid.cell_size, settings.drag);
+    let limit = |soil: &Material| formula::combined_limit(soil, problem.grid.cell_size, settings.drag);
+    let safe = problem.least_of_soils(limit);
     let problem = &one_point_set(problem);
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
-    let problem = if is_narrow {
+    let problem = if problem.soils.len() > 1 {
+        // Every cell may be the one that sets the limit.
+        problem.clone()
+    } else if is_narrow {
         without_middle(problem, most_cells)
     } else {
         corner(problem, (most_cells / 2).min(MOST_ACROSS))

@@ -37,7 +37,7 @@ impl<const D: usize> Body<D> {
         for (point, gradients) in self.velocity_gradients.iter().enumerate() {
             let place = self.cells.place[point];
             let place = place.map(|in_cells| (in_cells - GHOST_LAYERS as f64) * grid.cell_size);
-            let volumes = volumes_of(points, point, 1.0 - self.material.porosity);
+            let volumes = volumes_of(points, point, 1.0 - self.soil_of(point).porosity);
             self.basis.visit(grid.node_stride(), point, |node, value, _| {
                 let at = grid.node_position(node);
                 for (phase, gradient) in gradients.iter().enumerate() {

@@ -121,7 +121,7 @@ impl<const D: usize> Body<D> {
         self.surface_flux += dt * self.outflow_of(&self.nodes.flux);
         self.evaluate_sites(|body, place, porosity| {
             let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
-            -dt * body.material.water_bulk_modulus / porosity * rate
+            -dt * body.coupling_at(place, porosity) * rate
         });
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;

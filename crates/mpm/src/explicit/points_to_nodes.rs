@@ -14,11 +14,11 @@ impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
     pub fn map_masses(&mut self) {
         enter(Phase::MapVelocities);
-        let (soil, points) = (&self.material, &self.points);
+        let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_values(
             self.grid.node_stride(),
             #[inline(always)]
-            |point| masses_of(soil, points, point),
+            |point| masses_of(points.soil_among(soils, point), points, point),
             &mut self.nodes.sums.masses,
         );
         self.take_masses();
@@ -27,11 +27,14 @@ impl<const D: usize> Body<D> {
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
     pub fn map_velocities(&mut self) {
         enter(Phase::MapVelocities);
-        let (soil, points) = (&self.material, &self.points);
+        let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_values(
             self.grid.node_stride(),
             #[inline(always)]
-            |point| momenta_of(points, point, volumes_of(points, point, 1.0 - soil.porosity)),
+            |point| {
+                let solid_fraction = 1.0 - points.soil_among(soils, point).porosity;
+                momenta_of(points, point, volumes_of(points, point, solid_fraction))
+            },
             &mut self.nodes.sums.phases,
         );
         self.take_velocities();
@@ -40,12 +43,12 @@ impl<const D: usize> Body<D> {
     /// Maps masses and velocities in one pass.
     pub fn map_masses_and_velocities(&mut self) {
         enter(Phase::MapVelocities);
-        let (soil, points) = (&self.material, &self.points);
+        let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_both(
             self.grid.node_stride(),
             #[inline(always)]
             |point| {
-                let masses = masses_of(soil, points, point);
+                let masses = masses_of(points.soil_among(soils, point), points, point);
                 (masses, momenta_of(points, point, [masses[0][0], masses[0][1]]))
             },
             &mut self.nodes.sums.masses,

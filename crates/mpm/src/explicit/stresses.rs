@@ -11,7 +11,7 @@ use crate::state::grid::SIXTH;
 use crate::state::points::Points;
 use crate::wide::wide;
 use oedometer_soil::elementary;
-use oedometer_soil::law::StrainIncrement;
+use oedometer_soil::law::{History, StrainIncrement};
 use oedometer_soil::tensor::{Tensor, identity, inverse, product};
 
 /// What follows the deformation of the points beside their volumes.
@@ -45,10 +45,11 @@ impl<const D: usize> Body<D> {
 
     #[inline(always)]
     fn strain_points<const W: usize>(&mut self, stencils: &Stencils<D, W>, dt: f64) {
-        let (stride, law, following) = (*self.grid.node_stride(), self.stress_law, self.following());
+        let (stride, laws, following) = (*self.grid.node_stride(), &self.stress_laws[..], self.following());
         let deforms = self.configuration.deforms();
         let (field, points) = (&self.nodes.solid_velocity, &mut self.points);
-        let has_dilation = self.method.strain.is_bbar() && !law.law.is_hyperelastic();
+        let has_dilation = self.method.strain.is_bbar() && !self.material.law.is_hyperelastic();
+        let mut none = History::default();
         for point in 0..points.len() {
             let mut gradient = stencils.gradient(&stride, point, field);
             if self.configuration == Configuration::Total {
@@ -84,7 +85,9 @@ impl<const D: usize> Body<D> {
             if deforms {
                 *stress = rotated(stress, &increment);
             }
-            law.update(stress, &strain, || inverse(&points.inverse_deformation[point]).0);
+            let history = points.history.get_mut(point).unwrap_or(&mut none);
+            let law = &laws[usize::from(points.soil[point])];
+            law.update(stress, history, &strain, || inverse(&points.inverse_deformation[point]).0);
         }
     }
 

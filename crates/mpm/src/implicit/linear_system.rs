@@ -138,7 +138,7 @@ impl<const D: usize> Operators<'_, D> {
     /// Row of `C` at a site.
     fn capacity_row(&self, site: usize) -> Vec<(usize, f64)> {
         let (unknowns, scales) = (&self.unknowns, &self.unknowns.scales);
-        let storage = self.porosity(site) / self.body.material.water_bulk_modulus;
+        let storage = self.body.storage_of(self.unknowns.rows.sites[site], self.porosity(site));
         let mut row = self.weighted_displacements(&unknowns.rows.divergence[site]);
         row.push((unknowns.pressure[site], storage * scales.pressure));
         row

@@ -5,7 +5,6 @@ use crate::drag::{NodalBalance, NodalDrag};
 use crate::implicit::trial::{Skeleton, Trial};
 use crate::run::integrator::Formulation;
 use crate::run::stepper::StepFailure;
-use crate::run::watch::pores_closed;
 use oedometer_soil::tensor::Vector;
 
 /// Where a stage starts: what is known before it is solved.
@@ -41,11 +40,7 @@ impl<const D: usize> Trial<D> {
         self.momentum(increments, start, residual);
         self.body.nodes.take_flux();
         self.storage(increments, start, residual);
-        let (grains, ratios) = (1.0 - self.body.material.porosity, &self.body.points.volume_ratio);
-        match ratios.iter().position(|ratio| *ratio <= grains || ratio.is_nan()) {
-            Some(point) => Err(pores_closed(point, ratios[point], grains)),
-            None => Ok(()),
-        }
+        self.body.closed_pores().map_or(Ok(()), Err)
     }
 
     /// Nodal velocities of both phases at the end of the stage, and the residual of the mixture's momentum balance.
@@ -113,7 +108,7 @@ impl<const D: usize> Trial<D> {
         let (body, unknowns) = (&self.body, &self.unknowns);
         for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
             let porosity = body.porosity_of(*place);
-            let stored = porosity / body.material.water_bulk_modulus
+            let stored = body.storage_of(*place, porosity)
                 * unknowns.scales.pressure
                 * (increments[*number] - start.unknowns[*number]);
             residual[*number] = stored + start.duration * body.site_values[*place];

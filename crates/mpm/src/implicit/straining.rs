@@ -27,7 +27,8 @@ impl<const D: usize> Trial<D> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the innermost loop of an implicit step")]
     fn strain_points_by<const W: usize>(&mut self, stencils: &Stencils<D, W>, traces: &[f64]) {
-        let (stride, law) = (*self.body.grid.node_stride(), self.body.stress_law);
+        let (stride, laws) = (*self.body.grid.node_stride(), &self.body.stress_laws[..]);
+        let is_hyperelastic = self.body.material.law.is_hyperelastic();
         let (deforms, points) = (self.body.configuration.deforms(), &mut self.body.points);
         for point in 0..self.anchor.len() {
             let mut gradient = stencils.gradient(&stride, point, &self.displacement);
@@ -50,13 +51,18 @@ impl<const D: usize> Trial<D> {
                 points.volume_ratio[point] = start * stretch;
                 strain.volume_ratio[1] = start * stretch;
                 deformation = after;
-                if !law.law.is_hyperelastic() {
+                if !is_hyperelastic {
                     strain.gradient = strain_between(before, &after, elementary::ln(stretch));
                 }
             }
             let mut stress = self.anchor.effective_stress[point];
-            law.update(&mut stress, &strain, || product(&deformation, &self.carried[point]));
+            let mut history = self.anchor.history.get(point).copied().unwrap_or_default();
+            let law = &laws[usize::from(points.soil[point])];
+            law.update(&mut stress, &mut history, &strain, || product(&deformation, &self.carried[point]));
             points.effective_stress[point] = stress;
+            if let Some(kept) = points.history.get_mut(point) {
+                *kept = history;
+            }
         }
     }
 }

@@ -77,6 +77,56 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
 }
 
 #[test]
+fn a_step_that_is_given_up_leaves_no_trace_in_a_soil_that_remembers() {
+    let soil = Material {
+        law: Law::Preconsolidated,
+        reload_modulus: 4.8e6,
+        preconsolidation: 0.3,
+        ..Material::default()
+    };
+    let trial = || {
+        let body = Body::new(seed("GIMP-SRI-patch", &soil, 6));
+        Trial::new(body, Formulation::QuasiStatic, Skeleton::Implicit)
+    };
+    let (mut tried, mut fresh) = (trial(), trial());
+    let along = |trial: &Trial<1>, strain: f64| {
+        let mut increments = vec![0.0; trial.unknowns.count];
+        for (node, [number]) in trial.unknowns.displacement.iter().enumerate() {
+            if let Some(number) = number {
+                let height = trial.body.grid.node_position(node)[0] / trial.unknowns.scales.length;
+                increments[*number] = -strain * height;
+            }
+        }
+        increments
+    };
+    // 0.48 Pa at the modulus of reloading is beyond the yield stress, 0.048 Pa is not.
+    tried.move_to(&along(&tried, 1e-7));
+    assert!(tried.body.points.history.iter().all(|history| history.yield_stress > 0.3), "it yields");
+    assert!(tried.anchor.history.iter().all(|history| history.yield_stress == 0.3), "an anchor stays");
+    for trial in [&mut tried, &mut fresh] {
+        trial.move_to(&along(trial, 1e-8));
+    }
+    assert_eq!(tried.body.points, fresh.body.points, "nothing is left of the larger trial");
+    fresh.end_step(&along(&fresh, 1e-7), 0.0);
+    assert!(fresh.anchor.history.iter().all(|history| history.yield_stress > 0.3), "an end is kept");
+    // Whole steps: one that is refused for its error, and one without it.
+    let schedule = schedule();
+    let plan = Plan::of(&seed("GIMP-SRI-patch", &soil, 6), &schedule);
+    let settled = [true, false].map(|is_refused| {
+        let mut newton = NewtonStepper::new(Body::new(seed("GIMP-SRI-patch", &soil, 6)), &plan);
+        if is_refused {
+            newton.advance(&EqualSteps::first(0.0, 2.0, 1), 1e-9).expect("solvable");
+            assert_eq!(newton.work().rejected_steps, 1);
+        }
+        newton.advance(&EqualSteps::first(0.0, 0.5, 1), f64::INFINITY).expect("solvable");
+        newton.snapshot(0.5)
+    });
+    let [after, without] = &settled;
+    assert!(difference(&after.points.pressure, &without.points.pressure) < 1e-9);
+    assert!((after.settlement / without.settlement - 1.0).abs() < 1e-9);
+}
+
+#[test]
 fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
     let soil = Material { law: Law::LogLinear, ..Material::default() };
     for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {

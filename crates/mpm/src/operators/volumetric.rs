@@ -58,7 +58,40 @@ impl<const D: usize> Body<D> {
         if self.method.pressure.is_by_cells() {
             self.cells.porosity[place]
         } else {
-            self.material.porosity_at(self.points.volume_ratio[place])
+            self.soil_of(place).porosity_at(self.points.volume_ratio[place])
+        }
+    }
+
+    /// Storage of the water `n/K_w`, 1/Pa, of a cell or point that is a site, with its porosity: the mean of the soils
+    /// in it.
+    #[inline]
+    pub fn storage_of(&self, place: usize, porosity: f64) -> f64 {
+        if self.soils.len() == 1 {
+            porosity / self.material.water_bulk_modulus
+        } else if self.method.pressure.is_by_cells() {
+            self.cells.storage[place]
+        } else {
+            porosity / self.soil_of(place).water_bulk_modulus
+        }
+    }
+
+    /// Coupling modulus `Q = K_w/n`, Pa, of a site: one over its storage.
+    #[inline]
+    fn coupling_of(&self, place: usize, porosity: f64) -> f64 {
+        if self.soils.len() == 1 {
+            self.material.water_bulk_modulus / porosity
+        } else {
+            1.0 / self.storage_of(place, porosity)
+        }
+    }
+
+    /// Coupling modulus at a place.
+    #[inline]
+    pub(crate) fn coupling_at(&self, place: Place, porosity: f64) -> f64 {
+        match (place, self.method.pressure) {
+            (Place::Centre(cell), _) => self.coupling_of(cell, porosity),
+            (Place::Point(point), PressureIntegration::Points) => self.coupling_of(point, porosity),
+            (Place::Point(point), _) => self.coupling_of(self.cells.of_point[point], porosity),
         }
     }
 
@@ -71,7 +104,7 @@ impl<const D: usize> Body<D> {
         match self.method.pressure {
             PressureIntegration::Points => {
                 for (point, site) in sites.iter_mut().enumerate() {
-                    let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+                    let porosity = self.soil_of(point).porosity_at(self.points.volume_ratio[point]);
                     *site = value(self, Place::Point(point), porosity);
                 }
             }
@@ -136,10 +169,7 @@ impl<const D: usize> Body<D> {
         };
         VolumetricRows {
             divergence: self.divergence_rows(&sites, &site_of_place),
-            coupling: sites
-                .iter()
-                .map(|place| self.material.water_bulk_modulus / self.porosity_of(*place))
-                .collect(),
+            coupling: sites.iter().map(|place| self.coupling_of(*place, self.porosity_of(*place))).collect(),
             recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
             sites,
             site_of_place,

@@ -188,7 +188,7 @@ mod tests {
             place[0] = 0.037 + 0.9 * place[0] + 0.02 * place[0] * place[0];
         }
         let mut cells = Cells::new(&grid, points.len());
-        cells.locate(&grid, &points, Material::default().porosity);
+        cells.locate(&grid, &points, &[Material::default()]);
         (grid, points, cells)
     }
 
@@ -223,7 +223,7 @@ mod tests {
             points.half_length[point][0] *= 0.9 + 0.04 * points.initial_position[point][0];
         }
         confined.add_stress(&mut points, 1.0);
-        cells.locate(&grid, &points, soil.porosity);
+        cells.locate(&grid, &points, &[soil]);
         let mut memory = CellAverages::new(&grid, Some(confined));
         let before = points.clone();
         memory.spread_over_points(&grid, &cells, &mut points);

@@ -10,6 +10,7 @@
 //! before its fields are wrong, for what grows slowly grows in all of them alike.
 
 use crate::body::Body;
+use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Tensor;
 
 /// What an energy may rise above the least so far, as a share of the largest that was ever in motion.
@@ -79,6 +80,7 @@ impl<const D: usize> Body<D> {
             || self.forcing.is_some()
             || self.plate.is_some()
             || self.material.law.is_hyperelastic()
+            || self.has_history()
         {
             return None;
         }
@@ -92,7 +94,8 @@ impl<const D: usize> Body<D> {
         let strained = (0..points.len()).map(|point| {
             let ratio = points.volume_ratio[point];
             let modulus = self.material.law.modulus_ratio(ratio, ratio);
-            points.volume(point) * self.strain_energy(&points.effective_stress[point]) / modulus
+            let energy = strain_energy(self.soil_of(point), &points.effective_stress[point]);
+            points.volume(point) * energy / modulus
         });
         let pressed = water.map(|(volume, pressure)| volume * pressure * pressure);
         Some(Energy {
@@ -116,25 +119,27 @@ impl<const D: usize> Body<D> {
         largest
     }
 
-    /// Volumes of water of the points and their pressures.
+    /// Volumes of water of the points, as if all were as stiff as the first soil's, and their pressures.
     pub(crate) fn water_of_points(&self) -> impl Iterator<Item = (f64, f64)> {
         let points = &self.points;
         (0..points.len()).map(|point| {
-            let porosity = self.material.porosity_at(points.volume_ratio[point]);
-            (porosity * points.volume(point), points.pressure[point])
+            let soil = self.soil_of(point);
+            let share = self.material.water_bulk_modulus / soil.water_bulk_modulus;
+            let porosity = soil.porosity_at(points.volume_ratio[point]);
+            (porosity * points.volume(point) * share, points.pressure[point])
         })
     }
+}
 
-    /// Energy of an effective stress per volume, J/m³: of an oedometer's in one dimension, of plane strain in two.
-    fn strain_energy(&self, stress: &Tensor<D>) -> f64 {
-        if D == 1 {
-            return 0.5 * stress[0][0] * stress[0][0] / self.material.oedometric_modulus();
-        }
-        let (modulus, ratio) = (self.material.youngs_modulus, self.material.poissons_ratio);
-        let squares: f64 = stress.as_flattened().iter().map(|one| one * one).sum();
-        let trace: f64 = (0..D).map(|d| stress[d][d]).sum();
-        0.5 * (1.0 + ratio) / modulus * (squares - ratio * trace * trace)
+/// Energy of an effective stress per volume, J/m³: of an oedometer's in one dimension, of plane strain in two.
+fn strain_energy<const D: usize>(soil: &Material, stress: &Tensor<D>) -> f64 {
+    if D == 1 {
+        return 0.5 * stress[0][0] * stress[0][0] / soil.oedometric_modulus();
     }
+    let (modulus, ratio) = (soil.youngs_modulus, soil.poissons_ratio);
+    let squares: f64 = stress.as_flattened().iter().map(|one| one * one).sum();
+    let trace: f64 = (0..D).map(|d| stress[d][d]).sum();
+    0.5 * (1.0 + ratio) / modulus * (squares - ratio * trace * trace)
 }
 
 #[cfg(test)]

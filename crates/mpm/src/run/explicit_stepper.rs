@@ -88,7 +88,9 @@ impl<const D: usize> ExplicitStepper<D> {
     /// A body at its start.
     pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
         let schedule = plan.schedule;
-        let is_assembled = body.configuration == Configuration::Frozen && schedule.kernel == Kernel::Fastest;
+        let is_assembled = body.configuration == Configuration::Frozen
+            && schedule.kernel == Kernel::Fastest
+            && !body.has_history();
         let mut stepper = Self {
             frozen: is_assembled.then(|| AssembledStep::new(&body)),
             start: body.points.clone(),

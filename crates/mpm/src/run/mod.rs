@@ -64,7 +64,9 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
 /// Newton's iteration elsewhere.
 fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper> {
     let Schedule { integrator, formulation, .. } = *plan.schedule;
-    let is_linear = body.configuration == Configuration::Frozen && formulation == Formulation::QuasiStatic;
+    let is_linear = body.configuration == Configuration::Frozen
+        && formulation == Formulation::QuasiStatic
+        && !body.has_history();
     match integrator {
         IntegratorKind::Explicit => Box::new(ExplicitStepper::new(body, plan)),
         _ if is_linear => Box::new(LinearStepper::new(body, plan)),

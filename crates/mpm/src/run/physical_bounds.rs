@@ -5,6 +5,7 @@ use crate::critical_step::formula;
 use crate::drag;
 use crate::loaded_body::NORMAL;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
+use oedometer_soil::material::Material;
 
 /// Settlements over their scale that no scene reaches.
 ///
@@ -56,7 +57,7 @@ impl PhysicalBounds {
             let (force, release, are_kept) = (without, 0.0, false);
             return Self { settlement_scale: scale, settlement, pressure: without, force, release, are_kept };
         }
-        let (soil, cell_size) = (&problem.material, problem.grid.cell_size);
+        let cell_size = problem.grid.cell_size;
         let of_load = problem.pressure_scale * (1..D).map(|_| cell_size).product::<f64>();
         let up = if problem.plate_load.is_some() { NORMAL } else { D - 1 };
         let cells = problem.grid.cells[up] as f64;
@@ -68,8 +69,8 @@ impl PhysicalBounds {
         } else {
             MOST_FORCE * of_load / cells
         };
-        let joining = 0.5 * drag::step_limit(soil);
-        let passing = cells * cell_size / formula::undrained_wave_speed(soil);
+        let joining = 0.5 * problem.most_of_soils(drag::step_limit);
+        let passing = cells * cell_size / problem.least_of_soils(formula::undrained_wave_speed);
         Self {
             settlement_scale: scale,
             settlement: SETTLEMENTS.map(|share| share * scale),
@@ -139,7 +140,8 @@ fn settlement_scale<const D: usize>(problem: &Problem<D>) -> f64 {
     }
     // The mean height: a cosine has none of its own.
     let height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
-    let column = problem.pressure_scale / soil.oedometric_modulus() * height;
+    let softest = problem.least_of_soils(Material::oedometric_modulus);
+    let column = problem.pressure_scale / softest * height;
     match problem.load_shape {
         LoadShape::Uniform => column,
         LoadShape::Cosine { length } => {

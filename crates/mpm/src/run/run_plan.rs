@@ -10,6 +10,7 @@ use crate::run::profile::{self, Phase, enter};
 use crate::run::results::outcome::StepSizes;
 use crate::run::schedule::{Schedule, StepLimit, TimeStepRule};
 use crate::state::points::Points;
+use oedometer_soil::material::Material;
 use std::fmt;
 
 /// Share of a semi-implicit run's critical step that growing steps end at.
@@ -68,7 +69,7 @@ impl<'a> Plan<'a> {
     /// What implicit steps are measured by is a formula: of their own limit where the skeleton is
     /// explicit, of the explicit integrator's where there is none.
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
-        let (soil, cell_size, settings) = (&problem.material, problem.grid.cell_size, &schedule.settings);
+        let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let predicted = || predict_for_run(problem, settings);
         let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
             (StepBound::AllWaves, None) => {
@@ -78,9 +79,12 @@ impl<'a> Plan<'a> {
             (StepBound::AllWaves, Some(known)) => (known, None),
             (StepBound::SkeletonWaves, _) => {
                 let unknown = (!problem.points.began_on_lattice()).then_some(UnknownLimit::OffLattice);
-                (formula::semi_implicit_limit(soil, cell_size, D), unknown)
+                (problem.least_of_soils(|soil| formula::semi_implicit_limit(soil, cell_size, D)), unknown)
             }
-            (StepBound::Accuracy, _) => (formula::combined_limit(soil, cell_size, settings.drag), None),
+            (StepBound::Accuracy, _) => {
+                let limit = |soil: &Material| formula::combined_limit(soil, cell_size, settings.drag);
+                (problem.least_of_soils(limit), None)
+            }
         };
         let unknown_limit = unknown.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
         enter(Phase::Setup);
@@ -115,9 +119,10 @@ impl<'a> Plan<'a> {
 /// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
 /// pressure, the larger: what a sound run does not leave a thousandfold.
 fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
-    let soil = &problem.material;
-    let wave = formula::undrained_wave_speed(soil);
-    let density = soil.mixture_density();
-    let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
-    problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
+    problem.most_of_soils(|soil| {
+        let wave = formula::undrained_wave_speed(soil);
+        let density = soil.mixture_density();
+        let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
+        problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
+    })
 }

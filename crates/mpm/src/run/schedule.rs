@@ -7,6 +7,7 @@ use crate::run::integrator::{Formulation, IntegratorKind};
 use crate::run::stepper::EqualSteps;
 use crate::time_limit::TimeLimit;
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// Kernel of the explicit step.
@@ -82,8 +83,8 @@ impl TimeStepRule {
         match self {
             Self::Stable(share) => share * critical,
             Self::Courant(share) => {
-                let soil = &problem.material;
-                share * problem.grid.cell_size / formula::fastest_wave_speed(soil, soil.porosity)
+                let speed = |soil: &Material| formula::fastest_wave_speed(soil, soil.porosity);
+                share * problem.grid.cell_size / problem.most_of_soils(speed)
             }
             Self::Seconds(seconds) => *seconds,
             Self::Growth(growth) => growth * diffusion_time(problem),
@@ -114,7 +115,8 @@ impl TimeStepRule {
 
 /// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
 fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
-    problem.grid.cell_size * problem.grid.cell_size / problem.material.coefficient_of_consolidation()
+    problem.grid.cell_size * problem.grid.cell_size
+        / problem.most_of_soils(Material::coefficient_of_consolidation)
 }
 
 /// Step sizes grow by this factor from one level to the next.

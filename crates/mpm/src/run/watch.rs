@@ -158,12 +158,22 @@ impl<'a> Watch<'a> {
     }
 }
 
+impl<const D: usize> Body<D> {
+    /// A point whose pores closed, where there is one.
+    pub(crate) fn closed_pores(&self) -> Option<StepFailure> {
+        let grains = |point: usize| 1.0 - self.soil_of(point).porosity;
+        let ratios = &self.points.volume_ratio;
+        let is_closed = |point: &usize| ratios[*point] <= grains(*point) || ratios[*point].is_nan();
+        let point = (0..ratios.len()).find(is_closed)?;
+        Some(pores_closed(point, ratios[point], grains(point)))
+    }
+}
+
 /// A point whose pores closed or that left the grid, where there is one.
 pub fn lost_point<const D: usize>(body: &Body<D>) -> Option<StepFailure> {
     let points = &body.points;
-    let grains = 1.0 - body.material.porosity;
-    if let Some(point) = points.volume_ratio.iter().position(|ratio| *ratio <= grains) {
-        return Some(pores_closed(point, points.volume_ratio[point], grains));
+    if let Some(closed) = body.closed_pores() {
+        return Some(closed);
     }
     let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
     let reason = format!("point {outside} is at {:?} m", points.position[outside]);

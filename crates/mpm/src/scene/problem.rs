@@ -18,6 +18,7 @@ use crate::state::nodes::Support;
 use crate::state::points::Points;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::{Base, ColumnParameters};
+use oedometer_soil::law::History;
 use oedometer_soil::material::Material;
 
 /// Cells above the column, so that a surface that rises stays on the grid.
@@ -146,6 +147,10 @@ pub fn column_problem<const D: usize>(
     let set_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
         let mut points = Points::lattice(cell_size, extent, per_cell);
         column.points.arrange(&mut points, cell_size, cells);
+        if soil.law.has_history() {
+            let start = History { yield_stress: soil.preconsolidation, ..History::default() };
+            points.history = vec![start; points.len()];
+        }
         if let Some(start) = &start {
             start.apply(&mut points, column.height)?;
             if column.self_weight {
@@ -193,6 +198,7 @@ pub fn column_problem<const D: usize>(
         points,
         water,
         material: *soil,
+        soils: vec![*soil],
         method,
         configuration: method.configuration_or(scene.configuration()),
         load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },

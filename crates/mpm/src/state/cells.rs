@@ -3,6 +3,7 @@
 use crate::state::grid::{GHOST_LAYERS, Grid};
 use crate::state::points::Points;
 use crate::wide::wide;
+use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector};
 
 /// Share of a cell that a domain must reach into it to count.
@@ -30,6 +31,9 @@ pub struct Cells<const D: usize> {
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
     pub porosity: Vec<f64>,
+    /// Volume-weighted mean of the water's storage `n/K_w`, 1/Pa, of each occupied cell's points, where the body has soils
+    /// of several kinds; none elsewhere.
+    pub storage: Vec<f64>,
     /// Volume-weighted mean of the inverse deformation gradients of each occupied cell's points,
     /// where shape functions stay on the initial configuration.
     inverse_deformation: Vec<Tensor<D>>,
@@ -50,12 +54,13 @@ impl<const D: usize> Cells<D> {
             occupied: Vec::with_capacity(count),
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
+            storage: Vec::new(),
             inverse_deformation: vec![[[0.0; D]; D]; count],
         }
     }
 
     /// Finds the cell of every point and sums volumes over each cell's points.
-    pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, initial_porosity: f64) {
+    pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, soils: &[Material]) {
         let found = self.of_point.iter_mut().zip(&mut self.place);
         wide!(for (position, (cell, place)) in points.position.iter().zip(found) {
             *place = grid.held_in_cells(position);
@@ -66,7 +71,7 @@ impl<const D: usize> Cells<D> {
             self.point_count[*cell] += 1;
         }
         self.list_occupied();
-        self.sum_volumes(points, initial_porosity);
+        self.sum_volumes(points, soils);
     }
 
     /// Lists the cells that hold points.
@@ -122,18 +127,28 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Sums volumes over each cell's points, of cells that were [located](Self::locate).
-    pub fn sum_volumes(&mut self, points: &Points<D>, initial_porosity: f64) {
-        let solid_fraction = 1.0 - initial_porosity;
+    pub fn sum_volumes(&mut self, points: &Points<D>, soils: &[Material]) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
         let volumes = points.initial_volume.iter().zip(&points.volume_ratio);
-        for (cell, (initial, ratio)) in self.of_point.iter().zip(volumes) {
+        for (point, (cell, (initial, ratio))) in self.of_point.iter().zip(volumes).enumerate() {
+            let solid_fraction = 1.0 - points.soil_among(soils, point).porosity;
             self.volume[*cell] += initial * ratio;
             // n V = V − (1 − n_0) V_0
             self.porosity[*cell] += initial * (ratio - solid_fraction);
         }
         for cell in &self.occupied {
             self.porosity[*cell] /= self.volume[*cell];
+        }
+        if soils.len() > 1 {
+            self.storage.resize(self.volume.len(), 0.0);
+            self.storage.fill(0.0);
+            for (point, cell) in self.of_point.iter().enumerate() {
+                let soil = points.soil_among(soils, point);
+                let share = points.volume(point) / self.volume[*cell];
+                let porosity = soil.porosity_at(points.volume_ratio[point]);
+                self.storage[*cell] += share * porosity / soil.water_bulk_modulus;
+            }
         }
     }
 
@@ -310,7 +325,7 @@ mod tests {
             }
             let mut first = Cells::new(&grid, points.len());
             for cells in [&mut again, &mut first] {
-                cells.locate(&grid, &points, 0.3);
+                cells.locate(&grid, &points, &[Material::default()]);
                 cells.find_reached(&grid, &points);
             }
             assert_eq!(again.of_point, first.of_point, "step {step}");
@@ -331,7 +346,7 @@ mod tests {
         let mut points = Points::lattice(0.5, [2], 2);
         points.volume_ratio[0] = 0.9;
         let mut cells = Cells::new(&grid, points.len());
-        cells.locate(&grid, &points, 0.3);
+        cells.locate(&grid, &points, &[Material::default()]);
         let occupied: Vec<usize> = cells.occupied().collect();
         assert_eq!(occupied, [2, 3], "two ghosts below, the other cells empty");
         assert!((cells.porosity[3] - 0.3).abs() < 1e-15);

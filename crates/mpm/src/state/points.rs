@@ -1,5 +1,7 @@
 //! The material points: they carry skeleton and water and move with the skeleton.
 
+use oedometer_soil::law::History;
+use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, identity};
 
 /// State of the material points, structure of arrays; index = point.
@@ -30,6 +32,10 @@ pub struct Points<const D: usize> {
     pub effective_stress: Vec<Tensor<D>>,
     /// Excess pore pressure, Pa, compression positive.
     pub pressure: Vec<f64>,
+    /// Number of the point's soil among those of its body.
+    pub soil: Vec<u8>,
+    /// What the soil of a point keeps beside its stress; none at all in bodies whose laws have no history.
+    pub history: Vec<History>,
 }
 
 impl<const D: usize> Points<D> {
@@ -62,6 +68,8 @@ impl<const D: usize> Points<D> {
             water_velocity: vec![[0.0; D]; count],
             effective_stress: vec![[[0.0; D]; D]; count],
             pressure: vec![0.0; count],
+            soil: vec![0; count],
+            history: Vec::new(),
         }
     }
 
@@ -95,7 +103,15 @@ impl<const D: usize> Points<D> {
             water_velocity: pick(&self.water_velocity, keep),
             effective_stress: pick(&self.effective_stress, keep),
             pressure: pick(&self.pressure, keep),
+            soil: pick(&self.soil, keep),
+            history: if self.history.is_empty() { Vec::new() } else { pick(&self.history, keep) },
         }
+    }
+
+    /// The soil of a point among those of its body.
+    #[inline]
+    pub fn soil_among<'a>(&self, soils: &'a [Material], point: usize) -> &'a Material {
+        &soils[usize::from(self.soil[point])]
     }
 
     /// Whether every point began on the lattice of the cells, a whole number of domains from their edges.

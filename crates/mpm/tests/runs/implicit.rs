@@ -297,6 +297,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         support: Support::oedometer(),
         points,
         material: one.material,
+        soils: one.soils,
         method: one.method,
         configuration: one.configuration,
         load: one.load,
@@ -328,6 +329,7 @@ fn a_plane_column_at_large_strain_is_the_column() {
         .iter_mut()
         .for_each(|stress| stress[1][1] = line.points.effective_stress[0][0][0]);
     (plane.material, plane.load, plane.pressure_scale) = (line.material, line.load, line.pressure_scale);
+    plane.soils.clone_from(&line.soils);
     plane.initial_gradient = [[0.0, 0.0], [0.0, strain]];
     let rule = TimeStepRule::Growth(0.2);
     let line = solve(line, IntegratorKind::Implicit, rule, &[0.1]).snapshots.remove(0);

@@ -167,7 +167,7 @@ pub(crate) mod tests {
             let grid = Grid::new(cell_size, extent);
             let points = Points::lattice(cell_size, extent, per_cell);
             let mut cells = Cells::new(&grid, points.len());
-            cells.locate(&grid, &points, 0.3);
+            cells.locate(&grid, &points, &[Material::default()]);
             let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);
             nodes.sums.masses.fill([[1.0; 4]]);
             nodes.take_masses(&Material::default());

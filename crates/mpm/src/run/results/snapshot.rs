@@ -226,17 +226,20 @@ impl<const D: usize> Body<D> {
     }
 
     fn totals(&self, start: &Points<D>) -> Totals {
-        let soil = &self.material;
         let count = self.points.len();
-        let pore_volume = |point: usize| start.volume(point) * soil.porosity_at(start.volume_ratio[point]);
+        let compliance = |point: usize| {
+            let soil = self.soil_of(point);
+            let share = self.material.water_bulk_modulus / soil.water_bulk_modulus;
+            start.volume(point) * soil.porosity_at(start.volume_ratio[point]) * share
+        };
         Totals {
             volume: (0..count).map(|point| self.points.volume(point)).sum(),
             solid_mass: self.nodes.solid_mass.iter().sum(),
             surface_flux: self.surface_flux,
             water_expansion: (0..count)
-                .map(|point| pore_volume(point) * (start.pressure[point] - self.points.pressure[point]))
+                .map(|point| compliance(point) * (start.pressure[point] - self.points.pressure[point]))
                 .sum::<f64>()
-                / soil.water_bulk_modulus,
+                / self.material.water_bulk_modulus,
             internal_force_imbalance: self.internal_force_imbalance(),
             unbalanced_force: self.unbalanced_force(),
             double_point: None,

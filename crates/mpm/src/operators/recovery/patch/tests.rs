@@ -3,6 +3,7 @@
 use super::*;
 use crate::state::grid::GHOST_LAYERS;
 use crate::state::points::Points;
+use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
 fn recovered<const D: usize>(
@@ -11,7 +12,7 @@ fn recovered<const D: usize>(
     field: impl Fn(&Vector<D>) -> f64,
 ) -> Vec<(f64, f64)> {
     let mut cells = Cells::new(grid, points.len());
-    cells.locate(grid, points, 0.3);
+    cells.locate(grid, points, &[Material::default()]);
     let mut rows = PatchRows::new(points.len(), grid);
     rows.build(grid, &cells);
     let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
@@ -71,7 +72,7 @@ fn both_rows<const D: usize>(place: Vector<D>, is_occupied: impl Fn(&[usize; D])
     let point = keep.iter().position(|kept| *kept == centre).expect("the middle");
     points.position[point] = place.map(|x| 1.0 + x);
     let mut cells = Cells::new(&grid, points.len());
-    cells.locate(&grid, &points, 0.3);
+    cells.locate(&grid, &points, &[Material::default()]);
     let mut rows = PatchRows::new(points.len(), &grid);
     rows.build(&grid, &cells);
     let mut fitted = vec![0.0; power(BLOCK, D)];
@@ -107,7 +108,7 @@ fn closed_forms_are_the_fit_in_a_column_of_one_cell_across() {
         *place = [place[0] + nudge, place[1] - nudge];
     }
     let mut cells = Cells::new(&grid, points.len());
-    cells.locate(&grid, &points, 0.3);
+    cells.locate(&grid, &points, &[Material::default()]);
     let mut rows = PatchRows::new(points.len(), &grid);
     rows.build(&grid, &cells);
     for point in 0..points.len() {
