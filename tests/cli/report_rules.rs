@@ -136,7 +136,7 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
         panic!("{choice:?}")
     };
     let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
-    assert_eq!(words, ["error", "order", "cost"]);
+    assert_eq!(words, ["Error, %", "Order", "Cost to 1 %"]);
     let html = render_html(&page).expect("a page");
     assert!(!html.contains("not tried"), "{html}");
     // Splines hold no plate; each of the three views has their three cells, with the reason.

@@ -1,9 +1,11 @@
-//! Measurements of other programs on the seed column; `peers.csv` says what was measured and how.
+//! Measurements of other programs on the seed column, and errors that they pin in tests of their own; `peers.csv` and
+//! `peer_series.csv` say what was measured and how.
 
 use crate::case::{Quantity, Sample};
 use crate::judge::comparison::work_precision::TimedRun;
-use crate::judge::paths::first_error;
+use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::largest;
+use oedometer_convergence::{Classification, Context, ErrorSeries, Undefined, classify, pair_orders};
 use oedometer_exact::ReferenceKind;
 use std::sync::LazyLock;
 
@@ -54,6 +56,44 @@ fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
     reader.deserialize().map(peer).collect()
 }
 
+/// The errors of a convergence test of another program, from coarse to fine.
+#[derive(Clone, Debug)]
+pub struct PeerSeries {
+    /// The program and its test.
+    pub name: String,
+    /// What the errors are of.
+    pub quantity: String,
+    /// Cell sizes, m, and errors.
+    pub levels: Vec<(f64, f64)>,
+}
+
+impl PeerSeries {
+    /// The order between neighbours.
+    pub fn orders(&self) -> Vec<Result<f64, Undefined>> {
+        pair_orders(&ErrorSeries::of(&self.levels))
+    }
+
+    /// The class of the series, for elements of second order.
+    pub fn classified(&self) -> Classification {
+        classify(&ErrorSeries::of(&self.levels), &Context { formal_order: Some(2.0), ..Context::default() })
+    }
+}
+
+/// Every convergence test whose errors are known.
+pub static PEER_SERIES: LazyLock<Vec<PeerSeries>> = LazyLock::new(|| {
+    read_series(include_str!("peer_series.csv")).expect("a test reads the table of the sources")
+});
+
+fn read_series(text: &str) -> Result<Vec<PeerSeries>, csv::Error> {
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+    let rows: Result<Vec<(String, String, String, f64, f64)>, _> = reader.deserialize().collect();
+    let series = |((name, quantity), rows): ((String, String), Vec<(String, String, String, f64, f64)>)| {
+        PeerSeries { name, quantity, levels: rows.iter().map(|row| (row.3, row.4)).collect() }
+    };
+    let groups = grouped(rows?, |row| (format!("{}: {}", row.0, row.1), row.2.clone()));
+    Ok(groups.into_iter().map(series).collect())
+}
+
 /// Errors of a run at the places and times of the peers' errors, where it has them.
 pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
     let reference = ReferenceKind::TerzaghiIncompressible.name();
@@ -93,6 +133,7 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::judge::comparison::work_precision::WorkPrecision;
     use crate::record::{Record, WallSample};
+    use oedometer_convergence::Class;
 
     /// Runs of a scene on two meshes, with a cost that is the same on every machine.
     fn runs_of(scene: &str, table: &str) -> Vec<Record> {
@@ -120,6 +161,18 @@ mod tests {
         let broken =
             read("# a note\na,b,c,d,e,f,g,h,i,j\nx,y,10,,,many,,,,\n").expect_err("no number").to_string();
         assert!(broken.contains("line: 3"), "{broken}");
+    }
+
+    #[test]
+    fn the_errors_that_kratos_pins_are_no_settled_order_of_the_pressure() {
+        let [displacement, pressure] = PEER_SERIES.as_slice() else { panic!("{PEER_SERIES:?}") };
+        let orders: Vec<f64> = pressure.orders().into_iter().map(|order| order.expect("an order")).collect();
+        // The orders by hand: log2 of the ratios of neighbours.
+        for (order, by_hand) in orders.iter().zip([2.483, 1.753, 0.912]) {
+            assert!((order - by_hand).abs() < 1e-3, "{orders:?}");
+        }
+        assert_ne!(pressure.classified().class, Class::Asymptotic);
+        assert_eq!(displacement.levels.len(), 4);
     }
 
     #[test]

@@ -13,12 +13,12 @@ use oedometer_convergence::Classification;
 use oedometer_mpm::critical_step::formula;
 use oedometer_soil::elementary;
 
-/// The runs of a contender: one path over the mesh, and its finest mesh again with another step.
+/// The runs of a contender: one path over the mesh, and one of its meshes again with another step.
 pub struct Runs<'a> {
     /// From coarse to fine.
     pub path: Vec<&'a Record>,
-    /// The finest mesh with the second step.
-    pub second_step: Option<&'a Record>,
+    /// The run on a mesh, and that with half its step.
+    pub two_steps: Option<(&'a Record, &'a Record)>,
 }
 
 impl<'a> Runs<'a> {
@@ -29,14 +29,14 @@ impl<'a> Runs<'a> {
             records.iter().filter(|record| !is_refused && contender.runs(&record.case)).collect();
         let step = |record: &Record| record.step_sizes.target;
         own.sort_by(|a, b| a.case.cells.cmp(&b.case.cells).then(step(b).total_cmp(&step(a))));
-        let (mut path, mut second_step) = (Vec::<&Record>::new(), None);
+        let (mut path, mut two_steps) = (Vec::<&Record>::new(), None);
         for record in own {
             match path.last() {
-                Some(last) if last.case.cells == record.case.cells => second_step = Some(record),
+                Some(last) if last.case.cells == record.case.cells => two_steps = Some((*last, record)),
                 _ => path.push(record),
             }
         }
-        Self { path, second_step }
+        Self { path, two_steps }
     }
 
     /// The failure of the coarsest run that failed: its name, and where and why.

@@ -133,7 +133,7 @@ fn cell_of(study: &Study, contender: &Contender, runs: &Runs<'_>, cells: usize) 
         locking: on_mesh.and_then(measures::locking_of),
         step_ratio: on_mesh.and_then(measures::step_ratio_of),
         score: on_mesh.and_then(score_of),
-        scatter: on_mesh.zip(runs.second_step).and_then(|(one, other)| scatter_of(one, other)),
+        scatter: runs.two_steps.and_then(|(one, other)| scatter_of(one, other)),
         ended,
         complaint: on_mesh.and_then(measures::complaint_of),
     }

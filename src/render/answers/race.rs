@@ -1,7 +1,7 @@
 //! Which method should I take? Every contender in every situation, and sentences computed from it.
 
 use crate::case::contender::PAPERS;
-use crate::judge::race::grid::{Grid, Overall, Score};
+use crate::judge::race::grid::{Grid, GridRow, Overall, Score};
 use crate::judge::race::{Ended, RaceCell, RaceRow, grid_of};
 use crate::render::answers::{Answer, Links, Question};
 use crate::render::number;
@@ -11,6 +11,11 @@ use crate::render::table::{Cell, Shade, Table, TableColumn, columns};
 use oedometer_soil::wording::count_of;
 
 const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
+
+/// Contenders that a sentence names as tied with the best.
+const MOST_TIED: usize = 5;
+/// Relative change by half the step from which on the step counts.
+const STEP_COUNTS: f64 = 0.05;
 
 /// Words for the groups of situations.
 const GROUPS: [(&str, &str); 7] = [
@@ -36,9 +41,9 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     let errors = view(&|row, contender| error_cell(&grid, row, &rows[row].contenders[contender], contender, target(row)))
         .note(format!(
             "Largest error of pressure, effective stress and settlement (of a plane, displacement), in %, on the finest mesh \
-             that every contender ran; at rest the largest velocity over the conductivity; for the critical step the \
-             formula's step over the observed one. Shades: as good as the best of the row, within a factor of 2, within 10, \
-             beyond, no usable result (an error of 100 % and more, or ✗ a run that failed); n/a what the method cannot do by its definition. Columns by mean rank over the \
+             that every contender ran; at rest the largest velocity over the conductivity; for the critical step the observed one over the formula's. \
+             Shades: as good as the best of the row, within a factor of 2, within 10, beyond, no usable result (an error of \
+             100 % and more, or ✗ a run that failed); n/a what the method cannot do by its definition. Columns by mean rank over the \
              situations that a contender can run in (that of the first is {:.1})",
             ranked.first().map_or(f64::NAN, |one| one.mean_rank)
         ));
@@ -48,9 +53,9 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     );
     let costs = view(&|row, contender| cost_cell(&rows[row], contender, target(row))).note(
         "Processor time to a largest error of 1 %, between meshes by powers; – where the finest mesh does not reach it. Of the \
-         coarsest mesh where that is good enough already. Times of a millisecond vary by a fifth from run to run",
+         coarsest mesh where that is good enough already. The processor's time of one run: times of a millisecond vary by a fifth",
     );
-    let views = [("error", errors), ("order", orders), ("cost", costs)];
+    let views = [("Error, %", errors), ("Order", orders), ("Cost to 1 %", costs)];
     let views = views.map(|(word, table)| (word.to_owned(), vec![Block::Table(table)]));
     let mut sentences = sentences(&grid);
     let first = sentences.remove(0);
@@ -92,16 +97,23 @@ fn error_cell(grid: &Grid, row: usize, cell: &RaceCell, contender: usize, target
         return cell;
     }
     let is_error = cell.errors.iter().any(Option::is_some);
-    let words = cell
-        .score
-        .map_or("✗".to_owned(), |score| if is_error { in_percent(score) } else { number::error(score) });
+    let words = cell.score.map_or("✗".to_owned(), |score| match cell.step_ratio {
+        _ if is_error => in_percent(score),
+        Some(ratio) => times(ratio),
+        None => number::error(score),
+    });
     let (shade, title) = match ratio {
-        Some(ratio) => {
-            (Shade::of_ratio(ratio), format!("{}: {ratio:.1} times the best of the row", cell.name))
-        }
+        Some(ratio) => (Shade::of_ratio(ratio), error_title(cell, ratio)),
         None => (Shade::Failed, format!("{}: no usable result", cell.name)),
     };
     Cell::Shaded { shade, words, value: cell.score, title, target }
+}
+
+/// The contender, its ratio to the best, and how much half the step changes.
+fn error_title(cell: &RaceCell, ratio: f64) -> String {
+    let scatter =
+        cell.scatter.map(|scatter| format!("; half the step changes it by {}", number::percent(scatter)));
+    format!("{}: {ratio:.1} times the best of the row{}", cell.name, scatter.unwrap_or_default())
 }
 
 fn order_cell(cell: &RaceCell, target: String) -> Cell {
@@ -160,7 +172,31 @@ fn sentences(grid: &Grid) -> Vec<String> {
     told.extend(grid.groups().into_iter().filter_map(|(group, places)| best_of_group(grid, group, &places)));
     told.extend(of_the_paper(grid));
     told.push(what_decides(grid, one.contender));
+    told.extend(of_the_step(grid));
     told
+}
+
+/// How far half the step changes the errors.
+fn of_the_step(grid: &Grid) -> Option<String> {
+    let scatter = |(place, row): (usize, &GridRow)| {
+        let of_score = move |(one, score): (usize, &Score)| match score {
+            Score::Value { scatter, .. } => Some((*scatter, one, place)),
+            _ => None,
+        };
+        row.scores.iter().enumerate().filter_map(of_score).collect::<Vec<_>>()
+    };
+    let all: Vec<(f64, usize, usize)> = grid.rows.iter().enumerate().flat_map(scatter).collect();
+    let counts = all.iter().filter(|one| one.0 > STEP_COUNTS).count();
+    let (most, one, place) = all.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "**Half the step** changes the largest error by more than {} in {counts} of {} cells, most that of `{}` in {} ({}). \
+         Errors that differ by less than this scatter are ties.",
+        number::percent(STEP_COUNTS),
+        all.len(),
+        grid.contenders[one],
+        quoted(grid, place),
+        number::percent(most)
+    ))
 }
 
 fn the_one(grid: &Grid, one: &Overall) -> String {
@@ -196,7 +232,11 @@ fn best_of_group(grid: &Grid, group: &str, places: &[usize]) -> Option<String> {
     let alike = alike.filter(|one| {
         one.contender != best.contender && one.without == best.without && one.worst_ratio <= best.worst_ratio
     });
-    let tied: Vec<String> = alike.map(|one| format!("`{}`", grid.contenders[one.contender])).collect();
+    let mut tied: Vec<String> = alike.map(|one| format!("`{}`", grid.contenders[one.contender])).collect();
+    if tied.len() > MOST_TIED {
+        let others = tied.split_off(MOST_TIED - 1).len();
+        tied.push(format!("{others} others"));
+    }
     let tied = if tied.is_empty() { String::new() } else { format!(", tied with {}", tied.join(", ")) };
     let lacking = match best.without {
         0 => String::new(),
@@ -275,4 +315,67 @@ fn quoted(grid: &Grid, place: usize) -> String {
 /// A ratio, two digits.
 fn times(ratio: f64) -> String {
     if ratio < 9.95 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid of the paper's method and two others, by rows of scores that scatter by a hundredth; infinite: failed, NaN:
+    /// not applicable.
+    fn grid(rows: &[(&str, [f64; 3])]) -> Grid {
+        let score = |value: &f64| match *value {
+            value if value.is_nan() => Score::NotApplicable,
+            value if value.is_infinite() => Score::Failed,
+            value => Score::Value { value, scatter: 0.01 },
+        };
+        let row = |(situation, scores): &(&str, [f64; 3])| GridRow {
+            situation: (*situation).to_owned(),
+            group: situation.split('-').next().unwrap_or_default().to_owned(),
+            scores: scores.iter().map(score).collect(),
+        };
+        Grid {
+            contenders: [PAPERS, "b", "c"].map(str::to_owned).to_vec(),
+            rows: rows.iter().map(row).collect(),
+        }
+    }
+
+    #[test]
+    fn the_sentences_say_what_the_numbers_of_a_grid_are() {
+        let told = sentences(&grid(&[
+            ("column-a", [0.1, 0.101, 0.4]),
+            ("column-b", [0.2, 0.3, 0.1]),
+            ("plane", [f64::INFINITY, 0.3, f64::NAN]),
+        ]));
+        let expected = [
+            "If you may have only one method, take **`b`**: it has a result in all 3 situations, its error is at most 3.0 times \
+             the best (“column-b”), and it is within a factor of 2 of the best in 2 of 3.",
+            "**Columns at small strain** (2 situations): `GC-SRI-patch`, at most 2.0 times the best error.",
+            "**Large strain in the plane** (1 situation): `b`, at most 1.0 times the best error.",
+            "**The paper's method**, `GC-SRI-patch`, is number 1 of 3 by mean rank (1.7 over 3 situations): it is first, alone \
+             or tied, in 1 (“column-a”); it is farthest from the best in “column-b”, 2.0 times its error; it has no result in \
+             “plane”.",
+            "**Leaving out one situation** changes the choice of `b` in 1 of 3: without “plane” it would be `GC-SRI-patch`.",
+        ];
+        assert_eq!(told[..expected.len()], expected);
+        assert!(told[expected.len()].contains("by more than 5.00 % in 0 of 7 cells"), "{told:?}");
+    }
+
+    #[test]
+    fn a_grid_without_a_usable_contender_recommends_none() {
+        let told = sentences(&grid(&[("a", [f64::INFINITY, f64::NAN, f64::INFINITY])]));
+        assert_eq!(told, ["No contender has a usable result in any situation."]);
+        // Only `c` has both.
+        let one = sentences(&grid(&[("a", [0.1, f64::INFINITY, 0.2]), ("b", [f64::NAN, 0.1, 0.3])]));
+        assert!(one[0].contains("take **`c`**: it has a result in all 2 situations"), "{}", one[0]);
+        let none =
+            sentences(&grid(&[("a", [0.1, f64::INFINITY, f64::INFINITY]), ("b", [f64::NAN, 0.1, 0.3])]));
+        assert!(none[0].contains("no contender has a usable result in every situation"), "{}", none[0]);
+    }
+
+    #[test]
+    fn shares_have_two_digits() {
+        let told = [1e-6, 8.4e-5, 0.0056, 0.0123, 0.156, 4.38, 36.0].map(in_percent);
+        assert_eq!(told, ["<0.001", "0.008", "0.56", "1.2", "16", "438", "4e3"]);
+    }
 }

@@ -8,6 +8,7 @@ use crate::judge::comparison::work_precision::{NextLevel, TimedRun, WorkPrecisio
 use crate::measure::statistics::spread;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
+use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::labels::{DrawnPaths, drawn};
 use crate::render::report::{StudyResults, labels};
@@ -107,6 +108,7 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     }
     if peers::solve_their_column(&precision.runs) {
         blocks.push(Block::Table(peers_table(&precision)));
+        blocks.push(Block::Table(peer_series_table()));
     }
     blocks
 }
@@ -209,6 +211,30 @@ fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
     Table::of("The cheapest run within a tolerance", columns(header), rows).note(
         "error of the pore pressure at the points, relative L2, the worst of the outputs; wall times of runs that had the \
          machine to themselves, in rounds over all runs",
+    )
+}
+
+/// The errors that other programs pin in convergence tests of their own, judged as series of this program are.
+fn peer_series_table() -> Table {
+    let rows = peers::PEER_SERIES.iter().map(|one| {
+        let errors =
+            one.levels.iter().map(|(_, error)| number::error(*error)).collect::<Vec<_>>().join(" → ");
+        let orders = one.orders().into_iter().map(|order| order.map_or("–".to_owned(), number::order));
+        let found = one.classified();
+        vec![
+            one.name.as_str().into(),
+            one.quantity.as_str().into(),
+            errors.into(),
+            orders.collect::<Vec<_>>().join(", ").into(),
+            found.class.name().into(),
+            found.reason.into(),
+        ]
+    });
+    let heads = columns(
+        "program and test | of | errors, coarse to fine | orders between neighbours | class | because",
+    );
+    Table::of("Convergence tests of other programs", heads, rows).note(
+        "the errors are those that the test of the program expects, without an order; the classes are those of this report",
     )
 }
 

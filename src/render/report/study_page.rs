@@ -22,14 +22,17 @@ const MOST_REASONS: usize = 5;
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
     let mut blocks = expectations(results);
-    blocks.extend(findings::survival(results));
-    blocks.extend(findings::findings(results));
-    blocks.extend(maps::cheapest_methods(results));
-    blocks.extend(layer::blocks(results)?);
-    blocks.extend(theory_lines::blocks(results)?);
-    blocks.extend(race::blocks(results));
-    for axis in Axis::REFINEMENTS.into_iter().filter(|_| !study.is_race) {
-        blocks.extend(refinement::blocks(results, axis));
+    if study.is_race {
+        blocks.extend(race::blocks(results));
+    } else {
+        blocks.extend(findings::survival(results));
+        blocks.extend(findings::findings(results));
+        blocks.extend(maps::cheapest_methods(results));
+        blocks.extend(layer::blocks(results)?);
+        blocks.extend(theory_lines::blocks(results)?);
+        for axis in Axis::REFINEMENTS {
+            blocks.extend(refinement::blocks(results, axis));
+        }
     }
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
     blocks.extend(checks::measures(results));
