@@ -73,6 +73,13 @@ impl Difference {
         Some(if change.is_nan() { f64::INFINITY } else { change })
     }
 
+    /// How many times its golden value it is, from the double on: a change over the larger value says nothing of that.
+    pub fn growth(&self) -> Option<f64> {
+        let times = self.found?.abs() / self.golden?.abs();
+        let is_share = parts(&self.name).1.starts_with("water balance");
+        (times >= 2.0 && times.is_finite() && !is_share).then_some(times)
+    }
+
     /// The order of a list: kinds by how bad they are, then the largest relative change first.
     fn worst_first(&self, other: &Self) -> Ordering {
         let size = |one: &Self| one.relative_change().unwrap_or(0.0);

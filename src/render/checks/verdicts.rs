@@ -263,12 +263,15 @@ fn worth_naming<'a>(
 }
 
 fn difference(one: &Difference) -> String {
-    let how = match (one.golden, one.found, one.relative_change()) {
+    let change = match one.growth() {
+        Some(times) => Some(format!("{} times as large", number::number(times))),
+        None => one.relative_change().map(|change| format!("a relative change of {}", number::error(change))),
+    };
+    let how = match (one.golden, one.found, change) {
         (Some(golden), Some(found), Some(change)) => format!(
-            "{} was {}, a relative change of {}, {} times its tolerance",
+            "{} was {}, {change}, {} times its tolerance",
             number::exact(found),
             number::exact(golden),
-            number::error(change),
             number::number((found - golden).abs() / one.tolerance)
         ),
         (Some(golden), None, _) => format!("was {}", number::exact(golden)),

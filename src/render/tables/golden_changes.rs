@@ -33,9 +33,11 @@ pub(crate) fn summary(group: &DifferenceGroup) -> String {
     if group.values > 1 && !group.shared_by_measures.is_empty() {
         let _ = write!(sentence, ", all of {}", shared(&group.shared_by_measures));
     }
-    if let Some(change) = group.worst.relative_change() {
-        let _ = write!(sentence, "; largest relative change {}", number::error(change));
-    }
+    let _ = match (group.worst.growth(), group.worst.relative_change()) {
+        (Some(times), _) => write!(sentence, "; the largest is {} times as large", number::number(times)),
+        (None, Some(change)) => write!(sentence, "; largest relative change {}", number::error(change)),
+        (None, None) => Ok(()),
+    };
     if let Some(place) = &group.place {
         let _ = write!(sentence, "; {place}");
     }
