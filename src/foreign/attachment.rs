@@ -18,7 +18,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::Failure;
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
-use oedometer_soil::wording::typed;
+use oedometer_soil::wording::{short, typed};
 use regex_lite::Regex;
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
@@ -36,6 +36,8 @@ const MOST_SECONDS: f64 = 3e9;
 const MOST_TAKEN: usize = 6;
 /// Difference of repeats from which on it is worth a word.
 const ROUND_OFF: f64 = 1e-12;
+/// Ratio of the time that a solver says it took to that of its run, from which on it is in another unit.
+const OWN_ABOVE_WALL: f64 = 1.5;
 
 /// A solver with what its runs share.
 pub struct Attachment<'a> {
@@ -167,13 +169,24 @@ impl<'a> Attachment<'a> {
         let filling = Filling::of(case, self.solver, &staged.case_file(), &staged.out());
         let load = load_of_machine();
         let finished = self.finished(&filling, &staged, wish);
+        let own_seconds = self.own_seconds(&finished);
+        if let Some(own) = own_seconds.filter(|own| *own > OWN_ABOVE_WALL * finished.seconds) {
+            let [own, wall] = [own, finished.seconds].map(short);
+            note(
+                about,
+                format!(
+                    "it says that it took {own} s, more than the {wall} s of its run: what is the unit of the number \
+                     that `solve_seconds` finds (`solve_unit = \"ms\"`)?"
+                ),
+            );
+        }
         wall.push(WallSample {
             seconds: finished.seconds,
             alone: wish.alone,
             cpu_seconds: finished.cpu_seconds,
             peak_memory: finished.peak_memory,
             load,
-            own_seconds: self.own_seconds(&finished),
+            own_seconds,
             machine: Some(Machine::this()),
         });
         let left = self.left(case, &finished, &staged, &filling);
@@ -221,7 +234,8 @@ impl<'a> Attachment<'a> {
         let pattern = Regex::new(self.solver.solve_seconds.as_ref()?).ok()?;
         let last = |text: &str| {
             let found = pattern.captures_iter(text).last()?;
-            found.get(1)?.as_str().parse().ok().filter(|seconds: &f64| seconds.is_finite())
+            let number: f64 = found.get(1)?.as_str().parse().ok()?;
+            Some(number * self.solver.solve_unit).filter(|seconds| seconds.is_finite())
         };
         last(&finished.output).or_else(|| last(&finished.errors))
     }

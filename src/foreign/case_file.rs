@@ -61,7 +61,8 @@ pub struct CaseFile {
 pub struct CaseColumn {
     /// Initial height, m; of a slab half its width, from the middle to the drained side.
     pub height: f64,
-    /// Width of a column, or length of a layer, m; in one dimension it has no say. Of a slab half the distance of its
+    /// Width of a column (`column.width` of the study), or length of a layer (`layer.length`), m; in one dimension it has
+    /// no effect. Of a slab half the distance of its
     /// plates.
     pub width: f64,
     /// Load on the surface, Pa, compression positive; the amplitude of the initial pressure in scenes without a load.

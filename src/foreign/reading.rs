@@ -86,7 +86,9 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
     let preset = solver.preset.as_deref().and_then(|name| Preset::from_str(name, false).ok());
     let mut mapping = Mapping::resolve(preset, own.as_ref(), is_plane)?;
     // A gate assumes nothing that is not declared.
-    if let (Some(taken), Some(source)) = (mapping.taken_for_granted().filter(|_| solver.is_given()), own) {
+    if let (Some(taken), Some(source)) =
+        (mapping.taken_for_granted(is_plane).filter(|_| solver.is_given()), own)
+    {
         return Err(MappingError::Undeclared { name: source.name, taken });
     }
     mapping.time.step = solver.time_step.or(mapping.time.step);

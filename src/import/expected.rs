@@ -1,5 +1,6 @@
 //! The quantities that every state of a result must have: one that is missing has no error, and no gate would see it.
 
+use crate::case::quantity::Quantity;
 use crate::import::mapping::{Column, DeclaredBy, Mapping};
 use crate::import::samples::SampledState;
 
@@ -43,6 +44,17 @@ impl Expected {
             expected.add(QUANTITIES.into_iter().filter(|column| has(state, *column)));
         }
         expected
+    }
+
+    /// Takes a quantity out.
+    pub fn leave_out(&mut self, quantity: Quantity) {
+        let is_left = |column: &Column| match column {
+            Column::Pressure => quantity != Quantity::Pressure,
+            Column::EffectiveStress => quantity != Quantity::EffectiveStress,
+            _ => quantity != Quantity::Displacement,
+        };
+        self.columns.retain(is_left);
+        self.settlement &= quantity != Quantity::Settlement;
     }
 
     /// Adds columns that a state has.
@@ -95,8 +107,15 @@ impl Absent {
         } else {
             format!("{first}{more}, and other states have it")
         };
+        let quantity = match name {
+            "p" => Quantity::Pressure,
+            "effective_stress" => Quantity::EffectiveStress,
+            _ => Quantity::Displacement,
+        }
+        .name();
         format!(
-            "there is no `{name}` at {place}; `{name} = \"\"` in [columns] of a mapping takes it out on purpose"
+            "there is no `{name}` at {place}; `score --without {quantity}`, or `{name} = \"\"` in [columns] of a mapping, \
+             takes it out on purpose"
         )
     }
 }

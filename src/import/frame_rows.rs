@@ -224,6 +224,19 @@ impl<'a> FrameRows<'a> {
         }
     }
 
+    /// Width of the body across its height, m: from the outermost nodes, or points with half a spacing beyond them.
+    pub fn width(&self) -> Option<f64> {
+        let Some(Source::Coordinates(height)) = self.columns[Column::Y as usize] else { return None };
+        let across = usize::from(height == 0);
+        let mut lines: Vec<f64> = self.frame.coordinates.iter().map(|place| place[across]).collect();
+        lines.sort_by(f64::total_cmp);
+        let extent = lines.last()? - lines.first()?;
+        lines.dedup_by(|place, before| *place - *before <= 1e-4 * extent);
+        let has_nodes = self.frame.cells.as_ref().is_some_and(|cells| cells.dimension() > 0);
+        let beyond = if has_nodes { 0.0 } else { extent / (lines.len() - 1).max(1) as f64 };
+        (extent > 0.0).then_some((extent + beyond) * self.mapping.units.length.metres())
+    }
+
     /// Columns that the state has.
     pub fn columns(&self) -> impl Iterator<Item = Column> {
         Column::ALL.into_iter().filter(|column| self.columns[*column as usize].is_some())

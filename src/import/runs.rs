@@ -1,8 +1,9 @@
 //! From the files that a user gives to runs: files found, their states grouped by mesh, times and rows read.
 
-use crate::case::quantity::Sample;
+use crate::case::quantity::{Quantity, Sample};
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
+use crate::import::joined;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;
 use crate::import::samples::{SampleRow, SampledState, states_of};
@@ -11,6 +12,7 @@ use crate::import::table_rows::{attach_settlement, is_ended, take_rows};
 use oedometer_formats::{
     Association, Frame, ImportError, Kind, Step, Wanted, collection_of, read_states, steps_of,
 };
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// The states of one mesh.
@@ -30,6 +32,10 @@ pub struct Run {
     pub expected: Expected,
     /// Tables whose last line does not end: they may be cut inside a number.
     pub unended: Vec<PathBuf>,
+    /// Width of a body whose files show it, m.
+    pub width: Option<f64>,
+    /// Quantities that are left out on purpose.
+    pub without: Vec<Quantity>,
 }
 
 /// The files of each argument; `*` and `?` stand for what a shell would put there.
@@ -105,14 +111,20 @@ fn runs_of_arrays(
 ) -> Result<Vec<Run>, ImportError> {
     let names = wanted_names(mapping);
     let mut readings: Vec<Reading> = Vec::new();
+    let mut joined = HashSet::new();
     for path in given.iter().flatten() {
         let mut notes = Vec::new();
-        let steps = steps_of(path, &mut notes)?;
+        let mut steps = steps_of(path, &mut notes)?;
+        steps.retain(|step| match &joined::members(&step.file, &mapping.join)[..] {
+            [first, _, ..] => joined.insert(first.clone()),
+            _ => true,
+        });
         if let Some(table) = steps.iter().find(|step| step.kind == Kind::Table) {
             let reason = "it is a table among files with arrays: score them separately";
             return Err(ImportError::content(&table.file, reason));
         }
-        read_states(&steps, Wanted(&names), &mut |step, frame| {
+        read_states(&steps, Wanted(&names), &mut |step, mut frame| {
+            joined::join(step, &mapping.join, Wanted(&names), &mut frame)?;
             let cells = cells_over_height(&frame, mapping, body.height);
             let key = key_of(step, steps.len() > 1, &frame, cells);
             let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {
@@ -182,6 +194,7 @@ impl Reading {
             if !hint.is_empty() {
                 self.run.notes.push(format!("{}{hint}", step.file.display()));
             }
+            self.run.width = columns.width();
             self.start = mapping.displacement.is_some().then(|| columns.start());
         }
         self.run.notes.extend(frame.notes.iter().cloned());
@@ -258,6 +271,25 @@ impl Reading {
 }
 
 impl Run {
+    /// Leaves out quantities, which no state then has or must have.
+    pub fn leave_out(&mut self, quantities: &[Quantity]) {
+        for quantity in quantities {
+            for state in &mut self.states {
+                match quantity {
+                    Quantity::Pressure => state.pressure.clear(),
+                    Quantity::EffectiveStress => state.effective_stress.clear(),
+                    Quantity::Displacement => {
+                        state.displacement.clear();
+                        state.horizontal_displacement.clear();
+                    }
+                    Quantity::Settlement => state.surface_displacement = None,
+                }
+            }
+            self.expected.leave_out(*quantity);
+        }
+        self.without.extend(quantities);
+    }
+
     /// Adds the settlement curve, if the mapping names a file for it.
     fn attach_settlement(&mut self, mapping: &Mapping, body: SolvedBody) -> Result<(), ImportError> {
         let Some(series) = &mapping.settlement else { return Ok(()) };

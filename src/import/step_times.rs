@@ -47,16 +47,16 @@ pub fn step_of(name: &str, pattern: Option<&str>) -> Option<f64> {
     };
     let (before, after) = pattern.split_once("{step}")?;
     let (before, after) = (Pattern::new(before).ok()?, Pattern::new(after).ok()?);
-    // The last number that fits.
-    let starts = name
-        .char_indices()
-        .filter(|(start, symbol)| is_digit(*symbol) && !name[..*start].ends_with(is_digit));
+    // The last number that fits; where no whole one does, the last part of one.
+    let starts = || name.char_indices().filter(|(_, symbol)| is_digit(*symbol));
+    let is_whole = |(start, _): &(usize, char)| !name[..*start].ends_with(is_digit);
     let step = |(start, _): (usize, char)| {
         let rest = name[start..].trim_start_matches(is_digit);
         let is_fit = before.matches(&name[..start]) && after.matches(rest);
         is_fit.then(|| name[start..name.len() - rest.len()].parse().ok()).flatten()
     };
-    starts.filter_map(step).next_back()
+    let whole = starts().filter(is_whole).filter_map(step).next_back();
+    whole.or_else(|| starts().find_map(step))
 }
 
 #[cfg(test)]
@@ -73,6 +73,7 @@ mod tests {
             ("run_12_of_90.vtk", Some("run_{step}_of_*.vtk"), Some(12.0)),
             ("run_12_of_90.vtk", Some("run_*_of_{step}.vtk"), Some(90.0)),
             ("run_12.vtu", Some("run_{step}.vtk"), None),
+            ("a_MPScalar_001000013.vtk", Some("*_???{step}.vtk"), Some(13.0)),
         ] {
             assert_eq!(step_of(name, pattern), step, "{name} {pattern:?}");
         }

@@ -80,7 +80,7 @@ pub fn judge(
         checks.push(rows(series, expectation.class));
     }
     let class = expectation.expected_class();
-    checks.extend(class.map(|class| class_found(class, &classification)));
+    checks.extend(class.map(|class| class_found(class, &classification, series)));
     checks.extend(expectation.order.map(|band| order_found(band, class, &classification)));
     checks.extend(expectation.at.map(|bound| error_found(bound, series)));
     checks.extend(expectation.spread.map(|bound| spread_found(bound, series)));
@@ -165,13 +165,23 @@ fn rows(series: &ErrorSeries, class: Option<Class>) -> Check {
     }
 }
 
-fn class_found(wanted: Class, found: &Classification) -> Check {
+fn class_found(wanted: Class, found: &Classification, series: &ErrorSeries) -> Check {
     let pass = found.class == wanted;
     let reason = if pass {
         format!("{}: {}", found.class, found.reason)
     } else {
         let advice = found.advice.as_deref().map_or_else(String::new, |text| format!(" ({text})"));
-        format!("{} instead of {wanted}: {}{advice}", found.class, found.reason)
+        let errors: Vec<String> = series
+            .levels()
+            .iter()
+            .filter_map(|level| level.error)
+            .map(|error| format!("{error:.3e}"))
+            .collect();
+        let errors = match found.class {
+            Class::NotEvaluable if !errors.is_empty() => format!("; the errors are {}", errors.join(", ")),
+            _ => String::new(),
+        };
+        format!("{} instead of {wanted}: {}{advice}{errors}", found.class, found.reason)
     };
     Check { name: "class".to_owned(), pass, measured: None, reason }
 }

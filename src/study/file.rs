@@ -381,8 +381,12 @@ pub struct SolverTable {
     pub env: BTreeMap<String, Placed<String>>,
     /// Further files of the adapter beside the study: they belong to the identity of its cases.
     pub files: Typed<Vec<Placed<String>>>,
-    /// Regular expression whose first group is the time in its output that it says it took, s.
+    /// Regular expression whose first group is the time in its output that it says it took.
     pub solve_seconds: Typed<String>,
+    /// Unit of that time: `s` where it is left out, or `ms`, `min`, `h`.
+    pub solve_unit: Typed<String>,
+    /// Seconds from one numbered step to the next, where file names have the number of the step.
+    pub time_step: Typed<f64>,
 }
 
 /// Files that an external solver has left, on one mesh or on several; nothing is run for them.

@@ -4,7 +4,21 @@ use crate::case::solver::Attached;
 use std::path::PathBuf;
 
 /// Programs whose files are known; `import` has what their arrays mean.
-pub const PRESETS: [&str; 5] = ["ogs", "kratos", "porepy", "geotaichi", "meshio"];
+pub const PRESETS: [&str; 10] = [
+    "ogs",
+    "kratos",
+    "porepy",
+    "geotaichi",
+    "anura3d",
+    "cb-geo",
+    "kratos-poro",
+    "kratos-mpm",
+    "mpm-geomechanics",
+    "meshio",
+];
+
+/// Units of the time that a solver says it took, s.
+pub const SOLVE_UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0), ("h", 3600.0)];
 
 /// What stands for values of a case in commands, environment and result.
 pub const PLACEHOLDERS: [(&str, &str); 7] = [
@@ -50,6 +64,8 @@ pub struct ExternalSolver {
     pub environment: Vec<(String, String)>,
     /// Pattern of the time that it says it took.
     pub solve_seconds: Option<String>,
+    /// Unit of that time, s.
+    pub solve_unit: f64,
 }
 
 impl ExternalSolver {

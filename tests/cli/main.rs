@@ -18,6 +18,7 @@ mod over_time;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;
+mod presets;
 mod problems;
 mod program;
 mod readme;

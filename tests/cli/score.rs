@@ -309,6 +309,53 @@ fn points_that_a_mesh_lacks_show_beside_the_other_meshes() {
 }
 
 #[test]
+fn a_start_passes_on_the_scale_of_the_load_and_a_column_in_the_plane_needs_no_crest() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let mapping = "columns = { t = \"t\", x = \"x\", y = \"y\", p = \"p\", u_x = \"u_x\", u_y = \"u_y\" }\n\
+        units = { stress = \"Pa\" }\nsign = { p = \"compression-positive\", u_y = \"up\" }\n";
+    fs::write(at.join("plane.toml"), mapping).expect("a file");
+    let depths: Vec<String> = (0..=20).map(|node| (f64::from(node) / 20.0).to_string()).collect();
+    let rows = exact(at, &["terzaghi", "--time-factor", "5", "--zeta", &depths.join(",")]);
+    // The scale of displacements is m_v q H, that of their start 1.6e-4 of it.
+    let told = |bend: f64, start: f64| {
+        let mut text = "t,x,y,p,u_x,u_y\n".to_owned();
+        for (row, x) in rows.iter().flat_map(|row| [(row, 0.0), (row, 0.4)]) {
+            let height = 1.0 - row[1];
+            writeln!(text, "0,{x},{height},{},0,{start}", if row[1] > 0.0 { 1.0 } else { 0.0 })
+                .expect("a line");
+            let moved = -row[3] * height * (1.0 + bend * x);
+            writeln!(text, "{},{x},{height},{},0,{moved}", row[0] * SECONDS, row[2]).expect("a line");
+        }
+        fs::write(at.join("result.csv"), text).expect("a file");
+        // All has drained: the displacement is linear.
+        let files = [
+            "score",
+            "result.csv",
+            "--scene",
+            "terzaghi",
+            "--reference",
+            "terzaghi",
+            "--mapping",
+            "plane.toml",
+        ];
+        call(at, &[&files[..], &["--below", "1e-3"]].concat())
+    };
+    let fine = told(0.0, 0.0);
+    assert_eq!(fine.code, 0, "{}{}", fine.out, fine.err);
+    assert!(!fine.err.contains("crest") && !fine.err.contains("not plane"), "{}", fine.err);
+    let moved = told(0.0, -5e-7);
+    assert!(
+        moved.code == 1
+            && moved.err.contains("displacement at T_v = 0 has an error over the final settlement of"),
+        "{}",
+        moved.err
+    );
+    let bent = told(0.5, 0.0);
+    assert!(bent.err.contains("your top is not plane: at y = 1 m u_y lies between"), "{}", bent.err);
+}
+
+#[test]
 fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
@@ -331,8 +378,13 @@ fn mistakes_that_the_numbers_show_are_named_and_others_are_not() {
         ),
         (
             changed(&|row| Row { time: row.time / 1.3, ..*row }),
-            "at 1.3 × the time: are the times, k or the stiffness",
+            "at 1.3 × the time: is k 1.3e-4 m/s for 1e-4, or E_oed 1.56e6 Pa for 1.2e6, or H 0.877 m for 1 (H² counts)",
         ),
+        (
+            changed(&|row| Row { time: row.time / 1.02, ..*row }),
+            "at 1.02 × the time: is k 1.02e-4 m/s for 1e-4",
+        ),
+        (changed(&|row| Row { pressure: 0.0, ..*row }), "is 0 everywhere: is it another array"),
     ] {
         let told = score(at, &rows, &[]);
         assert_eq!(told.code, 0, "{}", told.err);

@@ -53,6 +53,7 @@ fn apart(one: (ShelfProblem, ColumnParameters), other: (ReferenceKind, ColumnPar
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the worst differences are for --nocapture")]
 fn every_problem_agrees_with_forty_digits() {
     let mut worst = [0.0_f64; ShelfProblem::ALL.len()];
     let mut compared = 0;

@@ -159,6 +159,24 @@ impl Frame {
         if all.is_empty() { "no array".to_owned() } else { all.join(", ") }
     }
 
+    /// Adds the arrays of a file that has other arrays at the same points.
+    ///
+    /// # Errors
+    /// When its points are others.
+    pub fn join(&mut self, other: Self) -> Result<(), String> {
+        if self.coordinates != other.coordinates {
+            let (own, others) = (self.coordinates.len(), other.coordinates.len());
+            return Err(format!("it has other points ({others}) than the file that it is joined to ({own})"));
+        }
+        let is_new = |array: &Array| self.array(&array.name, Some(array.on)).is_none();
+        let new: Vec<Array> = other.arrays.into_iter().filter(is_new).collect();
+        self.arrays.extend(new);
+        self.cells = self.cells.take().or(other.cells);
+        self.time = self.time.or(other.time);
+        self.notes.extend(other.notes);
+        Ok(())
+    }
+
     /// Appends the points, cells and arrays of another part of the same state. The parts must have the same arrays.
     pub(crate) fn append(&mut self, part: Self) -> Result<(), String> {
         let shift = u32::try_from(self.coordinates.len()).map_err(|_| "too many points".to_owned())?;

@@ -9,6 +9,8 @@ use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, Fi
 use std::collections::HashMap;
 use std::path::Path;
 
+/// Fields of a record that are its place.
+const PLACE: [&str; 3] = ["coord_x", "coord_y", "coord_z"];
 /// Deepest group that is looked into.
 const DEEPEST: usize = 16;
 /// Most data sets and groups of a file that are looked at.
@@ -147,7 +149,9 @@ impl Store {
         let Ok(Datatype::Compound { size, members }) = set.datatype() else { return Ok(false) };
         let rows = product(shape)?;
         let tuples = usize::try_from(rows).map_err(|_| "it claims too much")?;
-        let any = members.iter().any(|member| wanted.has(&member.name));
+        let axis_of = |name: &str| PLACE.iter().position(|axis| *axis == name);
+        let is_wanted = |name: &str| wanted.has(name) || axis_of(name).is_some();
+        let any = members.iter().any(|member| is_wanted(&member.name));
         let bytes = if any {
             self.budget.take(rows.saturating_mul(u64::from(size)))?;
             set.read_raw().map_err(|error| damaged(&error))?
@@ -163,13 +167,19 @@ impl Store {
                 tuples,
                 values: Vec::new(),
             };
-            if wanted.has(&array.name) {
+            if is_wanted(&array.name) {
                 let from =
                     usize::try_from(member.byte_offset).map_err(|_| "a field lies outside its record")?;
                 for record in bytes.chunks_exact(size as usize) {
                     let field =
                         record.get(from..from + scalar.size()).ok_or("a field lies outside its record")?;
                     array.values.extend(scalar.decode(field, is_little));
+                }
+            }
+            if let Some(axis) = axis_of(&array.name) {
+                frame.coordinates.resize(tuples, [0.0; 3]);
+                for (place, value) in frame.coordinates.iter_mut().zip(&array.values) {
+                    place[axis] = *value;
                 }
             }
             frame.arrays.push(array);

@@ -164,14 +164,16 @@ impl Reader<'_> {
         };
         let found = match (Scalar::of_xml(kind), attribute(node, "format")) {
             (None, _) => Err(format!("`{kind}` is not a type of numbers")),
-            (Some(scalar), "ascii") => Ok((scalar, Place::Text(text()))),
+            // As VTK reads them: data with an offset are appended, and any others that are not binary are text.
             (Some(scalar), "binary") => Ok((scalar, Place::Inline(text()))),
-            (Some(scalar), "appended") => {
-                let typed = attribute(node, "offset");
-                let offset = typed.parse().map(|offset| (scalar, Place::Appended(offset)));
-                offset.map_err(|_| format!("its offset is `{typed}`: expected a whole number"))
-            }
-            (_, other) => Err(format!("the format `{other}` is unknown: expected ascii, binary or appended")),
+            (Some(scalar), format) => match (node.attribute("offset"), format) {
+                (None, "appended") => Err("its data are appended, and it has no offset".to_owned()),
+                (None, _) => Ok((scalar, Place::Text(text()))),
+                (Some(typed), _) => {
+                    let offset = typed.trim().parse().map(|offset| (scalar, Place::Appended(offset)));
+                    offset.map_err(|_| format!("its offset is `{typed}`: expected a whole number"))
+                }
+            },
         };
         let numbers = found
             .and_then(|(scalar, place)| self.encoding.numbers(place, scalar, expected, &mut self.budget));

@@ -19,6 +19,7 @@ pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
         at_once: 1,
         environment: Vec::new(),
         solve_seconds: None,
+        solve_unit: 1.0,
     }
 }
 
@@ -154,12 +155,22 @@ mod runs {
         let same = run(&format!("{counted} > result.csv; echo took 2.5 s"), |solver| {
             (solver.repeats, solver.warm_up) = (3, true);
             solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
+            solver.solve_unit = 1e-6;
         });
         assert_eq!(std::fs::read_to_string(&count).expect("counted").lines().count(), 4);
         assert_eq!(same.wall.len(), 3, "the warm-up is not among them");
-        assert!(same.wall.iter().all(|sample| sample.own_seconds == Some(2.5) && sample.alone));
+        assert!(same.wall.iter().all(|sample| sample.own_seconds == Some(2.5 * 1e-6) && sample.alone));
         let about = same.attached.expect("attached");
         assert_eq!((about.repeats_differ_by, about.notes.len()), (Some(0.0), 0));
+        // More than its run took is in another unit.
+        let ms = run(&format!("{ROWS} > result.csv; echo took 30743 s"), |solver| {
+            solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
+        });
+        let notes = ms.attached.expect("attached").notes;
+        assert!(
+            notes.len() == 1 && notes[0].contains("it says that it took 30740 s, more than"),
+            "{notes:?}"
+        );
         // The number of the run stands in a pressure.
         let script = format!("{counted} | sed s/0.6/0.6$(wc -l < {})/ > result.csv", count.display());
         let differing = run(&script, |solver| solver.repeats = 2).attached.expect("attached");

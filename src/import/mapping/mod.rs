@@ -43,6 +43,10 @@ pub struct Mapping {
     /// Coordinates in the file at the end from which x and y count, in its unit of length.
     #[serde(default)]
     pub origin: Origin,
+    /// Names of the files that a program writes side by side for one state, like `*_MPScalar_*.vtk` and
+    /// `*_MPVector_*.vtk`; what the `*` stand for must be the same in all.
+    #[serde(default)]
+    pub join: Vec<String>,
     /// Where the time comes from if it is not a column.
     #[serde(default)]
     pub time: Time,
@@ -283,9 +287,10 @@ impl Mapping {
         ))
     }
 
-    /// What is assumed about the columns that the mapping names without declaring their unit or sign. Presets and the
+    /// What is assumed about the columns that the mapping names without declaring their unit or sign; a column's fields
+    /// do not depend on `x`. Presets and the
     /// convention declare everything.
-    pub fn taken_for_granted(&self) -> Option<String> {
+    pub fn taken_for_granted(&self, is_plane: bool) -> Option<String> {
         if self.declared_by != DeclaredBy::User {
             return None;
         }
@@ -299,8 +304,11 @@ impl Mapping {
                 "the sign of `effective_stress`, taken as compression-positive",
             ),
             (columns.u_y.is_some() && sign.u_y.is_none(), "the sign of `u_y`, taken as up"),
-            (columns.u_x.is_some() && sign.u_x.is_none(), "the sign of `u_x`, taken as right"),
-            (columns.x.is_some() && sign.x.is_none(), "the end from which `x` counts, taken as the crest"),
+            (is_plane && columns.u_x.is_some() && sign.u_x.is_none(), "the sign of `u_x`, taken as right"),
+            (
+                is_plane && columns.x.is_some() && sign.x.is_none(),
+                "the end from which `x` counts, taken as the crest",
+            ),
         ]
         .into_iter()
         .filter_map(|(is_taken, words)| is_taken.then_some(words))
@@ -367,6 +375,12 @@ impl Mapping {
             self.time.pattern.as_ref().is_some_and(|pattern| pattern.matches("{step}").count() != 1),
             "the `pattern` of [time] does not have `{step}` once",
             "write it like \"column_0_{step}.vtk\", with `*` for what differs",
+        );
+        let stars = |pattern: &String| pattern.matches('*').count();
+        refuse(
+            self.join.iter().any(|pattern| stars(pattern) == 0 || stars(pattern) != stars(&self.join[0])),
+            "the patterns of `join` do not have the same number of `*`, at least one",
+            "write them like \"*_scalars_*.vtk\" and \"*_vectors_*.vtk\"",
         );
         refuse(
             self.hydrostatic.is_some_and(|water| !(water.unit_weight.is_finite() && water.unit_weight > 0.0)),

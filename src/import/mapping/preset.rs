@@ -25,7 +25,7 @@ pub struct Preset {
 }
 
 /// All presets.
-const PRESETS: [Preset; 5] = [
+const PRESETS: [Preset; 10] = [
     Preset {
         name: "ogs",
         about: "OpenGeoSys 6",
@@ -49,6 +49,36 @@ const PRESETS: [Preset; 5] = [
         about: "GeoTaichi's material points",
         text: include_str!("../presets/geotaichi.toml"),
         signs: &["t_current", "estress"],
+    },
+    Preset {
+        name: "anura3d",
+        about: "Anura3D's material points, VTK",
+        text: include_str!("../presets/anura3d.toml"),
+        signs: &["pressure_liquid", "displacement_solid"],
+    },
+    Preset {
+        name: "cb-geo",
+        about: "CB-Geo mpm's particles, HDF5 or VTP",
+        text: include_str!("../presets/cb-geo.toml"),
+        signs: &["liquid_svars_0", "pore_pressures"],
+    },
+    Preset {
+        name: "kratos-poro",
+        about: "KratosMultiphysics with its PoromechanicsApplication",
+        text: include_str!("../presets/kratos-poro.toml"),
+        signs: &["LIQUID_PRESSURE"],
+    },
+    Preset {
+        name: "kratos-mpm",
+        about: "KratosMultiphysics with its MPMApplication",
+        text: include_str!("../presets/kratos-mpm.toml"),
+        signs: &["MP_DISPLACEMENT"],
+    },
+    Preset {
+        name: "mpm-geomechanics",
+        about: "MPM-Geomechanics",
+        text: include_str!("../presets/mpm-geomechanics.toml"),
+        signs: &["Pore Pressure", "Stress_ZZ"],
     },
     Preset {
         name: "meshio",

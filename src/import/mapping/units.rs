@@ -309,6 +309,76 @@ mod tests {
                 "points, stress tension-positive, current, first frame",
             ),
             (
+                "anura3d",
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "pressure_liquid",
+                    "displacement_solid[0]",
+                    "displacement_solid[1]",
+                    "eff_stress_solid[4]",
+                    "",
+                ],
+                "points, kPa, p tension-positive, stress tension-positive, current",
+            ),
+            (
+                "cb-geo",
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "liquid_svars_0|pore_pressures",
+                    "displacement_x|displacements[0]",
+                    "displacement_y|displacements[1]",
+                    "stress_yy|stresses[1]",
+                    "volume",
+                ],
+                "points, stress tension-positive, current",
+            ),
+            (
+                "kratos-poro",
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "LIQUID_PRESSURE",
+                    "DISPLACEMENT[0]",
+                    "DISPLACEMENT[1]",
+                    "",
+                    "",
+                ],
+                "nodes, corners",
+            ),
+            (
+                "kratos-mpm",
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[1]",
+                    "",
+                    "MP_DISPLACEMENT[0]",
+                    "MP_DISPLACEMENT[1]",
+                    "MP_CAUCHY_STRESS_VECTOR[1]",
+                    "MP_VOLUME",
+                ],
+                "points, stress tension-positive, current",
+            ),
+            (
+                "mpm-geomechanics",
+                [
+                    "",
+                    "coordinates[0]",
+                    "coordinates[2]",
+                    "Pore Pressure|Pressure",
+                    "Displacement[0]",
+                    "Displacement[2]",
+                    "Stress_ZZ",
+                    "",
+                ],
+                "points, stress tension-positive, current",
+            ),
+            (
                 "meshio",
                 [
                     "time|t",
@@ -343,14 +413,15 @@ mod tests {
             let words = [
                 Some(mapping.sample.name()),
                 mapping.rows.corners.then_some("corners"),
-                (pressure == -7.0).then_some("p tension-positive"),
-                (effective == 11.0).then_some("stress tension-positive"),
+                (pressure.abs() == 7e3).then_some("kPa"),
+                (pressure < 0.0).then_some("p tension-positive"),
+                (effective > 0.0).then_some("stress tension-positive"),
                 (height == 3.75 && along == 1.875).then_some("current"),
                 mapping.displacement.is_some().then_some("first frame"),
             ];
             assert_eq!(words.into_iter().flatten().collect::<Vec<_>>().join(", "), said, "{}", preset.name);
             assert_eq!((up, right), (0.25, 0.125), "{}", preset.name);
         }
-        assert_eq!(Preset::value_variants().len(), 5, "a new preset is written above, too");
+        assert_eq!(Preset::value_variants().len(), 10, "a new preset is written above, too");
     }
 }

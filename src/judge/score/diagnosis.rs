@@ -10,6 +10,7 @@ use crate::case::Quantity;
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
+use crate::judge::score::coverage::SAME_PLACE;
 use crate::measure::fields::ExactFields;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::powi;
@@ -42,6 +43,8 @@ const TIME_FACTORS: std::ops::RangeInclusive<f64> = 1e-7..=20.0;
 const MOST_TOGETHER: usize = 3;
 /// Factor by which an explanation with one mistake more must be better.
 const PENALTY: f64 = 1.2;
+/// Difference over the final settlement from which on the top of a column is not plane.
+const UNEVEN_TOP: f64 = 0.02;
 /// Errors up to this are equal.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -94,6 +97,31 @@ impl Given<'_> {
             ExactFields::of(solution, *time, state.places(self.parameters.height))
         };
         times.iter().zip(states).map(of).collect()
+    }
+
+    /// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
+    fn uneven_top(&self, settlement: f64) -> Option<String> {
+        if self.solution.is_plane() {
+            return None;
+        }
+        let last =
+            self.states.last().filter(|state| state.displacement.len() == state.initial_height.len())?;
+        let highest = last.initial_height.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_top = |y: f64| highest - y <= SAME_PLACE * self.parameters.height;
+        let top = last.initial_height.iter().zip(&last.displacement).filter(|(y, _)| is_top(**y));
+        let moved = top.map(|(_, moved)| *moved);
+        let [least, most] = moved.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], moved| {
+            [least.min(moved), most.max(moved)]
+        });
+        (most - least > UNEVEN_TOP * settlement.abs()).then(|| {
+            format!(
+                "your top is not plane: at y = {} m u_y lies between {} and {} m: are the sides on rollers, and does the \
+                 load press evenly?",
+                short(highest),
+                short(least),
+                short(most)
+            )
+        })
     }
 
     /// Whether nothing but diffusion happens in the solution.
@@ -187,6 +215,13 @@ pub fn diagnosis(
             continue;
         }
         judged += 1;
+        if given.states.iter().all(|state| trials.computed(state).iter().all(|value| *value == 0.0)) {
+            sentences.push((
+                "is 0 everywhere: is it another array than the one that is meant?".to_owned(),
+                vec![column],
+            ));
+            continue;
+        }
         let mut mistakes = Vec::new();
         if error > INACCURATE {
             mistakes.extend(trials.all(error, variants.get_or_insert_with(|| given.variants())));
@@ -204,9 +239,10 @@ pub fn diagnosis(
     }
     // A wrong load shows in everything that a result has; a factor on one quantity alone is something else.
     sentences.retain(|(sentence, columns)| !sentence.contains(inputs::OF_LOAD) || columns.len() == judged);
+    let uneven = given.uneven_top(parameters.final_settlement());
     let told =
         |(sentence, columns): (String, Vec<&str>)| format!("your {} {sentence}", columns.join(" and your "));
-    Ok(sentences.into_iter().map(told).collect())
+    Ok(sentences.into_iter().map(told).chain(uneven).collect())
 }
 
 /// Some of the states, from the first to the last.

@@ -11,7 +11,8 @@ use crate::import::SampledState;
 use crate::judge::score::completeness::{Finding, Lack};
 use crate::judge::score::score_series::{SeriesRow, time_factors};
 use crate::measure::fields::{
-    ExactFields, FieldError, LONG_AFTER, SamplePlaces, largest_contribution, resolution, settlement_error,
+    ExactFields, FieldDifference, FieldError, LONG_AFTER, SamplePlaces, largest_contribution, resolution,
+    settlement_error,
 };
 use crate::record::ErrorRow;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, ShelfProblem};
@@ -92,6 +93,8 @@ pub struct Unresolved {
     pub sample: Sample,
     /// Which reference.
     pub reference: String,
+    /// Root mean square of the difference over the load or the final settlement.
+    pub absolute: f64,
 }
 
 /// What an error is of: time factor (its bits), quantity, sample, norm, reference.
@@ -199,7 +202,9 @@ impl Score {
                 FieldError { time_factor, quantity, sample, reference: name, scale, components, resolution };
             let rows = field.rows(computed, exact, volumes);
             if rows.is_empty() {
-                self.unresolved.push(compared.unresolved(quantity, sample));
+                let difference = FieldDifference::of(computed, exact, volumes);
+                let absolute = difference.and_then(|one| one.in_norm(Norm::L2).0).unwrap_or(f64::NAN);
+                self.unresolved.push(compared.unresolved(quantity, sample, absolute / scale));
             }
             self.errors.extend(rows);
             if is_first {
@@ -218,9 +223,12 @@ impl Score {
             }
         }
         if let Some(displacement) = compared.displacement_of_surface() {
-            match settlement_error(reference, time_factor, -displacement, settled)? {
-                Some(row) => self.errors.push(row),
-                None => self.unresolved.push(compared.unresolved(Quantity::Settlement, Sample::Surface)),
+            if let Some(row) = settlement_error(reference, time_factor, -displacement, settled)? {
+                self.errors.push(row);
+            } else {
+                let absolute = (-displacement - reference.settlement(time_factor)?) / settled;
+                let settlement = compared.unresolved(Quantity::Settlement, Sample::Surface, absolute);
+                self.unresolved.push(settlement);
             }
         }
         Ok(())
@@ -269,9 +277,9 @@ fn cosine_of_error(computed: &[f64], exact: &[f64], volumes: &[f64]) -> f64 {
 }
 
 impl ScoredState<'_> {
-    fn unresolved(&self, quantity: Quantity, sample: Sample) -> Unresolved {
+    fn unresolved(&self, quantity: Quantity, sample: Sample, absolute: f64) -> Unresolved {
         let reference = self.reference.name().to_owned();
-        Unresolved { time_factor: self.time_factor, quantity, sample, reference }
+        Unresolved { time_factor: self.time_factor, quantity, sample, reference, absolute }
     }
 
     /// The sample that carries most of a field's error.

@@ -191,9 +191,12 @@ impl Scored {
         let missing = std::mem::take(&mut self.score.warnings);
         let states = &self.run.states;
         self.score = score(parameters, held.references, states, held.mapping.sample)?;
+        let is_judged = |quantity: &Quantity| !self.run.without.contains(quantity);
+        self.score.errors.retain(|row| is_judged(&row.quantity));
+        self.score.unresolved.retain(|one| is_judged(&one.quantity));
         self.score.warnings.splice(0..0, missing);
         self.score.warnings.extend(self.missing(parameters));
-        self.score.warnings.extend(held.mapping.taken_for_granted().map(|taken| Finding {
+        self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.has_plane_fields()).map(|taken| Finding {
             name: Lack::Undeclared,
             sentence: format!(
                 "the mapping does not declare {taken}: write what the file has into [units] and [sign], because nothing \
@@ -206,7 +209,10 @@ impl Scored {
                 Some(volume) => vec![volume],
                 None if matches!(own, ReferenceKind::Shelf(_)) => Vec::new(),
                 None if held.case.scene.has_plane_fields() => vec![column.volume()],
-                None => vec![column.height, column.height * column.extent()],
+                None => {
+                    let widths = [Some(1.0), Some(column.extent()), self.run.width];
+                    widths.into_iter().flatten().map(|width| column.height * width).collect()
+                }
             };
             let whole = Whole {
                 parameters,

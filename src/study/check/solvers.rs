@@ -9,7 +9,9 @@ use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile};
 use crate::study::reading::Placed;
-use crate::study::solver::{ExternalSolver, PLACEHOLDERS, PRESETS, file_beside, placeholders_of};
+use crate::study::solver::{
+    ExternalSolver, PLACEHOLDERS, PRESETS, SOLVE_UNITS, file_beside, placeholders_of,
+};
 use oedometer_formats::input_file;
 use oedometer_mpm::method::Method;
 use std::path::{Path, PathBuf};
@@ -110,6 +112,9 @@ impl Checker<'_> {
         let repeats = self.count(table.repeats.as_ref(), "repeats", 1..=MOST_REPEATS).unwrap_or(1);
         let at_once = self.count(table.at_once.as_ref(), "at_once", 1..=MOST_AT_ONCE).unwrap_or(1);
         let timeout = self.positive(table.timeout.as_ref(), "timeout", "s", case_seconds);
+        let solve_unit = self.solve_unit(table);
+        let time_step =
+            table.time_step.as_ref().map(|typed| self.positive(Some(typed), "time_step", "s", 1.0));
         let attached = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
         (self.diagnostics.len() == before).then(|| ExternalSolver {
             attached,
@@ -117,7 +122,7 @@ impl Checker<'_> {
             command,
             result: table.result.to_string(),
             files: Vec::new(),
-            time_step: None,
+            time_step,
             mapping,
             preset,
             version: table.version.as_ref().map_or(Vec::new(), |list| words_of(list)),
@@ -127,6 +132,7 @@ impl Checker<'_> {
             at_once,
             environment: pairs_of(table),
             solve_seconds: table.solve_seconds.as_deref().cloned(),
+            solve_unit,
         })
     }
 
@@ -192,6 +198,7 @@ impl Checker<'_> {
             at_once: 1,
             environment: Vec::new(),
             solve_seconds: None,
+            solve_unit: 1.0,
         });
         Some(GivenMeshes { method: Solver::Attached(attached), cells, tier: table.tier })
     }
@@ -249,6 +256,18 @@ impl Checker<'_> {
             self.complain(typed.span(), format!("there is no file {}", path.display()), help);
         }
         Some(typed.to_string())
+    }
+
+    /// The unit of the time that it says it took, s.
+    fn solve_unit(&mut self, table: &SolverTable) -> f64 {
+        let Some(typed) = &table.solve_unit else { return 1.0 };
+        let known = SOLVE_UNITS.iter().find(|(name, _)| *name == typed.as_str());
+        if known.is_none() || table.solve_seconds.is_none() {
+            let names = SOLVE_UNITS.map(|(name, _)| name).join(", ");
+            let message = format!("`solve_unit` is the unit of `solve_seconds`: {names}");
+            self.complain(typed.span(), message, "write both, like solve_unit = \"ms\"");
+        }
+        known.map_or(1.0, |(_, seconds)| *seconds)
     }
 
     fn pattern_has_a_group(&mut self, table: &SolverTable) {
@@ -311,6 +330,9 @@ fn digest_of_solver(table: &SolverTable, folder: &Path) -> String {
         digest.take("value", &value);
     }
     digest.take("result", &table.result);
+    if let Some(typed) = &table.time_step {
+        digest.take("time step", &format!("{:e}", **typed));
+    }
     if let Some(preset) = &table.preset {
         digest.take("preset", preset);
     }

@@ -126,7 +126,7 @@ impl BarronFreeStrain {
         let cylinder = Cylinder::new(parameters)?;
         let (inner, spacing) = (cylinder.inner, PI / cylinder.width);
         let mode = |index: usize| {
-            let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
             let misfit = |root: f64| sign * (j0(root * inner) * y1(root) - y0(root * inner) * j1(root));
             let low = index as f64 * spacing;
             let root = bisected(low, low + spacing, misfit);

@@ -86,7 +86,7 @@ impl Cryer {
         for (index, root) in self.roots[..terms].iter().enumerate().rev() {
             let square = root * root;
             let weight = 2.0 * elementary::exp(-square * time) / (h * (h - 3.0) + square);
-            let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
             let amplitude = sign * elementary::hypot(h * root, square - h);
             let turned = root * distance;
             let sine = if turned == 0.0 { 1.0 } else { elementary::sin(turned) / turned };

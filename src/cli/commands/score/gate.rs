@@ -9,6 +9,10 @@ use crate::judge::score::results::{Results, Scored};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_soil::wording::typed;
 
+/// Share of the load, or of the final settlement, below which an exact value all but vanishes and errors are judged on
+/// that scale.
+const VANISHING: f64 = 1e-3;
+
 /// Prints what the results lack and whether they pass. With `--below` or `--strict`, incomplete results fail.
 pub fn judge(
     results: &Results,
@@ -48,7 +52,8 @@ pub fn judge(
     Ok(exit.max(errors_below(bound, &results.all, reference)?))
 }
 
-/// Checks that every main error against the first reference is below a bound; NaN is not.
+/// Checks that every main error against the first reference is below a bound; NaN is not. Where the exact value all but
+/// vanishes, as a displacement does at `t = 0`, the error is judged on the scale of the load.
 fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Exit> {
     if !(bound.is_finite() && bound > 0.0) {
         return Err(Ended::usage(format!("`--below {bound}` is invalid: expected a positive number")));
@@ -56,29 +61,35 @@ fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyh
     let judged = results.iter().flat_map(|one| &one.score.errors).filter(|row| {
         matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
     });
-    for one in results.iter().flat_map(|one| &one.score.unresolved) {
-        if Some(one.reference.as_str()) == reference {
-            say!(
-                "note: {} at T_v = {} is not judged: the exact value is zero or below round-off",
-                one.quantity.name(),
-                typed(one.time_factor)
-            );
+    let vanished = results.iter().flat_map(|one| &one.score.unresolved);
+    let vanished = vanished.filter(|one| Some(one.reference.as_str()) == reference);
+    let scaled = |quantity, time_factor, absolute| (quantity, time_factor, absolute, "error over the load");
+    let errors = judged.map(|row| {
+        // An exact value that all but vanishes: an error relative to it says nothing.
+        if row.absolute.abs() < VANISHING * row.value.abs() {
+            return scaled(row.quantity, row.time_factor, row.absolute);
         }
-    }
+        let unit = if row.quantity == Quantity::Settlement { "relative error" } else { "L2 error" };
+        (row.quantity, row.time_factor, row.value, unit)
+    });
     let mut any = false;
     let mut exit = Exit::Pass;
-    for row in judged {
+    for (quantity, time_factor, error, unit) in
+        errors.chain(vanished.map(|one| scaled(one.quantity, one.time_factor, one.absolute)))
+    {
         any = true;
         // NaN fails.
-        let passes = row.value.abs() < bound;
+        let passes = error.abs() < bound;
         if !passes {
-            let unit = if row.quantity == Quantity::Settlement { "relative" } else { "L2" };
-            say!(
-                "fail: {} at T_v = {} has a {unit} error of {:.3e}, not below {bound:e}",
-                row.quantity.name(),
-                typed(row.time_factor),
-                row.value
-            );
+            let (name, time) = (quantity.name(), typed(time_factor));
+            let scale = match (unit, quantity) {
+                ("error over the load", Quantity::Displacement | Quantity::Settlement) => {
+                    "error over the final settlement"
+                }
+                _ => unit,
+            };
+            let article = if scale.starts_with('e') || scale.starts_with('L') { "an" } else { "a" };
+            say!("fail: {name} at T_v = {time} has {article} {scale} of {error:.3e}, not below {bound:e}");
             exit = Exit::VerdictFailed;
         }
     }

@@ -3,7 +3,7 @@
 mod gate;
 mod scored_files;
 
-use crate::case::Case;
+use crate::case::{Case, Quantity};
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
@@ -58,6 +58,9 @@ pub struct Arguments {
     /// below this, or if the result is incomplete
     #[arg(long, value_name = "ERROR")]
     below: Option<f64>,
+    /// Quantities that the files lack on purpose, comma-separated: pressure, `effective_stress`, displacement, settlement
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
+    without: Vec<String>,
     /// Fail with exit code 1 if the result is incomplete: volume, height, rows, times
     #[arg(long)]
     strict: bool,
@@ -86,7 +89,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let asked = Asked::of_scene(&arguments.scene, &arguments.outputs)?;
     tell_warnings(&asked.study);
     let case = asked.case();
-    let (mapping, runs) = scored_files::read(arguments, case)?;
+    let (mapping, mut runs) = scored_files::read(arguments, case)?;
+    let without = quantities_of(&arguments.without)?;
+    for run in &mut runs {
+        run.leave_out(&without);
+    }
     let comparison = Comparison {
         case,
         parameters: asked.parameters,
@@ -120,6 +127,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     say!("{}", groups_of(case));
     gate::judge(&results, arguments.below, arguments.strict, comparison.references)
+}
+
+/// Quantities by their names.
+fn quantities_of(typed: &[String]) -> anyhow::Result<Vec<Quantity>> {
+    let of = |name: &String| {
+        Quantity::named(name).ok_or_else(|| {
+            let names = Quantity::NAMES.join(", ");
+            Ended::usage(format!("`--without {name}` is no quantity: expected one of {names}"))
+        })
+    };
+    typed.iter().map(of).collect()
 }
 
 /// The size of what the reference neglects, in one line.

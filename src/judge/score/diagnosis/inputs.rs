@@ -12,7 +12,7 @@ use oedometer_soil::elementary::{exp, ln};
 use oedometer_soil::wording::short;
 
 /// Relative errors below this are not taken for a mistake.
-pub const NOTICED: f64 = 0.01;
+pub const NOTICED: f64 = 2e-3;
 /// Words that mark a sentence on the load.
 pub const OF_LOAD: &str = "is the load";
 /// Factors of a load that people confuse: both faces of a slab, half of a symmetric one.
@@ -24,7 +24,7 @@ const FITTED: f64 = 0.05;
 /// Factors of the time that are fitted.
 const FACTORS: [f64; 2] = [0.2, 5.0];
 /// Factors of the time closer than this to 1 are an inaccurate solver's.
-const NEAR_ONE: f64 = 0.03;
+const NEAR_ONE: f64 = 5e-3;
 /// How near a fitted factor must be to one that has a name.
 const NEAR_NAME: f64 = 0.01;
 /// Count of a mistake with a fitted number: a number with a name that does as well is preferred.
@@ -146,9 +146,9 @@ impl Trials<'_> {
         let by_offset = left_of(self, &|time| time + offset);
         let (sentence, left) = if by_factor <= CLEARLY * by_offset && (factor - 1.0).abs() >= NEAR_ONE {
             let asked = if (factor / self.modulus_ratio() - 1.0).abs() < NEAR_NAME {
-                MODULUS
+                MODULUS.to_owned()
             } else {
-                "are the times, k or the stiffness off by this factor?"
+                self.off_by(factor)
             };
             (format!("matches the exact one at {} × the time: {asked}", short(rounded(factor))), by_factor)
         } else if by_offset <= CLEARLY * by_factor {
@@ -163,6 +163,23 @@ impl Trials<'_> {
             return None;
         };
         Some(Mistake { sentence, left, count: FITTED_COUNT })
+    }
+
+    /// The inputs of which each alone would make the time run faster by a factor, with the numbers that they would be.
+    fn off_by(&self, factor: f64) -> String {
+        let given = self.given.parameters;
+        let [k, modulus, height] = [
+            given.hydraulic_conductivity * factor,
+            given.oedometric_modulus() * factor,
+            given.height / factor.sqrt(),
+        ]
+        .map(|number| short(rounded(number)));
+        format!(
+            "is k {k} m/s for {}, or E_oed {modulus} Pa for {}, or H {height} m for {} (H² counts), or are the times off?",
+            short(given.hydraulic_conductivity),
+            short(given.oedometric_modulus()),
+            short(given.height)
+        )
     }
 
     /// A slab whose water drains as if the load stayed where it is: only a plate that stays plane moves it to the middle.

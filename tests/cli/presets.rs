@@ -1,0 +1,299 @@
+//! Files as MPM codes write them, made of an exact column by writers that follow the sources of each program, scored with
+//! its preset.
+//!
+//! `Anura3D`: `WriteVTKOutput.FOR` and `WriteVTKASCII.FOR` of `github.com/Anura3D/Anura3D_OpenSource`. MPM-Geomechanics:
+//! `src/Output.cpp` of `github.com/fabricix/MPM-Geomechanics`. CB-Geo: `include/hdf5_particle_twophase.h` and
+//! `include/io/vtk_writer.h` of `github.com/cb-geo/mpm`. Kratos: `kratos/input_output/vtk_output.cpp` of
+//! `github.com/KratosMultiphysics/Kratos`.
+
+use crate::program::{Told, call};
+use hdf5_pure::{CompoundTypeBuilder, FileBuilder, make_f64_type};
+use oedometer_exact::{ColumnParameters, FieldValues, Reference, ReferenceKind};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Cells of two points across and one over the height.
+const ROWS: usize = 20;
+/// Steps that are written, of 0.8175 s each: `T_v` = 0.05, 0.1 and 0.5 of the default column.
+const STEPS: [usize; 3] = [5, 10, 50];
+const SECONDS: f64 = 0.8175;
+/// Load, Pa.
+const LOAD: f64 = 1e4;
+
+/// A point: its initial place and its fields.
+struct Point {
+    place: [f64; 2],
+    fields: FieldValues,
+}
+
+impl Point {
+    /// Its initial place.
+    fn initial(&self) -> [f64; 2] {
+        self.place
+    }
+
+    /// Its present place.
+    fn now(&self) -> [f64; 2] {
+        [self.place[0], self.place[1] + self.fields.displacement]
+    }
+}
+
+fn points(step: usize) -> Vec<Point> {
+    let column = ColumnParameters { load: LOAD, ..ColumnParameters::default() };
+    let exact = Reference::new(ReferenceKind::Terzaghi, &column, &[]).expect("the default column");
+    let time = column.time_factor(step as f64 * SECONDS);
+    let at = |row: usize, x: f64| {
+        let y = (row as f64 + 0.5) / ROWS as f64;
+        Point { place: [x, y], fields: exact.fields(time, 1.0 - y).expect("inside") }
+    };
+    (0..ROWS).flat_map(|row| [at(row, 0.025), at(row, 0.075)]).collect()
+}
+
+fn score(folder: &Path, files: &[&str], more: &[&str]) -> Told {
+    let scene = ["--scene", "terzaghi", "--reference", "terzaghi", "--set", "column.load=1e4"];
+    call(folder, &[&["score"], files, &scene, more].concat())
+}
+
+/// Scores to round-off of the digits written, without a warning.
+fn agrees(folder: &Path, files: &[&str], preset: &str, below: &str) {
+    let step = SECONDS.to_string();
+    let told = score(folder, files, &["--preset", preset, "--set-time-step", &step, "--below", below]);
+    assert_eq!(told.code, 0, "{preset}: {}{}", told.out, told.err);
+    for quantity in ["pressure", "displacement", "effective_stress"] {
+        let lines = told.out.lines().filter(|line| line.contains(quantity)).count();
+        assert!(lines >= STEPS.len(), "{preset}: {quantity}\n{}{}", told.out, told.err);
+    }
+}
+
+/// The head of a legacy VTK file of points, as Fortran's list-directed output has it.
+fn vtk_head(places: &[[f64; 2]]) -> String {
+    let count = places.len();
+    let mut text = format!(
+        "# vtk DataFile Version 3.0\ncolumn\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {count:8} float\n"
+    );
+    for [x, y] in places {
+        writeln!(text, "  {x:.16E}  {y:.16E}  0.0000000000000000").expect("text");
+    }
+    writeln!(text, "CELLS {count:8}{:8}", 2 * count).expect("text");
+    (0..count).for_each(|point| writeln!(text, "1{point:8}").expect("text"));
+    writeln!(text, "CELL_TYPES {count:8}").expect("text");
+    (0..count).for_each(|_| text.push_str(" 1\n"));
+    writeln!(text, "POINT_DATA {count:8}").expect("text");
+    text
+}
+
+fn write_anura3d(folder: &Path, without: &str) {
+    for step in STEPS {
+        let points = points(step);
+        let [mut scalars, mut vectors, mut tensors] =
+            [(); 3].map(|()| vtk_head(&points.iter().map(Point::now).collect::<Vec<_>>()));
+        scalars.push_str("SCALARS pressure_liquid float 1\nLOOKUP_TABLE default\n");
+        vectors.push_str("VECTORS velocity_solid float\n");
+        vectors.push_str(&" 0.0 0.0 0.0\n".repeat(points.len()));
+        vectors.push_str("VECTORS displacement_solid float\n");
+        tensors.push_str("TENSORS eff_stress_solid float\n");
+        for Point { fields, .. } in &points {
+            // kPa; tension is positive, of the water too.
+            writeln!(scalars, "  {:.16E}", -fields.pressure / 1e3).expect("text");
+            writeln!(vectors, "  0.0  {:.16E}  0.0", fields.displacement).expect("text");
+            let stress = fields.effective_stress / 1e3;
+            writeln!(tensors, "  {0:.16E} 0.0 0.0\n 0.0 {stress:.16E} 0.0\n 0.0 0.0 {0:.16E}", stress / 3.0)
+                .expect("text");
+        }
+        for (kind, text) in [("Scalar", scalars), ("Vector", vectors), ("Tensor", tensors)] {
+            if kind != without {
+                fs::write(folder.join(format!("column_MP{kind}_{step:03}.vtk")), text).expect("a file");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_three_files_of_anura3d_are_one_state_in_kilopascals_with_suction_positive() {
+    let folder = TempDir::new().expect("a folder");
+    write_anura3d(folder.path(), "");
+    agrees(folder.path(), &["column_MP*.vtk"], "anura3d", "1e-9");
+    // One of the three brings the others along.
+    agrees(folder.path(), &["column_MPVector_*.vtk"], "anura3d", "1e-9");
+    let mapping = "[columns]\np = \"pressure_liquid\"\nu_y = \"displacement_solid[1]\"\ny = \"coordinates[1]\"\n\
+        [units]\nstress = \"kPa\"\n[sign]\np = \"tension-positive\"\nu_y = \"up\"\n[position]\ny = \"current\"\n";
+    let own = |join: &str| {
+        fs::write(folder.path().join("map.toml"), format!("{join}\n{mapping}")).expect("a file");
+        let more = ["--mapping", "map.toml", "--set-time-step", "0.8175", "--below", "1e-9"];
+        score(folder.path(), &["column_MPScalar_*.vtk"], &more)
+    };
+    let told = own("join = [\"*_MPScalar_*.vtk\", \"*_MPVector_*.vtk\"]");
+    assert_eq!(told.code, 0, "{}{}", told.out, told.err);
+    let told = own("join = [\"*_MPScalar_*.vtk\", \"*_MP*_*.vtk\"]");
+    assert!(told.code == 2 && told.err.contains("same number of `*`"), "{}", told.err);
+}
+
+#[test]
+fn what_a_preset_promises_fails_the_gate_by_name_unless_it_is_left_out_by_name() {
+    let folder = TempDir::new().expect("a folder");
+    write_anura3d(folder.path(), "Scalar");
+    let gate = ["--preset", "anura3d", "--set-time-step", "0.8175", "--below", "1e-9"];
+    let told = score(folder.path(), &["column_MP*.vtk"], &gate);
+    assert!(told.code == 1 && told.err.contains("fail: quantity-missing: there is no `p`"), "{}", told.err);
+    assert!(told.err.contains("--without pressure"), "{}", told.err);
+    let without = [&gate[..], &["--without", "pressure"]].concat();
+    let told = score(folder.path(), &["column_MP*.vtk"], &without);
+    assert!(told.code == 0 && !told.out.contains("pressure"), "{}{}", told.out, told.err);
+    let told = score(folder.path(), &["column_MP*.vtk"], &[&gate[..], &["--without", "p"]].concat());
+    assert!(told.code == 2 && told.err.contains("expected one of pressure"), "{}", told.err);
+}
+
+#[test]
+fn mpm_geomechanics_spells_format_with_a_capital_and_has_z_upward() {
+    let folder = TempDir::new().expect("a folder");
+    let mut series = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\" \
+         compressor=\"vtkZLibDataCompressor\">\n\t<Collection>\n",
+    );
+    for (place, step) in STEPS.into_iter().enumerate() {
+        let points = points(step);
+        let count = points.len();
+        let array = |name: &str, components: usize, of: &dyn Fn(&Point) -> String| {
+            let name = if name.is_empty() { String::new() } else { format!(" Name=\"{name}\"") };
+            let mut text = format!(
+                "<DataArray type=\"Float64\"{name} NumberOfComponents=\"{components}\" Format=\"ascii\">\n"
+            );
+            text.extend(points.iter().map(|point| of(point) + "\n"));
+            text + "</DataArray>\n"
+        };
+        let whole = |name: &str, of: &dyn Fn(usize) -> usize| {
+            let numbers: String = (0..count).map(|point| of(point).to_string() + "\n").collect();
+            format!("<DataArray type=\"UInt64\" Name=\"{name}\" Format=\"ascii\">\n{numbers}</DataArray>\n")
+        };
+        let text = [
+            format!(
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n\
+                 <UnstructuredGrid>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n<Points>\n"
+            ),
+            array("", 3, &|point| format!("{:.12e} 0.0 {:.12e}", point.now()[0], point.now()[1])),
+            "</Points>\n<PointData>\n".to_owned(),
+            array("Pore Pressure", 1, &|point| format!("{:.12e}", point.fields.pressure)),
+            array("Displacement", 3, &|point| format!("0.0 0.0 {:.12e}", point.fields.displacement)),
+            array("Stress_ZZ", 1, &|point| format!("{:.12e}", point.fields.effective_stress)),
+            "</PointData>\n<Cells>\n".to_owned(),
+            whole("connectivity", &|point| point),
+            whole("offsets", &|point| point + 1),
+            whole("types", &|_| 1),
+            "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n".to_owned(),
+        ];
+        let name = format!("particles_{}.vtu", place + 1);
+        fs::write(folder.path().join(&name), text.concat()).expect("a file");
+        let time = step as f64 * SECONDS;
+        writeln!(series, "\t\t<DataSet timestep=\"{time}\" group=\"\" part=\"0\" file=\"{name}\"/>")
+            .expect("text");
+    }
+    fs::write(folder.path().join("particleTimeSerie.pvd"), series + "\t</Collection>\n</VTKFile>\n")
+        .expect("a file");
+    let gate = ["--preset", "mpm-geomechanics", "--below", "1e-6"];
+    let told = score(folder.path(), &["particleTimeSerie.pvd"], &gate);
+    assert_eq!(told.code, 0, "{}{}", told.out, told.err);
+    assert!(told.out.contains("effective_stress") && told.out.contains("pressure"), "{}", told.out);
+}
+
+#[test]
+fn cb_geos_hdf5_has_its_pore_pressure_in_a_state_variable_of_the_liquid() {
+    let folder = TempDir::new().expect("a folder");
+    let names = [
+        "volume",
+        "pressure",
+        "coord_x",
+        "coord_y",
+        "displacement_x",
+        "displacement_y",
+        "stress_yy",
+        "liquid_svars_0",
+    ];
+    for step in STEPS {
+        let points = points(step);
+        let mut kind = CompoundTypeBuilder::new();
+        for name in names {
+            kind = kind.field(name, make_f64_type());
+        }
+        let record = |point: &Point| {
+            let ([x, y], fields) = (point.now(), point.fields);
+            [0.1 / 40.0, 0.0, x, y, 0.0, fields.displacement, fields.effective_stress, fields.pressure]
+        };
+        let bytes: Vec<u8> = points.iter().flat_map(record).flat_map(f64::to_le_bytes).collect();
+        let mut file = FileBuilder::new();
+        let kind = kind.build().expect("a record");
+        file.create_dataset("table").with_compound_data(kind, bytes, points.len() as u64);
+        file.write(folder.path().join(format!("particles-{step:04}.h5"))).expect("a file");
+    }
+    agrees(folder.path(), &["particles-*.h5"], "cb-geo", "1e-9");
+    // The solid's pressure is 0 everywhere, and is named as such.
+    fs::write(folder.path().join("map.toml"), "[columns]\np = \"pressure\"\n").expect("a file");
+    let more = ["--preset", "cb-geo", "--mapping", "map.toml", "--set-time-step", "0.8175"];
+    let told = score(folder.path(), &["particles-*.h5"], &more);
+    assert!(told.err.contains("your p is 0 everywhere: is it another array"), "{}", told.err);
+}
+
+#[test]
+fn cb_geos_vtp_files_have_an_array_each_and_are_joined() {
+    let folder = TempDir::new().expect("a folder");
+    for step in STEPS {
+        let points = points(step);
+        let mut places = String::new();
+        for [x, y] in points.iter().map(Point::now) {
+            writeln!(places, "{x:.17e} {y:.17e} 0").expect("text");
+        }
+        let write = |name: &str, components: usize, of: &dyn Fn(&FieldValues) -> String| {
+            let values: String = points.iter().map(|point| of(&point.fields) + "\n").collect();
+            let text = format!(
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+                 header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\">\n<PointData>\n\
+                 <DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">\n\
+                 {values}</DataArray>\n</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" \
+                 NumberOfComponents=\"3\" format=\"ascii\">\n{places}</DataArray>\n</Points>\n</Piece>\n</PolyData>\n\
+                 </VTKFile>\n",
+                points.len()
+            );
+            fs::write(folder.path().join(format!("{name}{step:04}.vtp")), text).expect("a file");
+        };
+        write("displacements", 3, &|fields| format!("0 {:.17e} 0", fields.displacement));
+        write("pore_pressures", 1, &|fields| format!("{:.17e}", fields.pressure));
+        write("stresses", 6, &|fields| format!("0 {:.17e} 0 0 0 0", fields.effective_stress));
+    }
+    agrees(folder.path(), &["*.vtp"], "cb-geo", "1e-9");
+}
+
+#[test]
+fn kratos_poromechanics_counts_compression_positive_and_its_mpm_has_no_pore_pressure() {
+    let folder = TempDir::new().expect("a folder");
+    for step in STEPS {
+        let points = points(step);
+        let [initial, now]: [Vec<[f64; 2]>; 2] =
+            [Point::initial, Point::now].map(|place| points.iter().map(place).collect());
+        let fields = |name: &str, components: usize, of: &dyn Fn(&FieldValues) -> String| {
+            let values: String = points.iter().map(|point| of(&point.fields) + "\n").collect();
+            format!("{name} {components} {} double\n{values}", points.len())
+        };
+        let up = |fields: &FieldValues| format!("0 {:.17e} 0", fields.displacement);
+        let poro = fields("LIQUID_PRESSURE", 1, &|fields| format!("{:.17e}", fields.pressure));
+        let poro =
+            format!("{}FIELD FieldData 2\n{poro}{}", vtk_head(&initial), fields("DISPLACEMENT", 3, &up));
+        fs::write(folder.path().join(format!("porous_0_{step}.vtk")), poro).expect("a file");
+        let stress =
+            fields("MP_CAUCHY_STRESS_VECTOR", 3, &|fields| format!("0 {:.17e} 0", fields.effective_stress));
+        let mpm =
+            format!("{}FIELD FieldData 2\n{stress}{}", vtk_head(&now), fields("MP_DISPLACEMENT", 3, &up));
+        fs::write(folder.path().join(format!("mpm_0_{step}.vtk")), mpm).expect("a file");
+    }
+    let of = |files: &str, preset: &str| {
+        score(folder.path(), &[files], &["--preset", preset, "--set-time-step", "0.8175", "--below", "1e-9"])
+    };
+    let told = of("porous_0_*.vtk", "kratos-poro");
+    assert!(told.code == 0 && told.out.contains("pressure"), "{}{}", told.out, told.err);
+    // The other application's preset knows another name: nothing is dropped in silence.
+    let told = of("porous_0_*.vtk", "kratos");
+    assert!(told.code == 1 && told.err.contains("there is no `p`"), "{}{}", told.out, told.err);
+    assert!(told.err.contains("--preset kratos-poro"), "{}", told.err);
+    let told = of("mpm_0_*.vtk", "kratos-mpm");
+    assert!(told.code == 0 && told.out.contains("effective_stress"), "{}{}", told.out, told.err);
+}
