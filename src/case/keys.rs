@@ -254,6 +254,12 @@ keys! {
     dimensions in &["column"], Kind::Count(2), "", [column.dimensions]; "Directions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", [column.loading_time];
         "Time over which the load grows, 0 where it acts at once"
+    initial_stress in &["sweep", "column"], Kind::Number(Range::NotNegative), "Pa", [column.initial_stress];
+        "Vertical effective stress of the start, compression positive, that a preconsolidated soil has already"
+    reload_modulus in &["sweep", "material"], POSITIVE, "Pa", [material.reload_modulus];
+        "Oedometric modulus of unloading and reloading of a preconsolidated soil"
+    preconsolidation in &["sweep", "material"], POSITIVE, "Pa", [material.preconsolidation];
+        "Largest vertical effective stress that a preconsolidated soil has had, compression positive"
     amplitude_x in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_x];
         "Amplitude A of a prescribed stretch along x"
     amplitude_y in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_y];

@@ -130,6 +130,12 @@ impl Case {
             ),
             when(
                 "sets",
+                two && *scene == SceneKind::Layered,
+                "the water of two point sets knows one soil",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "sets",
                 two && column.self_weight,
                 "the weight of a column needs points that carry both phases",
                 "leave `self_weight` out, or take `sets = 1`",

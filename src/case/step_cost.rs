@@ -4,7 +4,7 @@
 //! there to the cases of the shipped studies.
 
 use crate::case::Case;
-use oedometer_mpm::method::{Configuration, Memory, Method, Recovery, StrainGradient};
+use oedometer_mpm::method::{Configuration, Memory, Method, StrainGradient};
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 
 /// Kinds of steps that differ in what they cost.
@@ -85,7 +85,7 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     let width = case.column.cells_across(case.cells).unwrap_or(1).min(case.cells) as f64;
     let method = case.method.own().unwrap_or(Method::STANDARD);
     let follows = matches!(kind, StepKind::PointWise | StepKind::Newton);
-    let fits = method.recovery == Recovery::Patch || method.strain != StrainGradient::Standard;
+    let fits = method.uses_patch() || method.strain != StrainGradient::Standard;
     let mut factor = 1.0;
     if kind == StepKind::PointWise && fits {
         factor *= if case.column.dimensions == 1 { FIT_FACTOR } else { PLANE_FIT_FACTOR };

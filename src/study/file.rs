@@ -12,6 +12,7 @@ use crate::study::reading::{Placed, Typed};
 use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_exact::soil_layers::SoilLayer;
 use oedometer_mpm::scene::SceneKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -153,6 +154,9 @@ pub struct ColumnTable {
     pub inputs: Inputs,
     /// Vertical strain at the end, in place of the load that causes it: 0.3 is a column that gets 30 % shorter.
     pub strain: Typed<f64>,
+    /// Layers of soil from the base up: their thicknesses and what differs from `[material]`.
+    #[serde(default)]
+    pub soils: Vec<Placed<SoilLayer>>,
 }
 
 /// When results are kept, and what they are compared with.

@@ -28,6 +28,7 @@ mod run;
 mod score;
 mod shelf;
 mod signals;
+mod soils;
 mod solve;
 mod store;
 mod streams;

@@ -33,6 +33,7 @@ pub mod dynamic_column;
 pub mod exact_error;
 #[doc(hidden)]
 pub mod field_values;
+mod in_seconds;
 pub mod large_strain;
 pub mod layered;
 pub mod mandel;
@@ -44,6 +45,7 @@ pub mod quadrature;
 pub mod reference;
 pub mod shelf;
 pub mod single_mode;
+pub mod soil_layers;
 pub mod terzaghi;
 pub mod xie_leo;
 pub mod yield_front;

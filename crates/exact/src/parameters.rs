@@ -2,6 +2,9 @@
 
 use crate::exact_error::{ExactError, normal, positive};
 use crate::shelf::ShelfParameters;
+use crate::soil_layers::SoilLayers;
+use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
@@ -79,6 +82,14 @@ pub struct ColumnParameters {
     pub motion: MotionParameters,
     /// What problems of the shelf add; nothing else heeds it.
     pub shelf: ShelfParameters,
+    /// Layers from the base up; only a layered column heeds them.
+    pub soils: SoilLayers,
+    /// Effective stress of the start, compression positive, Pa; only a yield front heeds it.
+    pub uniform_stress: f64,
+    /// Oedometric modulus of reloading, Pa; only a yield front heeds it.
+    pub reload_modulus: f64,
+    /// Largest effective stress so far, compression positive, Pa; only a yield front heeds it.
+    pub preconsolidation: f64,
 }
 
 impl Default for ColumnParameters {
@@ -100,11 +111,50 @@ impl Default for ColumnParameters {
             self_weight: false,
             motion: MotionParameters::default(),
             shelf: ShelfParameters::default(),
+            soils: SoilLayers::default(),
+            uniform_stress: 0.0,
+            reload_modulus: 0.0,
+            preconsolidation: 0.0,
         }
     }
 }
 
 impl ColumnParameters {
+    /// A column of a height (m) of a soil under a load (Pa).
+    pub fn of_soil(height: f64, load: f64, soil: &Material) -> Self {
+        Self {
+            height,
+            load,
+            youngs_modulus: soil.youngs_modulus,
+            poissons_ratio: soil.poissons_ratio,
+            porosity: soil.porosity,
+            grain_density: soil.grain_density,
+            water_density: soil.water_density,
+            water_bulk_modulus: soil.water_bulk_modulus,
+            hydraulic_conductivity: soil.hydraulic_conductivity,
+            gravity: soil.gravity,
+            reload_modulus: soil.reload_modulus,
+            preconsolidation: soil.preconsolidation,
+            ..Self::default()
+        }
+    }
+
+    /// Its soil, of constant modulus and conductivity.
+    pub fn material(&self) -> Material {
+        Material {
+            law: Law::Linear,
+            youngs_modulus: self.youngs_modulus,
+            poissons_ratio: self.poissons_ratio,
+            porosity: self.porosity,
+            grain_density: self.grain_density,
+            water_density: self.water_density,
+            water_bulk_modulus: self.water_bulk_modulus,
+            hydraulic_conductivity: self.hydraulic_conductivity,
+            gravity: self.gravity,
+            ..Material::default()
+        }
+    }
+
     /// Oedometric modulus `E_oed = E(1 − ν)/((1 + ν)(1 − 2ν))`, Pa.
     pub fn oedometric_modulus(&self) -> f64 {
         let nu = self.poissons_ratio;

@@ -2,7 +2,7 @@
 
 use crate::forcing::{Forced, Forcing};
 use crate::loaded_body::RigidPlate;
-use crate::method::{Configuration, Method};
+use crate::method::{Configuration, Method, Recovery};
 use crate::operators::corners::{Domains, build_corners, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
@@ -234,6 +234,10 @@ impl<const D: usize> Body<D> {
         body.displace(&initial_gradient);
         body.add_hydrostatic_pressure();
         body.build_operators();
+        // Where points move, other cells are cut at every step.
+        if body.recovers_by_soils() && !configuration.moves_points() {
+            body.share_stress_at_interfaces();
+        }
         body.map_masses();
         if !balanced_weight.is_empty() {
             body.carry_what_weight_leaves(balanced_weight);
@@ -282,6 +286,11 @@ impl<const D: usize> Body<D> {
         if let Some(domains) = &mut self.domains {
             domains.follow(&self.points.inverse_deformation);
         }
+    }
+
+    /// Whether it has several soils, and patches that keep to them.
+    fn recovers_by_soils(&self) -> bool {
+        self.soils.len() > 1 && self.method.recovery == Recovery::PatchSoils
     }
 
     /// Soil of a point.
@@ -375,10 +384,43 @@ impl<const D: usize> Body<D> {
         }
         self.strain.build(&self.grid, &self.cells, &self.points.half_length);
         self.recovery.build(&self.grid, &self.cells);
+        if self.recovers_by_soils() {
+            self.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
+        }
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
         }
         self.apply_loads();
+    }
+
+    /// Gives the points of every cell that an interface cuts the modulus of its soils in series, under which they share the
+    /// vertical stress that is continuous across the interface: soils of their own.
+    fn share_stress_at_interfaces(&mut self) {
+        let mut sums = vec![[0.0; 2]; self.grid.cell_count()];
+        for point in 0..self.points.len() {
+            let volume = self.points.volume(point);
+            let sum = &mut sums[self.cells.of_point[point]];
+            sum[0] += volume;
+            sum[1] += volume / self.soil_of(point).oedometric_modulus();
+        }
+        for point in 0..self.points.len() {
+            let [volume, compliance] = sums[self.cells.of_point[point]];
+            let soil = *self.soil_of(point);
+            let share = volume / compliance / soil.oedometric_modulus();
+            if (share - 1.0).abs() < 1e-9 {
+                continue;
+            }
+            let shared = Material { youngs_modulus: share * soil.youngs_modulus, ..soil };
+            let number = self.soils.iter().position(|one| *one == shared).unwrap_or(self.soils.len());
+            // More kinds than there are numbers keep their own.
+            if let Ok(small) = u8::try_from(number) {
+                if number == self.soils.len() {
+                    self.soils.push(shared);
+                    self.stress_laws.push(shared.stress_law());
+                }
+                self.points.soil[point] = small;
+            }
+        }
     }
 
     /// Faces that are held, and where splines end.

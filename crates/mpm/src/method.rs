@@ -93,6 +93,9 @@ pub enum Recovery {
     Constant,
     /// Moving least squares over the surrounding block of cells (MLSA).
     Patch,
+    /// Moving least squares over those cells around that hold the soil of the point; points of a cell that an interface
+    /// cuts share one vertical stress.
+    PatchSoils,
     /// Means at the nodes, interpolated to the points: of the cells around a node, nodal averaging of the
     /// volumetric rate (Detournay & Dzik 2006; Jassim, Stolle & Vermeer 2013); of the points around it,
     /// pressure as a nodal field of its own (Chen, Zhang, Sze, Kan & Qiu 2018).
@@ -102,14 +105,16 @@ pub enum Recovery {
     NullSpace,
 }
 
-words!(Recovery: Constant "constant", Patch "patch", Nodal "nodal", NullSpace "null-space");
+words!(Recovery: Constant "constant", Patch "patch", PatchSoils "patch-soils", Nodal "nodal", NullSpace "null-space");
 
 impl Recovery {
     /// Why a recovery does not go with a place of the divergence, where it does not.
     pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
         match (self, pressure.is_by_cells()) {
             (Self::NullSpace, true) => Some("a single value in a cell has no null space"),
-            (Self::Patch, false) => Some("values at the points need no recovery from cells"),
+            (Self::Patch | Self::PatchSoils, false) => {
+                Some("values at the points need no recovery from cells")
+            }
             _ => None,
         }
     }
@@ -182,16 +187,17 @@ pub struct Method {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 14] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 15] = {
     use Basis::{Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
-    use Recovery::{Constant, Nodal, NullSpace, Patch};
+    use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
     [
         ("MPM", Hat, Standard, Points, Constant),
         ("GIMP", Cpgimp, Standard, Points, Constant),
         ("GIMP-SRI", Cpgimp, Standard, Sri, Constant),
         ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
+        ("GIMP-SRI-patch-soils", Cpgimp, Standard, Sri, PatchSoils),
         ("GC-SRI-patch", Cpgimp, Cmpm, Sri, Patch),
         ("CPDI-SRI-patch", Cpdi, Standard, Sri, Patch),
         ("CE-SRI-patch", Cpdi, CmpmEnds, Sri, Patch),
@@ -288,7 +294,7 @@ impl Method {
 
     /// Whether increments come back from the cells by a patch.
     pub fn uses_patch(&self) -> bool {
-        self.pressure.is_by_cells() && self.recovery == Recovery::Patch
+        self.pressure.is_by_cells() && matches!(self.recovery, Recovery::Patch | Recovery::PatchSoils)
     }
 
     /// Whether the pressure is a nodal field of its own.

@@ -10,6 +10,9 @@ use crate::study::file::StudyFile;
 use crate::study::inputs::{Inputs, TypedInput};
 use crate::study::reading::Placed;
 use oedometer_exact::exact_error::ExactError;
+use oedometer_exact::parameters::ColumnParameters;
+use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::soil_layers::{MOST_LAYERS, SoilLayer, SoilLayers};
 use oedometer_exact::xie_leo::XieLeo;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
@@ -19,6 +22,9 @@ use std::ops::Range;
 
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
+
+/// Share of the load by which the base of a column may change the pressures of a front in a half-space.
+const MOST_FELT_OF_BASE: f64 = 1e-2;
 
 /// Values outside the range of any soil, usually a unit mistake: key, range, message, help.
 const UNIT_MISTAKES: [(&str, Range<f64>, &str, &str); 3] = [
@@ -129,6 +135,50 @@ impl Checker<'_> {
         self.inputs("column", inputs, seed)
     }
 
+    /// The layers of `[[column.soils]]`, where the scene takes them; a sweep may still give their soils what they do not
+    /// name.
+    pub(super) fn soils(&mut self, file: &StudyFile, base: &Case) -> SoilLayers {
+        let typed = &file.column.soils;
+        let (Some(first), Some(last)) = (typed.first(), typed.last()) else { return SoilLayers::default() };
+        let whole = first.span().start..last.span().end;
+        let list: Vec<SoilLayer> = typed.iter().map(|layer| **layer).collect();
+        let height = base.column.height;
+        for (number, layer) in typed.iter().enumerate() {
+            let soil = ColumnParameters::of_soil(layer.thickness, 1.0, &layer.soil(&base.material));
+            if let Err(error) = soil.validate() {
+                let message = error.to_string().replace("the height", "the thickness");
+                let layer_number = number + 1;
+                let help =
+                    format!("it is layer {layer_number} from the base: see [column.soils] and [material]");
+                self.complain(layer.span(), message, help);
+            }
+        }
+        if base.scene != SceneKind::Layered {
+            self.complain(
+                whole,
+                format!("the soil of the scene `{}` has no layers", base.scene.name()),
+                "layers belong to the scene \"layered\"",
+            );
+            return SoilLayers::default();
+        }
+        let Some(layers) = SoilLayers::of(&list) else {
+            let count = list.len();
+            self.complain(whole, format!("{count} layers of soil"), format!("{MOST_LAYERS} are the most"));
+            return SoilLayers::default();
+        };
+        if let Some(sum) = layers.misses(height) {
+            let error = ExactError::LayersDoNotFill { sum, height };
+            let (thickness, rest) = (last.thickness, height - sum);
+            let help = if thickness + rest > 0.0 {
+                format!("make the last layer {} m thick, or the column {sum} m high", short(thickness + rest))
+            } else {
+                format!("make the column {sum} m high, or the layers thinner")
+            };
+            self.complain(whole, error.to_string(), help);
+        }
+        layers
+    }
+
     /// Complains where a motion has no such amplitude.
     fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
         if let Some(why) = scene.refuses_input_of_motion(key.name) {
@@ -224,6 +274,9 @@ impl Checker<'_> {
             self.complain(place.clone(), error.to_string(), help);
             return true;
         }
+        if case.scene == SceneKind::YieldFront && self.has_no_front(place, case) {
+            return true;
+        }
         let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
         let (soil, strain) = (&case.material, final_strain(case));
         if !is_loaded || strain < soil.porosity {
@@ -246,6 +299,27 @@ impl Checker<'_> {
                 soil.porosity
             ),
         );
+        true
+    }
+
+    /// Complains of a column in which no yield front runs, or whose base it has reached. Whether it did.
+    fn has_no_front(&mut self, place: &Range<usize>, case: &Case) -> bool {
+        let parameters = column_parameters(&case.column, &case.material);
+        let last = case.time_factors.last().copied().unwrap_or(0.0);
+        let bound = Reference::new(ReferenceKind::YieldFront, &parameters, &[])
+            .and_then(|front| Ok(front.accuracy(last)?.bound()));
+        let (message, help) = match bound {
+            Ok(bound) if bound <= MOST_FELT_OF_BASE => return false,
+            Ok(bound) => (
+                format!(
+                    "the solution is that of a half-space, and at T_v = {last} the base may change the pressures by \
+                     {bound:.1e} of the load"
+                ),
+                "ask for earlier time factors".to_owned(),
+            ),
+            Err(error) => (error.to_string(), "see [column] and [material]".to_owned()),
+        };
+        self.complain(place.clone(), message, help);
         true
     }
 

@@ -37,8 +37,6 @@ pub enum Purpose {
     Theory,
 }
 
-/// Time factors where a study names none.
-const DEFAULT_TIME_FACTORS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 /// Time factor before which nothing has moved and steps no longer advance the time.
 const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
@@ -197,10 +195,11 @@ impl Checker<'_> {
         if let Some(strain) = strain {
             base.column.load = load_of(strain, &base);
         }
+        base.column.soils = self.soils(&file, &base);
         self.porosity_at_the_end(&file, &base);
         let time_factors = Shared::from(match &file.output.time_factors {
             Some(list) => self.time_factors(list),
-            None => DEFAULT_TIME_FACTORS.to_vec(),
+            None => scene.default_time_factors().to_vec(),
         });
         let references = self.references(&file.output, scene, &base.column);
         let given = self.attach_results(&file);

@@ -43,7 +43,7 @@ const SINGLE_STAGE: &[Stage] = &[(1.0, 1.0, 1.0)];
 
 /// Stepper of a body by Newton's iteration.
 pub struct NewtonStepper<const D: usize> {
-    trial: Trial<D>,
+    pub(super) trial: Trial<D>,
     pattern: Pattern,
     tangent: SystemMatrix,
     factors: Factors,

@@ -127,6 +127,46 @@ fn a_step_that_is_given_up_leaves_no_trace_in_a_soil_that_remembers() {
 }
 
 #[test]
+fn a_column_that_is_unloaded_keeps_what_it_has_yielded_and_reloads_stiffly() {
+    let (virgin, reload, preconsolidation) = (Material::default().oedometric_modulus(), 6e6, 0.3);
+    let soil = Material {
+        law: Law::Preconsolidated,
+        reload_modulus: reload,
+        preconsolidation,
+        ..Material::default()
+    };
+    let problem = || seed("GIMP-SRI-patch", &soil, 6);
+    let schedule = schedule();
+    let plan = Plan::of(&problem(), &schedule);
+    let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
+    let start = newton.settlement();
+    // The seed's start is that of a linear soil: the load of the start is in its strain.
+    let mut settled_under = |share: f64| {
+        newton.trial.set_load_share(share);
+        // Steps that grow: L-stable ones that are too large overshoot, and what has yielded stays.
+        let mut dt = 0.01;
+        for _ in 0..120 {
+            newton.advance(&EqualSteps::first(0.0, dt, 1), f64::INFINITY).expect("solvable");
+            dt *= 1.1;
+        }
+        newton.settlement() - start
+    };
+    let (loaded, unloaded, reloaded, beyond) =
+        (settled_under(1.0), settled_under(0.0), settled_under(1.0), settled_under(1.5));
+    let stiff = 1.0 / reload;
+    assert!(((loaded - unloaded) * reload - 1.0).abs() < 1e-6, "unloading: {loaded} {unloaded}");
+    assert!(
+        (reloaded / loaded - 1.0).abs() < 1e-6,
+        "reloading ends at {reloaded}, unloading began at {loaded}"
+    );
+    assert!(((beyond - reloaded) * virgin / 0.5 - 1.0).abs() < 1e-6, "beyond it the soil is soft again");
+    let residual = (1.0 - preconsolidation) * (1.0 / virgin - stiff);
+    let undrained = seed("GIMP-SRI-patch", &soil, 6).initial_gradient[0][0];
+    let gap = unloaded - undrained - residual;
+    assert!(gap.abs() < 1e-3 * residual, "residual settlement: {unloaded} for {residual}");
+}
+
+#[test]
 fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
     let soil = Material { law: Law::LogLinear, ..Material::default() };
     for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {

@@ -1,8 +1,8 @@
 //! Geometry and load of the body of soil that a scene is about.
 
 use crate::scene::arrangement::Arrangement;
-use oedometer_exact::ShelfParameters;
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
+use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +30,17 @@ pub struct Column {
     /// Where the points lie in their cells.
     #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
     pub points: Arrangement,
+    /// Layers of soil from the base up, where they are of several kinds.
+    #[serde(default, skip_serializing_if = "has_one_soil")]
+    #[schemars(with = "Vec<SoilLayer>")]
+    pub soils: SoilLayers,
+    /// Vertical effective stress of the start, compression positive, Pa, that other stresses are counted from.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub initial_stress: f64,
+}
+
+fn has_one_soil(layers: &SoilLayers) -> bool {
+    layers.is_empty()
 }
 
 /// A kind of body with its own inputs.
@@ -101,6 +112,8 @@ impl Default for Column {
             loading_time: 0.0,
             self_weight: false,
             points: Arrangement::default(),
+            soils: SoilLayers::default(),
+            initial_stress: 0.0,
         }
     }
 }
@@ -170,24 +183,16 @@ impl Column {
 /// The column as the exact solutions take it.
 pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
     ColumnParameters {
-        height: column.height,
         length: column.extent(),
         base: column.base().unwrap_or_default(),
-        load: column.pressure_scale(),
-        youngs_modulus: soil.youngs_modulus,
-        poissons_ratio: soil.poissons_ratio,
-        porosity: soil.porosity,
-        grain_density: soil.grain_density,
-        water_density: soil.water_density,
-        water_bulk_modulus: soil.water_bulk_modulus,
-        hydraulic_conductivity: soil.hydraulic_conductivity,
-        gravity: soil.gravity,
         loading_time: column.loading_time,
         self_weight: column.self_weight,
         motion: match column.shape {
             Shape::Square { motion, .. } => motion,
             Shape::Column { .. } | Shape::Layer { .. } => MotionParameters::default(),
         },
-        shelf: ShelfParameters::default(),
+        soils: column.soils,
+        uniform_stress: column.initial_stress,
+        ..ColumnParameters::of_soil(column.height, column.pressure_scale(), soil)
     }
 }

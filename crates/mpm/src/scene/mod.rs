@@ -9,14 +9,17 @@ mod cosine_layer;
 mod definition;
 mod dynamic_column;
 mod dynamic_single_mode;
+mod layered;
 mod mandel;
 mod manufactured;
 pub mod problem;
+mod sealed_element;
 mod single_mode;
 mod standing_wave;
 pub mod stepped_column;
 mod terzaghi;
 mod xie_leo;
+mod yield_front;
 
 use crate::explicit::scheme::Scheme;
 use crate::explicit::{Drag, ExplicitSettings};
@@ -56,6 +59,12 @@ pub enum SceneKind {
     Mandel,
     /// A column at rest under its own weight.
     AtRest,
+    /// A column of layers, loaded at once and drained at its top.
+    Layered,
+    /// A preconsolidated column in which a front of yielding runs in from its drained top.
+    YieldFront,
+    /// A column that no water leaves.
+    SealedElement,
     /// A square stretched along its axes by body forces, at large strain.
     ManufacturedBox,
     /// A square with shear inside, at large strain.
@@ -67,7 +76,8 @@ pub enum SceneKind {
 words!(
     SceneKind: Terzaghi "terzaghi", SingleMode "single-mode", XieLeo "xie-leo", CosineLayer "cosine-layer",
     DynamicColumn "dynamic-column", DynamicSingleMode "dynamic-single-mode", StandingWave "standing-wave",
-    Mandel "mandel", AtRest "at-rest", ManufacturedBox "manufactured-box", ManufacturedShear "manufactured-shear",
+    Mandel "mandel", AtRest "at-rest", Layered "layered", YieldFront "yield-front",
+    SealedElement "sealed-element", ManufacturedBox "manufactured-box", ManufacturedShear "manufactured-shear",
     ManufacturedVortex "manufactured-vortex"
 );
 
@@ -84,6 +94,9 @@ impl SceneKind {
             Self::StandingWave => &standing_wave::STANDING_WAVE,
             Self::Mandel => &mandel::MANDEL,
             Self::AtRest => &at_rest::AT_REST,
+            Self::Layered => &layered::LAYERED,
+            Self::YieldFront => &yield_front::YIELD_FRONT,
+            Self::SealedElement => &sealed_element::SEALED_ELEMENT,
             Self::ManufacturedBox => &manufactured::BOX,
             Self::ManufacturedShear => &manufactured::SHEAR,
             Self::ManufacturedVortex => &manufactured::VORTEX,
@@ -118,6 +131,7 @@ impl SceneKind {
         match self.model() {
             Some(model) => model.law,
             None if self.is_large_strain() => Law::LogLinear,
+            None if self == Self::YieldFront => Law::Preconsolidated,
             None => Law::Linear,
         }
     }
@@ -127,9 +141,18 @@ impl SceneKind {
         let law = self.default_law();
         if self.is_manufactured() {
             Material { law, ..manufactured::soil() }
+        } else if self == Self::YieldFront {
+            // A clay, five times as stiff up to half of the load.
+            let clay = Material { law, hydraulic_conductivity: 1e-7, porosity: 0.5, ..Material::default() };
+            Material { reload_modulus: 6e6, preconsolidation: 0.5, ..clay }
         } else {
             Material { law, ..Material::default() }
         }
+    }
+
+    /// Time factors where a study names none; a yield front has none once the base is felt.
+    pub fn default_time_factors(self) -> &'static [f64] {
+        if self == Self::YieldFront { &[0.0005, 0.001, 0.002, 0.004] } else { &[0.05, 0.1, 0.2, 0.5, 1.0] }
     }
 
     /// Choices of the explicit integrator where a study names none: the paper's, but of second order in the step
@@ -137,6 +160,9 @@ impl SceneKind {
     pub fn default_settings(self) -> ExplicitSettings {
         if self.is_manufactured() {
             ExplicitSettings { scheme: Scheme::Leapfrog, drag: Drag::Centred, ..ExplicitSettings::default() }
+        } else if self == Self::SealedElement {
+            // Water that does not leave would bound the step without limit.
+            ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() }
         } else {
             ExplicitSettings::default()
         }
@@ -182,6 +208,12 @@ impl SceneKind {
             return (!ManufacturedModel { law, ..model }.has_law()).then_some(
                 "the stresses of this law are not known in closed form along the motion of this scene",
             );
+        }
+        if (self == Self::YieldFront) != (law == Law::Preconsolidated) {
+            return Some("the law of the scene `yield-front` is `preconsolidated`, and of no other scene");
+        }
+        if self == Self::YieldFront {
+            return None;
         }
         if self.is_large_strain() && !Law::OF_COLUMNS.contains(&law) {
             return Some("this law has no closed form in a column: it belongs to the manufactured scenes");
@@ -352,6 +384,9 @@ impl SceneKind {
             ReferenceKind::DynamicColumn => Self::DynamicColumn,
             ReferenceKind::Mandel => Self::Mandel,
             ReferenceKind::AtRest => Self::AtRest,
+            ReferenceKind::Layered => Self::Layered,
+            ReferenceKind::YieldFront => Self::YieldFront,
+            ReferenceKind::SealedElement => Self::SealedElement,
             ReferenceKind::Manufactured(model) => match model.motion {
                 Motion::Box => Self::ManufacturedBox,
                 Motion::Shear => Self::ManufacturedShear,

@@ -23,6 +23,8 @@ use oedometer_soil::material::Material;
 
 /// Cells above the column, so that a surface that rises stays on the grid.
 const HEADROOM: usize = 1;
+/// Share of its conductivity that a sealed soil keeps.
+const SEALED: f64 = 1e-12;
 
 /// A problem of one or of two dimensions.
 #[derive(Clone, Debug)]
@@ -148,8 +150,13 @@ pub fn column_problem<const D: usize>(
         let mut points = Points::lattice(cell_size, extent, per_cell);
         column.points.arrange(&mut points, cell_size, cells);
         if soil.law.has_history() {
-            let start = History { yield_stress: soil.preconsolidation, ..History::default() };
-            points.history = vec![start; points.len()];
+            // Stresses are counted from the initial one.
+            let yield_stress = soil.preconsolidation - column.initial_stress;
+            points.history = vec![History { yield_stress, ..History::default() }; points.len()];
+        }
+        for point in 0..points.len() {
+            let layer = column.soils.number_at(points.initial_position[point][D - 1]);
+            points.soil[point] = u8::try_from(layer).unwrap_or(u8::MAX);
         }
         if let Some(start) = &start {
             start.apply(&mut points, column.height)?;
@@ -191,14 +198,21 @@ pub fn column_problem<const D: usize>(
         Support::oedometer()
     };
     let load = column.pressure_scale().abs();
+    // What no water leaves is a soil that lets none through.
+    let sealing = if scene == SceneKind::SealedElement { SEALED } else { 1.0 };
+    let hydraulic_conductivity = sealing * soil.hydraulic_conductivity;
+    let soil = Material { hydraulic_conductivity, ..*soil };
     let weight = column.self_weight.then_some(soil.gravity);
     Ok(Problem {
         grid: Grid::new(cell_size, extent),
         support,
         points,
         water,
-        material: *soil,
-        soils: vec![*soil],
+        material: soil,
+        soils: match &column.soils[..] {
+            [] => vec![soil],
+            layers => layers.iter().map(|layer| layer.soil(&soil)).collect(),
+        },
         method,
         configuration: method.configuration_or(scene.configuration()),
         load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },

@@ -79,9 +79,9 @@ impl<const D: usize> RecoveryOperator<D> {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
             (false, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Points, grid.node_count())),
-            (false, Recovery::Constant | Recovery::Patch) => Self::Own,
+            (false, Recovery::Constant | Recovery::Patch | Recovery::PatchSoils) => Self::Own,
             (true, Recovery::Constant | Recovery::NullSpace) => Self::Constant,
-            (true, Recovery::Patch) => Self::Patch(PatchRows::new(points, grid)),
+            (true, Recovery::Patch | Recovery::PatchSoils) => Self::Patch(PatchRows::new(points, grid)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Cells, grid.node_count())),
         }
     }
@@ -90,6 +90,13 @@ impl<const D: usize> RecoveryOperator<D> {
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             wide!(rows.build(grid, cells));
+        }
+    }
+
+    /// Fits patches anew to the cells that hold the soil of each point, the number of which is given.
+    pub fn keep_to_soils(&mut self, grid: &Grid<D>, cells: &Cells<D>, soils: &[u8]) {
+        if let Self::Patch(rows) = self {
+            rows.keep_to_soils(grid, cells, soils);
         }
     }
 

@@ -57,7 +57,7 @@ impl<const D: usize> PatchRows<D> {
             }
             let shares = &mut self.shares[point];
             let Some(sides) = self.sides[*home] else {
-                fit(grid, cells, *home, place, shares);
+                fit(grid, *home, place, shares, |cell| cells.is_occupied(cell));
                 continue;
             };
             let mut lines = [LineFit { row: [0.0; BLOCK], shares: [0.0; BLOCK] }; D];
@@ -75,6 +75,20 @@ impl<const D: usize> PatchRows<D> {
                     shares[BLOCK * j + i] = along.row[i] * up.shares[j] + along.shares[i] * tilt;
                 }
             }
+        }
+    }
+
+    /// Fits the rows of a body of several soils to those cells around each point that hold the point's own: a pressure has
+    /// a kink where the conductivity jumps, and no line across it is near either side.
+    pub fn keep_to_soils(&mut self, grid: &Grid<D>, cells: &Cells<D>, soils: &[u8]) {
+        let mut held = vec![0_u64; grid.cell_count()];
+        for (cell, soil) in cells.of_point.iter().zip(soils) {
+            held[*cell] |= 1 << soil;
+        }
+        for (point, soil) in soils.iter().enumerate() {
+            let is_own = |cell: usize| held[cell] >> soil & 1 == 1;
+            let (home, place) = (cells.of_point[point], &cells.place[point]);
+            fit(grid, home, place, &mut self.shares[point], is_own);
         }
     }
 
@@ -198,14 +212,20 @@ impl LineFit {
     }
 }
 
-/// The row of a point in any patch, by the normal equations.
-fn fit<const D: usize>(grid: &Grid<D>, cells: &Cells<D>, home: usize, place: &Vector<D>, row: &mut [f64]) {
+/// The row of a point in a patch of any of the cells around, by the normal equations.
+fn fit<const D: usize>(
+    grid: &Grid<D>,
+    home: usize,
+    place: &Vector<D>,
+    row: &mut [f64],
+    is_in: impl Fn(usize) -> bool,
+) {
     let (index, stride) = (grid.cell_index(home), grid.cell_stride());
     let first = home - stride.iter().sum::<usize>();
     let mut patch = Patch::<D>::empty();
     for block in 0..power(BLOCK, D) {
         let (cell, steps) = block_cell(grid, first, block);
-        if cells.is_occupied(cell) {
+        if is_in(cell) {
             patch.add(block, std::array::from_fn(|d| (index[d] + steps[d]) as f64 - 0.5 - place[d]));
         }
     }

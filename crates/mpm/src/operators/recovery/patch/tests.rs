@@ -76,7 +76,7 @@ fn both_rows<const D: usize>(place: Vector<D>, is_occupied: impl Fn(&[usize; D])
     let mut rows = PatchRows::new(points.len(), &grid);
     rows.build(&grid, &cells);
     let mut fitted = vec![0.0; power(BLOCK, D)];
-    fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
+    fit(&grid, cells.of_point[point], &cells.place[point], &mut fitted, |cell| cells.is_occupied(cell));
     [rows.row(&grid, point).into_iter().map(|entry| entry.1).collect(), fitted]
 }
 
@@ -113,7 +113,7 @@ fn closed_forms_are_the_fit_in_a_column_of_one_cell_across() {
     rows.build(&grid, &cells);
     for point in 0..points.len() {
         let mut fitted = vec![0.0; power(BLOCK, 2)];
-        fit(&grid, &cells, cells.of_point[point], &cells.place[point], &mut fitted);
+        fit(&grid, cells.of_point[point], &cells.place[point], &mut fitted, |cell| cells.is_occupied(cell));
         for ((_, weight), fitted) in rows.row(&grid, point).iter().zip(&fitted) {
             assert!((weight - fitted).abs() < 1e-14, "{weight} for {fitted} at {point}");
         }

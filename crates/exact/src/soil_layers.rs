@@ -1,0 +1,118 @@
+//! The layers of a column, from the base up.
+
+use oedometer_soil::material::Material;
+use serde::{Deserialize, Serialize};
+use std::ops::Deref;
+
+/// Most layers of a column.
+pub const MOST_LAYERS: usize = 8;
+
+/// Share of a column's height by which its layers may miss it: thicknesses are typed in decimals.
+const GAP: f64 = 1e-9;
+
+/// A layer of soil: its thickness, and what of its soil differs from that of the column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SoilLayer {
+    /// Thickness, m; those of all layers add up to the height of the column.
+    pub thickness: f64,
+    /// Young's modulus of the skeleton, Pa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub youngs_modulus: Option<f64>,
+    /// Poisson's ratio of the skeleton.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub poissons_ratio: Option<f64>,
+    /// Porosity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub porosity: Option<f64>,
+    /// Bulk modulus of the water, Pa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub water_bulk_modulus: Option<f64>,
+    /// Hydraulic conductivity, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hydraulic_conductivity: Option<f64>,
+}
+
+impl SoilLayer {
+    /// Its soil, with the values of the column's where it has none.
+    pub fn soil(&self, of_column: &Material) -> Material {
+        Material {
+            youngs_modulus: self.youngs_modulus.unwrap_or(of_column.youngs_modulus),
+            poissons_ratio: self.poissons_ratio.unwrap_or(of_column.poissons_ratio),
+            porosity: self.porosity.unwrap_or(of_column.porosity),
+            water_bulk_modulus: self.water_bulk_modulus.unwrap_or(of_column.water_bulk_modulus),
+            hydraulic_conductivity: self.hydraulic_conductivity.unwrap_or(of_column.hydraulic_conductivity),
+            ..*of_column
+        }
+    }
+}
+
+/// A few layers, as plain data; none at all for a column of one soil.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Vec<SoilLayer>", try_from = "Vec<SoilLayer>")]
+pub struct SoilLayers {
+    count: usize,
+    layers: [SoilLayer; MOST_LAYERS],
+}
+
+impl SoilLayers {
+    /// The layers of a list, from the base up; none where there are more than [`MOST_LAYERS`].
+    pub fn of(list: &[SoilLayer]) -> Option<Self> {
+        let mut layers = Self { count: list.len(), ..Self::default() };
+        layers.layers.get_mut(..list.len())?.copy_from_slice(list);
+        Some(layers)
+    }
+
+    /// Sum of the thicknesses, m, where it is not the height of a column.
+    pub fn misses(&self, height: f64) -> Option<f64> {
+        let sum: f64 = self.iter().map(|layer| layer.thickness).sum();
+        let fills = self.is_empty() || (sum - height).abs() <= GAP * height;
+        (!fills).then_some(sum)
+    }
+
+    /// Number of the layer at a height, m, over the base; the lower one on a face.
+    pub fn number_at(&self, height: f64) -> usize {
+        let mut top = 0.0;
+        let below = |layer: &&SoilLayer| {
+            top += layer.thickness;
+            height > top * (1.0 + GAP)
+        };
+        self.iter().take_while(below).count().min(self.len().saturating_sub(1))
+    }
+}
+
+impl Deref for SoilLayers {
+    type Target = [SoilLayer];
+    fn deref(&self) -> &[SoilLayer] {
+        &self.layers[..self.count]
+    }
+}
+
+impl From<SoilLayers> for Vec<SoilLayer> {
+    fn from(layers: SoilLayers) -> Self {
+        layers.to_vec()
+    }
+}
+
+impl TryFrom<Vec<SoilLayer>> for SoilLayers {
+    type Error = String;
+    fn try_from(list: Vec<SoilLayer>) -> Result<Self, String> {
+        Self::of(&list).ok_or_else(|| format!("{} layers of soil: {MOST_LAYERS} are the most", list.len()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_height_belongs_to_the_layer_that_holds_it() {
+        let layer = |thickness: f64| SoilLayer { thickness, ..SoilLayer::default() };
+        let layers = SoilLayers::of(&[layer(0.3), layer(0.4), layer(0.3)]).expect("three are few");
+        for (height, number) in [(0.0, 0), (0.3, 0), (0.31, 1), (0.7, 1), (0.71, 2), (1.0, 2), (1.1, 2)] {
+            assert_eq!(layers.number_at(height), number, "{height}");
+        }
+        assert_eq!((layers.misses(1.0), layers.misses(1.5)), (None, Some(1.0)));
+        assert!(SoilLayers::of(&[layer(0.1); 9]).is_none());
+    }
+}

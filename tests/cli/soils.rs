@@ -1,0 +1,77 @@
+//! Scenes of several soils and of a soil that remembers, by the program.
+
+use crate::program::{Told, call};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const SOFT_OVER_STIFF: &str = "column.soils=[{thickness=0.5,youngs_modulus=3e7},{thickness=0.5}]";
+
+fn solve(arguments: &[&str]) -> Told {
+    call(Path::new("."), &[&["solve"], arguments, &["--integrator", "implicit", "--format", "csv"]].concat())
+}
+
+/// Error of the pressures of the points.
+fn error_of(told: &Told) -> f64 {
+    assert_eq!(told.code, 0, "{}", told.err);
+    let line = told.out.lines().find(|line| line.contains("pressure,points,l2")).expect("a row");
+    line.rsplit(',').next().expect("a value").parse().expect("a number")
+}
+
+#[test]
+fn patches_that_keep_to_their_soil_are_of_second_order_where_others_are_of_first() {
+    let orders = ["GIMP-SRI-patch", "GIMP-SRI-patch-soils"].map(|method| {
+        let [coarse, fine] = ["21", "63"].map(|cells| {
+            let case = ["layered", "--method", method, "--cells", cells, "--time-factor", "0.1"];
+            error_of(&solve(&[&case[..], &["--time-step", "growth=0.02", "--set", SOFT_OVER_STIFF]].concat()))
+        });
+        (coarse / fine).ln() / 3.0_f64.ln()
+    });
+    assert!((orders[0] - 1.0).abs() < 0.1 && orders[1] > 1.9, "{orders:?}");
+}
+
+#[test]
+fn a_yield_front_and_a_sealed_element_match_their_solutions() {
+    let front = ["yield-front", "--method", "GIMP-SRI-patch", "--cells", "160", "--time-factor", "0.002"];
+    assert!(error_of(&solve(&front)) < 1e-3);
+    let sealed = ["sealed-element", "--method", "GIMP-SRI", "--cells", "1", "--time-factor", "1"];
+    let stiff = [&sealed[..], &["--set", "material.water_bulk_modulus=1e6"]].concat();
+    assert!(error_of(&solve(&stiff)) < 1e-6);
+}
+
+#[test]
+fn a_sealed_element_scores_another_programs_one_number() {
+    let folder = TempDir::new().expect("a folder");
+    // p = 1/(1 + 0.3 · 1.2) of the load, and OpenSees' 10.0 for 7.88 in its proportion.
+    for (pressure, code) in [(1.0 / 1.36, 0), (10.0 / 7.88 / 1.36, 1)] {
+        let strain = -(1.0 - 1.0 / 1.36) / 1.2e6;
+        let row = |y: f64| format!("1,{y},{pressure},{}\n", strain * y);
+        let text = format!("t,y,p,u_y\n{}{}", row(0.25), row(0.75));
+        fs::write(folder.path().join("result.csv"), text).expect("a file");
+        let set = ["--set", "material.water_bulk_modulus=1e6", "--cells", "1", "--below", "1e-6"];
+        let told =
+            call(folder.path(), &[&["score", "result.csv", "--scene", "sealed-element"], &set[..]].concat());
+        assert_eq!(told.code, code, "{pressure}: {} {}", told.out, told.err);
+    }
+}
+
+#[test]
+fn impossible_soils_are_refused_at_their_place() {
+    let layers = |list: &str| format!("column.soils={list}");
+    let thin = layers("[{thickness=0.5},{thickness=0.4}]");
+    let dense = layers("[{thickness=0.5},{thickness=0.5,porosity=1.4}]");
+    let two = layers("[{thickness=0.5},{thickness=0.5}]");
+    for (scene, set, more, part) in [
+        ("layered", thin.as_str(), "0.1", "make the last layer 0.5 m thick"),
+        ("layered", &dense, "0.1", "it is layer 2 from the base"),
+        ("terzaghi", &two, "0.1", "has no layers"),
+        ("yield-front", "material.reload_modulus=1e5", "0.001", "below that of first loading"),
+        ("yield-front", "material.preconsolidation=2", "0.001", "no yield front"),
+        ("yield-front", "column.initial_stress=0.1", "1", "ask for earlier time factors"),
+        ("terzaghi", "material.law=preconsolidated", "0.1", "of no other scene"),
+    ] {
+        let told = solve(&[scene, "--cells", "10", "--set", set, "--time-factor", more]);
+        assert_eq!((told.code, told.out.as_str()), (2, ""), "{set}: {}", told.err);
+        assert!(told.err.contains(part), "{set}: {}", told.err);
+    }
+}
