@@ -186,6 +186,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         combined_limit: 0.023,
         unknown: None,
         probes: Vec::new(),
+        asymmetry: None,
     });
     let table = runs::critical_steps(&[record.clone()]);
     for (header, value) in [

@@ -207,6 +207,7 @@ fn the_largest_deviation_of_a_map_is_found_in_any_case() {
                 drag_limit: 2.0,
                 combined_limit: 2.0,
                 probes: Vec::new(),
+                asymmetry: None,
             });
         }
         let map = maps_of(&records).remove(0);

@@ -49,6 +49,9 @@ pub struct RaceCell {
     pub locking: Option<f64>,
     /// Critical step over the formula's: observed where the study observes it, predicted in other explicit runs.
     pub step_ratio: Option<f64>,
+    /// Asymmetry of the stiffness of skeleton and water, where the study observes the critical step: round-off where the
+    /// forces do the power of the stresses.
+    pub asymmetry: Option<[f64; 2]>,
     /// What the cell is ranked by: smaller is better. The largest of its errors, what moves at rest, or the formula's step
     /// over the observed one.
     pub score: Option<f64>,
@@ -132,6 +135,7 @@ fn cell_of(study: &Study, contender: &Contender, runs: &Runs<'_>, cells: usize) 
         oscillation: on_mesh.and_then(measures::oscillation_of),
         locking: on_mesh.and_then(measures::locking_of),
         step_ratio: on_mesh.and_then(measures::step_ratio_of),
+        asymmetry: on_mesh.and_then(|record| record.stability.as_ref()?.asymmetry),
         score: on_mesh.and_then(score_of),
         scatter: runs.two_steps.and_then(|(one, other)| scatter_of(one, other)),
         ended,

@@ -17,6 +17,9 @@ const MOST_TIED: usize = 5;
 /// Relative change by half the step from which on the step counts.
 const STEP_COUNTS: f64 = 0.05;
 
+/// Relative asymmetry of a stiffness up to which it is round-off.
+const ADJOINT: f64 = 1e-10;
+
 /// Words for the groups of situations.
 const GROUPS: [(&str, &str); 7] = [
     ("column", "columns at small strain"),
@@ -58,6 +61,7 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     let views = [("Error, %", errors), ("Order", orders), ("Cost to 1 %", costs)];
     let views = views.map(|(word, table)| (word.to_owned(), vec![Block::Table(table)]));
     let mut sentences = sentences(&grid);
+    sentences.extend(of_the_power(rows));
     let first = sentences.remove(0);
     let files = "[Every cell with all its measures](tables/race.csv).";
     QUESTION.told(format!("{first} {files}"), vec![Block::Switch(views.to_vec()), Block::List(sentences)])
@@ -176,11 +180,37 @@ fn sentences(grid: &Grid) -> Vec<String> {
     told
 }
 
+/// Which contenders' forces do the power of their stresses.
+fn of_the_power(rows: &[RaceRow<'_>]) -> Option<String> {
+    let known =
+        rows.iter().flat_map(|row| &row.contenders).filter_map(|cell| Some((cell.name, cell.asymmetry?)));
+    let known: Vec<(&str, [f64; 2])> = known.collect();
+    let adjoint = |part: usize| {
+        let names = known
+            .iter()
+            .filter(|(_, asymmetry)| asymmetry[part] < ADJOINT)
+            .map(|(name, _)| format!("`{name}`"));
+        names.collect::<Vec<_>>()
+    };
+    let [skeleton, water] = [0, 1].map(adjoint);
+    (!known.is_empty()).then(|| {
+        format!(
+            "**Power**: on the lattice of a column the forces of the skeleton do the power of its stresses, to round-off, in {} \
+             of {} contenders, those of the water in {} ({}).",
+            skeleton.len(),
+            known.len(),
+            water.len(),
+            water.join(", ")
+        )
+    })
+}
+
 /// How far half the step changes the errors.
 fn of_the_step(grid: &Grid) -> Option<String> {
     let scatter = |(place, row): (usize, &GridRow)| {
         let of_score = move |(one, score): (usize, &Score)| match score {
-            Score::Value { scatter, .. } => Some((*scatter, one, place)),
+            // Where no second step was run there is no scatter.
+            Score::Value { scatter, .. } if *scatter > 0.0 => Some((*scatter, one, place)),
             _ => None,
         };
         row.scores.iter().enumerate().filter_map(of_score).collect::<Vec<_>>()

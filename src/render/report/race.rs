@@ -1,19 +1,11 @@
 //! The page of a situation of the race: the errors of every contender against the mesh, and all its measures.
 
-use crate::case::contender::PAPERS;
 use crate::judge::race::{RaceCell, RaceRow};
-use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Series, Size};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::ticks;
 use crate::render::table::{Cell, Table, columns};
-
-/// Series that a figure names.
-const NAMED: usize = 7;
-/// The grey slot of the colours.
-const GREY: usize = 7;
-/// Methods that every figure names, after the best.
-const ALWAYS: [&str; 2] = [PAPERS, "MPM"];
 
 /// Figures and the table of a situation; empty for any other study.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
@@ -30,14 +22,12 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let figures: Vec<Figure> =
         figures.filter_map(|(place, quantity)| figure(results, &ranked, place, quantity)).collect();
     let mut blocks = vec![Block::Heading("Every contender".to_owned())];
-    if !figures.is_empty() {
-        blocks.push(Block::Figures(figures));
-    }
+    blocks.extend(figures.into_iter().map(Block::Figure));
     blocks.push(Block::Table(table_of(&row, &ranked)));
     blocks
 }
 
-/// The figure of one error of all contenders, with the names of seven.
+/// The figure of one error of all contenders.
 fn figure(results: &StudyResults<'_>, ranked: &[&RaceCell], place: usize, quantity: &str) -> Option<Figure> {
     let points = |cell: &RaceCell| -> Vec<(f64, f64)> {
         cell.levels.iter().filter_map(|(size, errors)| Some((*size, errors[place]?))).collect()
@@ -51,19 +41,10 @@ fn figure(results: &StudyResults<'_>, ranked: &[&RaceCell], place: usize, quanti
         ChartAxis::log10(format!("relative L_2 error, {quantity} (–)")),
     );
     chart.size = Size::PANEL;
-    let always = drawn.iter().filter(|(name, _)| ALWAYS.contains(name));
-    let best = drawn.iter().filter(|(name, _)| !ALWAYS.contains(name)).take(NAMED - ALWAYS.len());
-    let named: Vec<&(&str, Vec<(f64, f64)>)> = best.chain(always).collect();
-    let others = drawn.iter().filter(|one| named.iter().all(|other| other.0 != one.0));
-    for (_, points) in others {
-        let other = Series::new("the other contenders", points.clone());
-        chart.series.push(other.style(Style::Line).slot(GREY));
-    }
-    for (slot, (name, points)) in named.into_iter().enumerate() {
-        chart.series.push(Series::new(*name, points.clone()).slot(slot));
-    }
-    let caption = "The five contenders with the smallest largest error, the paper's method and MPM by name.";
-    (!drawn.is_empty()).then(|| results.figure(&format!("race-{place}"), chart, caption))
+    let is_drawn = !drawn.is_empty();
+    chart.series.extend(drawn.into_iter().map(|(name, points)| Series::new(name, points)));
+    let caption = "All contenders, the smallest largest error on the finest mesh first.";
+    is_drawn.then(|| results.figure(&format!("race-{place}"), chart, caption))
 }
 
 /// Every contender with its measures, the best first.
@@ -78,15 +59,17 @@ fn table_of(row: &RaceRow<'_>, ranked: &[&RaceCell]) -> Table {
         cells.push(cell.class.map_or("", |class| class.name()).into());
         cells.extend(cell.cost.map(|cost| number(cost, Cell::Seconds)));
         cells.extend([cell.oscillation, cell.locking, cell.step_ratio].map(|one| number(one, Cell::Number)));
+        cells.extend([0, 1].map(|part| number(cell.asymmetry.map(|one| one[part]), Cell::Error)));
         cells.push(number(cell.scatter, Cell::Percent));
         cells.push(ended.into());
         cells
     });
     let heads = "contender | > pressure | > effective stress | > settlement or displacement | > order | class | > 1 % | > 0.1 % \
-                 | > oscillation | > locking | > critical step | > half the step | ended";
+                 | > oscillation | > locking | > critical step | > skeleton | > water | > half the step | ended";
     Table::of(format!("Errors on {} cells", row.cells), columns(heads), rows).note(
         "order and class of the pressure; 1 %, 0.1 %: processor time to that largest error; oscillation: variation of the \
          pressure beyond the exact one's; locking: computed over exact settlement, in the plane one minus the error of the \
-         displacement; critical step over the formula's; half the step: change of the largest error by it",
+         displacement; critical step over the formula's; skeleton, water: asymmetry of the stiffness, round-off where the forces do the \
+         power of the stresses; half the step: change of the largest error by it",
     )
 }

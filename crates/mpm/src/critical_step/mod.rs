@@ -2,5 +2,6 @@
 
 pub mod formula;
 pub mod observed;
+mod power;
 pub mod predicted;
 mod spectral_radius;

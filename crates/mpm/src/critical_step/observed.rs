@@ -3,9 +3,9 @@
 //! Predicted from the spectral radius of the step operator on the problem's own grid; observed in runs of the solver
 //! itself, independent of the prediction, by bisection between a step that runs and one that fails.
 
-use crate::body::Problem;
-use crate::critical_step::formula;
-use crate::critical_step::predicted::{predict, whole_growth};
+use crate::body::{Body, Problem};
+use crate::critical_step::predicted::{one_point_set, predict, whole_growth};
+use crate::critical_step::{formula, power};
 use crate::drag;
 use crate::explicit::ExplicitSettings;
 use crate::run::integrator::{Formulation, IntegratorKind};
@@ -70,6 +70,10 @@ pub struct CriticalStep {
     pub combined_limit: f64,
     /// Runs at the shares 0.97 and 1.03 of the predicted step.
     pub probes: Vec<Probe>,
+    /// Asymmetry of the stiffness of skeleton and water over its largest entry: zero to round-off where the power of the
+    /// forces is that of the stresses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asymmetry: Option<[f64; 2]>,
 }
 
 impl Probe {
@@ -159,6 +163,7 @@ pub fn critical_step<const D: usize>(
         combined_limit: problem
             .least_of_soils(|soil| formula::combined_limit(soil, cell_size, settings.drag)),
         probes,
+        asymmetry: Some(power::asymmetry(&Body::new(one_point_set(&problem)))),
     })
 }
 
@@ -286,6 +291,7 @@ mod tests {
             drag_limit: 1.0,
             combined_limit: 1.0,
             probes: probes.to_vec(),
+            asymmetry: None,
         };
         found.probes_agree()
     }

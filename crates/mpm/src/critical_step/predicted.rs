@@ -130,7 +130,7 @@ pub fn predict<const D: usize>(
 /// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
 /// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
 /// constant pressure, and have the limit of that.
-fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+pub(super) fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
     let mut one = problem.clone();
     // Forces from outside do not change the limit.
     one.forcing = None;
