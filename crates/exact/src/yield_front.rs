@@ -19,6 +19,9 @@ use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal,
 use crate::field_values::{Accuracy, FieldValues};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
+/// Relative difference up to which two moduli are one.
+const EQUAL: f64 = 1e-9;
+
 /// A column of a soil that yields, under a load that acts at once. SI; stresses here are compression positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldingColumn {
@@ -65,7 +68,8 @@ impl YieldFront {
     pub fn new(column: YieldingColumn) -> Result<Self, ExactError> {
         let virgin = normal("oedometric modulus of first loading", column.virgin_modulus)?;
         let reload = normal("oedometric modulus of reloading", column.reload_modulus)?;
-        if reload < virgin {
+        // Equal moduli may be typed as Young's and Poisson's numbers.
+        if reload < virgin * (1.0 - EQUAL) {
             return Err(ExactError::ReloadModulus { reload, virgin });
         }
         positive("height", column.height)?;
