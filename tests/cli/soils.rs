@@ -68,6 +68,8 @@ fn impossible_soils_are_refused_at_their_place() {
         ("yield-front", "material.reload_modulus=1e5", "0.001", "below that of first loading"),
         ("yield-front", "material.preconsolidation=2", "0.001", "no yield front"),
         ("yield-front", "column.initial_stress=0.1", "1", "ask for earlier time factors"),
+        ("layered", "material.preconsolidation=2", "0.1", "has no effect"),
+        ("terzaghi", "column.initial_stress=2", "0.1", "remembers no stress"),
         ("terzaghi", "material.law=preconsolidated", "0.1", "of no other scene"),
     ] {
         let told = solve(&[scene, "--cells", "10", "--set", set, "--time-factor", more]);

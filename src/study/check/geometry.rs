@@ -121,6 +121,12 @@ impl Checker<'_> {
                 "leave `self_weight` out of a study of stability",
             ),
             (
+                "initial_stress",
+                scene != SceneKind::YieldFront,
+                format!("the soil of `{name}` remembers no stress"),
+                "an initial stress belongs to the scene \"yield-front\"",
+            ),
+            (
                 "dimensions",
                 scene.needs_two_dimensions()
                     && is("dimensions", |typed| !matches!(typed, TypedInput::Count(2))),
@@ -196,6 +202,16 @@ impl Checker<'_> {
             if (scene.is_manufactured() && takes("points")) || (is_geometry && !takes(own)) {
                 let message = format!("the scene `{}` has no `{}`", scene.name(), key.name);
                 self.complain(list.span(), message, contents_of(own));
+            }
+        }
+    }
+
+    /// Complains of what a soil remembers where the scene's does not.
+    pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: SceneKind) {
+        for key in ["reload_modulus", "preconsolidation"] {
+            if let Some(place) = material.span(key).filter(|_| scene != SceneKind::YieldFront) {
+                let message = format!("`{key}` has no effect in the scene `{}`", scene.name());
+                self.complain(place, message, "it belongs to the scene \"yield-front\"");
             }
         }
     }

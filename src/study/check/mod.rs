@@ -282,6 +282,7 @@ impl Checker<'_> {
         given.extend(self.inputs("points", &file.points.inputs, &seed));
         given.extend(self.inputs("material", &file.material.inputs, &seed));
         self.units_are_si(&file.material.inputs);
+        self.soil_remembers(&file.material.inputs, seed.scene);
         given.extend(self.inputs("integrator", &file.integrator.inputs, &seed));
         if seed.scene.needs_inertia() && file.integrator.inputs.typed("formulation").is_none() {
             let waves = Value::Word(Formulation::VW.name());

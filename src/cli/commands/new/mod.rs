@@ -13,10 +13,11 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Texts of new studies by their scenes, the default first; `{name}` stands for the name.
-const STARTERS: [(&str, &str); 3] = [
+const STARTERS: [(&str, &str); 4] = [
     ("terzaghi", include_str!("starter.toml")),
     ("xie-leo", include_str!("starter-large.toml")),
     ("cosine-layer", include_str!("starter-plane.toml")),
+    ("layered", include_str!("starter-layered.toml")),
 ];
 
 /// Arguments of `new`.
@@ -29,7 +30,8 @@ pub struct Arguments {
     /// [default: my-solver]
     #[arg(value_name = "SOLVER")]
     solver: Option<PathBuf>,
-    /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane
+    /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane,
+    /// layered for several soils
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
     /// Language of the adapter
