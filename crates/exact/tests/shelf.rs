@@ -93,6 +93,20 @@ fn stated_bounds_are_small_and_hold_what_fewer_terms_leave_out() {
 }
 
 #[test]
+fn the_round_off_of_a_sphere_without_bulk_modulus_is_within_what_is_stated() {
+    // make_shelf.py with these Poisson's ratios, T_v = 0.5, r = a/2.
+    for (poissons_ratio, exact) in
+        [(-0.9, 1.636_874_514_567_765_1), (-0.99, 1.850_658_404_803_831_8), (-0.999, 1.872_527_904_672_868_7)]
+    {
+        let sphere =
+            reference(ShelfProblem::Cryer, &ColumnParameters { poissons_ratio, ..column("default") });
+        let off = (sphere.fields(0.5, 0.5).expect("inside").pressure - exact).abs();
+        let bound = sphere.accuracy(0.5).expect("a time").bound();
+        assert!(off < bound && bound < 1e-6, "{poissons_ratio}: {off:e} {bound:e}");
+    }
+}
+
+#[test]
 fn a_biot_coefficient_of_one_is_terzaghis_column() {
     for water_bulk_modulus in [6e5, 2.2e9] {
         let seed = ColumnParameters { water_bulk_modulus, ..ColumnParameters::default() };

@@ -72,7 +72,10 @@ impl Barron {
         let cylinder = Cylinder::new(parameters)?;
         let square = cylinder.inner * cylinder.inner;
         let spacing = -ln(cylinder.inner) / (1.0 - square) - 0.25 * (3.0 - square);
-        Ok(Self { cylinder, spacing: positive("drain spacing function", spacing)? })
+        Ok(Self {
+            cylinder,
+            spacing: positive("drain spacing function (is the drain too wide for its cylinder?)", spacing)?,
+        })
     }
 
     /// `p̄/q`.
