@@ -36,12 +36,12 @@ const fn operators(
     strain: StrainGradient,
     pressure: PressureIntegration,
     recovery: Recovery,
-) -> Option<Method> {
-    Some(Method { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None })
+) -> Method {
+    Method { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None }
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 24] = {
+const LINES: [(&str, Option<Method>, Inputs); 25] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};
@@ -49,7 +49,7 @@ const LINES: [(&str, Option<Method>, Inputs); 24] = {
     [
         ("MPM", None, &[]),
         ("GIMP", None, &[]),
-        ("CPDI", operators(Cpdi, Standard, Points, Constant), &[]),
+        ("CPDI", Some(operators(Cpdi, Standard, Points, Constant)), &[]),
         ("GIMP-mean", None, &[]),
         ("GIMP-null-space", None, &[]),
         ("VP", None, &[]),
@@ -61,16 +61,17 @@ const LINES: [(&str, Option<Method>, Inputs); 24] = {
         ("GIMP-Bbar", None, &[]),
         ("GIMP-Bbar-patch", None, &[]),
         ("GC-Bbar-patch", None, &[]),
+        ("GIMP-SRI-patch-soils", None, &[]),
         ("CPDI-SRI-patch", None, &[]),
         ("CE-SRI-patch", None, &[]),
         ("GC-SRI-patch-cells", None, &[]),
         ("CE-SRI-patch-cells", None, &[]),
         ("TL-GIMP-SRI-patch", None, &[]),
         ("TL-GC-SRI-patch", None, &[]),
-        ("B2", operators(Bspline2, Standard, Points, Constant), &[]),
-        ("B2-SRI-patch", operators(Bspline2, Standard, Sri, Patch), &[]),
-        ("B3-SRI-patch", operators(Bspline3, Standard, Sri, Patch), &[]),
-        ("GIMP-SRI-patch-slopes", operators(Cpgimp, Standard, Sri, Patch), SLOPES),
+        ("B2", Some(operators(Bspline2, Standard, Points, Constant)), &[]),
+        ("B2-SRI-patch", Some(operators(Bspline2, Standard, Sri, Patch)), &[]),
+        ("B3-SRI-patch", Some(operators(Bspline3, Standard, Sri, Patch)), &[]),
+        ("GIMP-SRI-patch-slopes", Some(operators(Cpgimp, Standard, Sri, Patch)), SLOPES),
     ]
 };
 

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Reads study files, whose names must be valid and differ.
 pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
-    let paths = paths.iter().flat_map(named_by);
+    let paths = paths.iter().flat_map(|path| named_by(path));
     let sources = paths.map(|path| read(&path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
     for (number, source) in sources.iter().enumerate() {
         let name = name_of(&source.name);
@@ -32,9 +32,9 @@ pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
 }
 
 /// The studies that a name stands for: `race` for the situations of the race, all else for itself.
-fn named_by(path: &PathBuf) -> Vec<PathBuf> {
+fn named_by(path: &Path) -> Vec<PathBuf> {
     if path.as_os_str() != RACE || path.exists() {
-        return vec![path.clone()];
+        return vec![path.to_owned()];
     }
     shipped_names().into_iter().filter(|name| is_of_race(name)).map(PathBuf::from).collect()
 }

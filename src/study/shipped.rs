@@ -32,7 +32,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "race-waves-standing" "race-waves-limit" "race-waves-step" "race-layer-0.3" "race-layer-0.49"
     "race-layer-0.4999" "race-layer-mandel" "race-layer-mandel-0.4999" "race-strain-15" "race-strain-30"
     "race-strain-50" "race-strain-50-growing" "race-plane-box" "race-plane-shear" "race-plane-vortex"
-    "race-rest-weight"
+    "race-rest-weight" "race-soil-node" "race-soil-cell" "race-soil-yield"
 };
 
 /// The shipped study of a name.

@@ -85,10 +85,13 @@ pub static PEER_SERIES: LazyLock<Vec<PeerSeries>> = LazyLock::new(|| {
 });
 
 fn read_series(text: &str) -> Result<Vec<PeerSeries>, csv::Error> {
+    type Row = (String, String, String, f64, f64);
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
-    let rows: Result<Vec<(String, String, String, f64, f64)>, _> = reader.deserialize().collect();
-    let series = |((name, quantity), rows): ((String, String), Vec<(String, String, String, f64, f64)>)| {
-        PeerSeries { name, quantity, levels: rows.iter().map(|row| (row.3, row.4)).collect() }
+    let rows: Result<Vec<Row>, _> = reader.deserialize().collect();
+    let series = |((name, quantity), rows): ((String, String), Vec<Row>)| PeerSeries {
+        name,
+        quantity,
+        levels: rows.iter().map(|row| (row.3, row.4)).collect(),
     };
     let groups = grouped(rows?, |row| (format!("{}: {}", row.0, row.1), row.2.clone()));
     Ok(groups.into_iter().map(series).collect())

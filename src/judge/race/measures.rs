@@ -99,7 +99,7 @@ pub fn errors_of(record: &Record) -> [Option<f64>; 3] {
 /// asked for, the formula's step over the observed one.
 pub fn score_of(record: &Record) -> Option<f64> {
     if record.stability.is_some() {
-        return step_ratio_of(record).map(|ratio| ratio.recip());
+        return step_ratio_of(record).map(f64::recip);
     }
     if record.case.scene.is_at_rest() && record.status == Status::Ok {
         return largest(record.balance.iter().filter_map(|balance| balance.spurious_velocity));

@@ -21,7 +21,7 @@ const STEP_COUNTS: f64 = 0.05;
 const ADJOINT: f64 = 1e-10;
 
 /// Words for the groups of situations.
-const GROUPS: [(&str, &str); 7] = [
+const GROUPS: [(&str, &str); 8] = [
     ("column", "columns at small strain"),
     ("points", "points out of place"),
     ("waves", "waves and explicit steps"),
@@ -29,6 +29,7 @@ const GROUPS: [(&str, &str); 7] = [
     ("strain", "columns at large strain"),
     ("plane", "large strain in the plane"),
     ("rest", "rest under weight"),
+    ("soil", "soils with jumps and yielding"),
 ];
 
 /// The matrix with its switch, and the sentences.
@@ -145,7 +146,7 @@ fn cost_cell(row: &RaceRow<'_>, contender: usize, target: String) -> Cell {
     }
     let least = row.contenders.iter().filter_map(|one| one.cost[0]).fold(f64::INFINITY, f64::min);
     let value = cell.cost[0];
-    let words = value.map_or("–".to_owned(), |seconds| number::seconds(seconds));
+    let words = value.map_or("–".to_owned(), number::seconds);
     let tenth = cell.cost[1].map_or("not reached".to_owned(), number::seconds);
     let title = format!("{}: 0.1 % {tenth}", cell.name);
     // A cost within a quarter of the least is as good.

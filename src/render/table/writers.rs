@@ -268,10 +268,10 @@ fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> (String, String) {
         | Cell::Code(text)
         | Cell::Verdict(_, text)
         | Cell::Link { words: text, .. }
+        | Cell::Shaded { value: None, words: text, .. }
         | Cell::Evidence { words: text, .. } => words(text),
         Cell::OrderWithin(value, half) => return (number::exact(*value), number::exact(*half)),
         Cell::Count(count) => count.to_string(),
-        Cell::Shaded { value: None, words: text, .. } => words(text),
         other => other.value().map_or(String::new(), number::exact),
     };
     (value, String::new())
