@@ -99,8 +99,8 @@ fn every_check_that_shows_a_mark_can_fail_and_spoils_the_record() {
     for sound in sound_records() {
         assert_eq!(soundness::complaints(&sound), Vec::<String>::new());
         let count = start_checks(&sound).iter().chain(&balance_checks(&sound, &sound.balance[1])).count();
-        assert_eq!(count, 9);
-        let spoilt: [fn(&mut Record); 8] = [
+        assert_eq!(count, 10);
+        let spoilt: [fn(&mut Record); 9] = [
             |one| one.start.iter_mut().for_each(|start| start.points -= 1),
             |one| one.start.iter_mut().for_each(|start| start.volume_error = 1e-6),
             |one| one.start.iter_mut().for_each(|start| start.undrained_pressure_error = 1e-6),
@@ -109,6 +109,7 @@ fn every_check_that_shows_a_mark_can_fail_and_spoils_the_record() {
             |one| one.balance[1].water_imbalance = -1e-3,
             |one| one.balance[1].internal_force_imbalance = 1e-6,
             |one| one.balance[1].settlement_curve_gap = 0.01,
+            |one| one.snapshots[1].points.pressure[3] = -1e3 * one.case.column.load,
         ];
         for (index, spoil) in spoilt.into_iter().enumerate() {
             let mut one = sound.clone();

@@ -85,6 +85,29 @@ fn judge(what: &str, seed: u64, outcomes: &[Outcome]) {
     assert_eq!(unknown, 0, "{what}: see the lines above");
 }
 
+/// What a sweep by hand once found, `bounds` or a relation and the command of the case, one a line.
+const MENDED: &str = include_str!("mended.txt");
+
+#[test]
+fn what_was_mended_stays_mended() {
+    let cases: Vec<(&str, Options)> = MENDED
+        .lines()
+        .map(|line| line.split_once(' ').expect("a law and a command"))
+        .map(|(law, command)| (law, Options::of_command(command)))
+        .collect();
+    let outcomes = swept(cases.len() as u64, |index| {
+        let (law, options) = cases[usize::try_from(index).expect("few")].clone();
+        let (kind, violations) = if law == "bounds" {
+            let solved = Solved::of(&options);
+            (solved.end.kind(), violations_of(&solved))
+        } else {
+            relations::held(&relations::named(law, options.clone()))
+        };
+        Outcome { options, kind, violations }
+    });
+    judge("mended cases", 0, &outcomes);
+}
+
 #[test]
 fn what_ends_ok_is_within_its_bounds() {
     let seed = asked("OEDOMETER_RANDOM_SEED", SEED);

@@ -77,6 +77,37 @@ impl Options {
         text
     }
 
+    /// The options of a command that [`command`](Self::command) wrote.
+    ///
+    /// # Panics
+    /// Where it is no such command.
+    pub fn of_command(command: &str) -> Self {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        let scene = words[2].to_owned().leak();
+        let mut options = Self { scene, ..Self::default() };
+        for pair in words[3..].chunks(2) {
+            let (key, value) = (pair[0], pair[1].to_owned());
+            let parts = value.split_once('=').map(|(one, other)| (one.to_owned(), other.to_owned()));
+            match (key, parts) {
+                ("--method", _) => options.method = value,
+                ("--integrator", _) => options.integrator = value.leak(),
+                ("--cells", _) => options.cells = value.parse().expect("a count"),
+                ("--points-per-cell", _) => options.points_per_cell = value.parse().expect("a count"),
+                ("--time-factor", _) => {
+                    options.time_factors =
+                        value.split(',').map(|one| one.parse().expect("a number")).collect();
+                }
+                ("--time-step", Some((rule, number))) => {
+                    options.time_step = Some((rule.leak(), number.parse().expect("a number")));
+                }
+                ("--set", Some((key, value))) => options.set(&key, value),
+                _ => panic!("`{key} {value}` is no option of the sweep"),
+            }
+        }
+        assert_eq!(options.command(), command, "read back");
+        options
+    }
+
     fn listed_times(&self, between: &str) -> String {
         let times: Vec<String> = self.time_factors.iter().map(|factor| format!("{factor:e}")).collect();
         times.join(between)

@@ -8,7 +8,7 @@ use crate::solved::{End, Solved};
 use oedometer::{Kernel, Record};
 
 /// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// Point by point, and as one sparse map.
     Kernels,
@@ -130,6 +130,18 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
         }
     };
     fits.then_some((base, other))
+}
+
+/// The pair that a relation makes of the case of a command.
+///
+/// # Panics
+/// Where the relation is unknown or does not fit the case.
+pub fn named(relation: &str, base: Options) -> Related {
+    let relation = RELATIONS.into_iter().find(|one| format!("{one:?}") == relation);
+    let relation = relation.unwrap_or_else(|| panic!("no relation is named so: {}", base.command()));
+    let numbers = &mut Numbers::of(0, 0);
+    let (base, other) = pair(relation, base, numbers).expect("it fits");
+    Related { relation, base, other }
 }
 
 /// Steps in seconds for explicit skeletons: the critical step is another in the plane.
@@ -260,29 +272,33 @@ fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
         }
     }
     let same_nodes = a.case.column.dimensions == b.case.column.dimensions;
+    let scale = a.case.column.load / load_of(a);
     for (what, one, other) in
         shares(a).into_iter().zip(shares(b)).map(|((what, one), (_, other))| (what, one, other))
     {
+        // What is a share of the load is known to a share of the weight, where the weight acts and is more.
         // The largest force on a node is another share of the load where its cells lie on one side alone.
         if what.starts_with("unbalanced force") && !same_nodes {
             continue;
         }
         // A force that rounding leaves is a share of no load.
-        see((one - other).abs().min(relative(one, other)), format!("the {what}"));
+        see((scale * (one - other).abs()).min(relative(one, other)), format!("the {what}"));
     }
     see((a.snapshots.len() as f64 - b.snapshots.len() as f64).abs(), "the number of outputs".to_owned());
     largest
 }
 
-/// Settlement over `m_v q H`, and the largest pressure over the load, at every output.
-fn states(record: &Record) -> Vec<(f64, f64)> {
+/// The load, Pa, or the weight where that acts and is more.
+fn load_of(record: &Record) -> f64 {
     let case = &record.case;
     let weight = case.material.grain_density * case.material.gravity * case.column.height;
-    let load = if case.column.self_weight || case.scene.is_at_rest() {
-        case.column.load.max(weight)
-    } else {
-        case.column.load
-    };
+    let has_weight = case.column.self_weight || case.scene.is_at_rest();
+    if has_weight { case.column.load.max(weight) } else { case.column.load }
+}
+
+/// Settlement over `m_v q H`, and the largest pressure over the load, at every output.
+fn states(record: &Record) -> Vec<(f64, f64)> {
+    let (case, load) = (&record.case, load_of(record));
     let whole = load / case.material.oedometric_modulus() * case.column.height;
     let of = |snapshot: &oedometer::Snapshot| {
         let largest = snapshot.points.pressures().0.iter().fold(0.0, |most: f64, p| most.max(p.abs()));

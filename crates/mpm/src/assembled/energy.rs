@@ -16,9 +16,25 @@ use crate::assembled::rows::{BandsWithin, REACH, RowStorage, Rows};
 use crate::assembled::state::{Displacements, LANES, MARGIN, SOLID, WATER, lanes};
 use crate::assembled::step::{AssembledStep, BlockConstants};
 use crate::run::energy::Energy;
+use crate::state::nodes::Nodes;
 use oedometer_soil::tensor::Vector;
 
 impl<const D: usize> AssembledStep<D> {
+    /// Follows a drift of `dt` seconds of the nodes of the same body, which goes point by point.
+    pub fn follow(&mut self, nodes: &Nodes<D>, dt: f64) {
+        for (row, &node) in self.nodes.iter().enumerate() {
+            let place = MARGIN + row;
+            for (phase, field) in [(SOLID, &nodes.solid_velocity), (WATER, &nodes.water_velocity)] {
+                self.state.velocity[phase][place] = field[node];
+                self.state.trial[phase][place] = field[node];
+            }
+            for d in 0..D {
+                self.state.strain_displacement[place][d] += dt * nodes.solid_velocity[node][d];
+                self.state.flux_displacement[place][d] += dt * nodes.flux[node][d];
+            }
+        }
+    }
+
     /// Energy after a drift of `dt` seconds, J, by velocities that were mapped back or not.
     pub fn energy(&mut self, dt: f64, mapping_back: bool) -> Energy {
         let Self { rows, constants, state, .. } = self;

@@ -5,7 +5,7 @@ use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::implicit::guess::StageGuess;
 use crate::implicit::residual::StageStart;
 use crate::implicit::secants::Secants;
-use crate::implicit::tangent::Pattern;
+use crate::implicit::tangent::{DIFFERENCE, Pattern};
 use crate::implicit::trial::{Skeleton, Trial};
 use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
 use crate::method::{PressureIntegration, Recovery};
@@ -59,9 +59,11 @@ pub struct NewtonStepper<const D: usize> {
     contraction: f64,
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
-    /// Correction of the scaled unknowns by round-off: strains are differences of numbers near one, and a displacement sums
-    /// them over all cells.
+    /// Correction of the scaled unknowns by round-off, which a displacement sums over all cells: that of strains which are
+    /// differences of numbers near one, or of those of a body that keeps its shape.
     round_off: f64,
+    /// Perturbation of a scaled unknown for the tangent: the problem's strain in a body that keeps its shape, which is linear.
+    difference: f64,
     error_scales: ErrorScales,
     stages: &'static [Stage],
     start: StageStart<D>,
@@ -92,6 +94,7 @@ impl<const D: usize> NewtonStepper<D> {
         let tangent = pattern.zeros();
         let scales = trial.unknowns.scales;
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
+        let (strain, deforms) = (plan.pressure_scale / scales.pressure, trial.body.configuration.deforms());
         let zero = vec![0.0; trial.unknowns.count];
         Self {
             factors: Factors::of_shape(&tangent, plan.schedule.threads, plan.schedule.time_limit),
@@ -103,8 +106,9 @@ impl<const D: usize> NewtonStepper<D> {
             pattern,
             factored: None,
             contraction: SLOW,
-            tolerance: TOLERANCE * plan.pressure_scale / scales.pressure,
-            round_off: f64::EPSILON * cells * cells,
+            tolerance: TOLERANCE * strain,
+            round_off: f64::EPSILON * cells * cells * if deforms { 1.0 } else { strain },
+            difference: if deforms { DIFFERENCE } else { strain },
             error_scales: ErrorScales::of(&scales, plan),
             stages,
             start: StageStart::default(),
@@ -308,6 +312,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
         let (trial, start, time_limit) = (&mut self.trial, &self.start, self.time_limit);
         self.pattern.differentiate(
+            self.difference,
             &mut self.state,
             &self.residual,
             &mut self.scratch,

@@ -10,7 +10,7 @@ use crate::implicit::unknowns::Unknowns;
 use oedometer_soil::conductivity::ConductivityMean;
 
 /// Perturbation of a scaled unknown: about the square root of the round-off, which leaves eight digits of the tangent.
-const DIFFERENCE: f64 = 1e-7;
+pub const DIFFERENCE: f64 = 1e-7;
 
 /// Usual number of unknowns that a point depends on in one dimension.
 const MOST_FELT: usize = 12;
@@ -95,10 +95,11 @@ impl Pattern {
         self.zeros.clone()
     }
 
-    /// Differences of `residual` at `state`, where it is `base`. `scratch` has the length of the
-    /// state; nothing is allocated.
+    /// Differences of `residual` at `state`, where it is `base`, for a perturbation of `difference`. `scratch` has the length
+    /// of the state; nothing is allocated.
     pub fn differentiate(
         &self,
+        difference: f64,
         state: &mut [f64],
         base: &[f64],
         scratch: &mut [f64],
@@ -108,13 +109,13 @@ impl Pattern {
         tangent.clear();
         for group in &self.groups {
             for column in group {
-                state[*column] += DIFFERENCE;
+                state[*column] += difference;
             }
             residual(state, scratch);
             for column in group {
-                state[*column] -= DIFFERENCE;
+                state[*column] -= difference;
                 for row in self.rows_of_column.of(*column) {
-                    tangent.add(*row, *column, (scratch[*row] - base[*row]) / DIFFERENCE);
+                    tangent.add(*row, *column, (scratch[*row] - base[*row]) / difference);
                 }
             }
         }

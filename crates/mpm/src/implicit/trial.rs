@@ -103,17 +103,11 @@ impl<const D: usize> Trial<D> {
         self.body.outflow_of(&self.body.nodes.flux)
     }
 
-    /// Rate of the settlement now, m/s: of the plate where there is one, else the mean of the surface.
+    /// Rate of the settlement now, m/s: of the plate where there is one, else of the loaded surface.
     pub fn settlement_rate(&self) -> f64 {
-        let (body, velocity) = (&self.body, &self.body.nodes.solid_velocity);
-        match &body.plate {
-            Some(_) => -body
-                .settling_weights()
-                .iter()
-                .map(|(node, weight)| dot(weight, &velocity[*node]))
-                .sum::<f64>(),
-            None => -body.surface.mean_of(&body.grid, &body.points, velocity),
-        }
+        let velocity = &self.body.nodes.solid_velocity;
+        let weights = self.body.settling_weights();
+        -weights.iter().map(|(node, weight)| dot(weight, &velocity[*node])).sum::<f64>()
     }
 
     /// Makes the present state the one that increments are measured from.

@@ -21,6 +21,9 @@ const MOST_RISE: f64 = 0.05;
 /// The same where points move: stresses of points that cross cells jump.
 const MOST_RISE_MOVING: f64 = 0.1;
 
+/// Energy of round-off, as a share of the work of the load: the square of what rounding leaves of velocities and stresses.
+const ROUND_OFF: f64 = 1e-24;
+
 /// Energy of a body at a time, J; in a column, J a unit area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
@@ -39,30 +42,35 @@ pub struct EnergyAccount {
     least: f64,
     /// Most that was in motion so far, J.
     turned: f64,
+    /// What was in motion from which on a rise is judged, J.
+    least_judged: f64,
     /// Largest rise above the least, over what was in motion.
     pub largest_rise: f64,
 }
 
-impl Default for EnergyAccount {
-    fn default() -> Self {
-        Self { least: f64::INFINITY, turned: 0.0, largest_rise: 0.0 }
-    }
-}
-
 impl EnergyAccount {
+    /// Nothing seen yet of a body whose load does work of this order, J. A symmetric mesh may feel no load at all: what
+    /// rounding leaves in motion is then no energy to judge.
+    pub fn of_scale(work: f64) -> Self {
+        Self { least: f64::INFINITY, turned: 0.0, least_judged: ROUND_OFF * work.abs(), largest_rise: 0.0 }
+    }
+
     /// Takes note of an energy; a sentence where it has risen beyond what a sound step makes.
     pub fn note(&mut self, energy: Energy, moves: bool) -> Option<String> {
         let free = energy.kinetic + energy.stored - energy.work;
         self.turned = self.turned.max(energy.kinetic + energy.stored.abs() + energy.work.abs());
         self.least = self.least.min(free);
         let rise = free - self.least;
+        if self.turned <= self.least_judged {
+            return None;
+        }
         let share = rise / self.turned;
         if share > self.largest_rise || share.is_nan() {
             self.largest_rise = share;
         }
         let most = if moves { MOST_RISE_MOVING } else { MOST_RISE };
         // NaN is not an energy.
-        let is_within = self.turned == 0.0 || share <= most;
+        let is_within = share <= most;
         (!is_within).then(|| {
             format!(
                 "energy grew by {rise:.3e} J without work, {share:.3} of all that was in motion: a step that is stable makes \
@@ -148,7 +156,7 @@ mod tests {
 
     #[test]
     fn energy_may_fall_and_come_from_work_and_nothing_else() {
-        let mut account = EnergyAccount::default();
+        let mut account = EnergyAccount::of_scale(1.0);
         let energy = |kinetic, stored, work| Energy { kinetic, stored, work };
         for (kinetic, stored, work) in [(0.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.5, 1.0, 1.5), (0.0, 5.0, 6.0)] {
             assert_eq!(account.note(energy(kinetic, stored, work), false), None);
@@ -158,7 +166,16 @@ mod tests {
         let grown = account.note(energy(1.0, 5.5, 6.0), false).expect("it rose by more than a tenth");
         assert!(grown.contains("1.500e0 J without work"), "{grown}");
         assert!(account.note(energy(f64::NAN, 5.5, 6.0), true).is_some());
-        let mut smaller = EnergyAccount::default();
-        assert_eq!(smaller.note(energy(0.0, 0.0, 0.0), false), None, "nothing has happened yet");
+        let mut still = EnergyAccount::of_scale(1.0);
+        assert_eq!(still.note(energy(0.0, 0.0, 0.0), false), None, "nothing has happened yet");
+        for kinetic in [1e-34, 9e-34] {
+            assert_eq!(
+                still.note(energy(kinetic, 0.0, 0.0), false),
+                None,
+                "round-off of a load that moves nothing"
+            );
+        }
+        still.note(energy(1e-9, 0.0, 0.0), false);
+        assert!(still.note(energy(9e-9, 0.0, 0.0), false).is_some());
     }
 }

@@ -22,6 +22,8 @@ pub struct ExplicitStepper<const D: usize> {
     /// The body; at its start where the step is assembled.
     body: Body<D>,
     frozen: Option<AssembledStep<D>>,
+    /// Follows a frozen body that goes point by point, for its energy: the criterion does not depend on the kernel.
+    account: Option<Box<AssembledStep<D>>>,
     start: Points<D>,
     initial_height: f64,
     initial_settlement: f64,
@@ -88,11 +90,13 @@ impl<const D: usize> ExplicitStepper<D> {
     /// A body at its start.
     pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
         let schedule = plan.schedule;
-        let is_assembled = body.configuration == Configuration::Frozen
-            && schedule.kernel == Kernel::Fastest
-            && !body.has_history();
+        // A law with a history has no step that is one matrix.
+        let is_linear = body.configuration == Configuration::Frozen && !body.has_history();
+        let is_assembled = is_linear && schedule.kernel == Kernel::Fastest;
+        let assembled = || AssembledStep::new(&body);
         let mut stepper = Self {
-            frozen: is_assembled.then(|| AssembledStep::new(&body)),
+            frozen: is_assembled.then(assembled),
+            account: (is_linear && !is_assembled).then(|| Box::new(assembled())),
             start: body.points.clone(),
             initial_height: plan.initial_height,
             initial_settlement: body.settlement(plan.initial_height),
@@ -118,8 +122,8 @@ impl<const D: usize> ExplicitStepper<D> {
     /// Puts the load of a growing time on the surface.
     fn set_load_at(&mut self, time: f64) {
         self.load.act_at(&mut self.body, time);
-        if let Some(frozen) = &mut self.frozen {
-            frozen.set_load_share(self.load.share);
+        for step in self.frozen.iter_mut().chain(self.account.as_deref_mut()) {
+            step.set_load_share(self.load.share);
         }
     }
 }
@@ -142,6 +146,9 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
                     frozen.kick_and_drift(kick, dt, &settings);
                 }
                 None => self.body.kick_and_drift(kick, dt, &settings),
+            }
+            if let Some(account) = &mut self.account {
+                account.follow(&self.body.nodes, dt);
             }
         }
         Ok(0.0)
@@ -173,8 +180,8 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
         if self.body.weight.is_some() || self.load.grows() {
             return None;
         }
-        if let Some(frozen) = &mut self.frozen {
-            return Some((frozen.energy(dt, self.settings.mapping_back), false));
+        if let Some(step) = self.frozen.as_mut().or(self.account.as_deref_mut()) {
+            return Some((step.energy(dt, self.settings.mapping_back), false));
         }
         let settlement = self.settlement() - self.initial_settlement;
         let energy = self.body.energy(settlement, self.body.water_of_points())?;

@@ -35,6 +35,8 @@ const STARTS: f64 = 4.0;
 pub struct PhysicalBounds {
     /// Settlement that the problem's pressure makes in the end, or more, m.
     pub settlement_scale: f64,
+    /// Work of the load on one cell over the settlement, J.
+    pub energy_scale: f64,
     /// Least and largest settlement, m.
     settlement: [f64; 2],
     /// Largest pressure, Pa, either way.
@@ -52,13 +54,19 @@ impl PhysicalBounds {
     pub fn of<const D: usize>(problem: &Problem<D>) -> Self {
         let scale = settlement_scale(problem);
         let without = f64::INFINITY;
-        if !problem.is_bounded {
-            let settlement = [-without, without];
-            let (force, release, are_kept) = (without, 0.0, false);
-            return Self { settlement_scale: scale, settlement, pressure: without, force, release, are_kept };
-        }
         let cell_size = problem.grid.cell_size;
         let of_load = problem.pressure_scale * (1..D).map(|_| cell_size).product::<f64>();
+        if !problem.is_bounded {
+            return Self {
+                settlement_scale: scale,
+                energy_scale: of_load * scale,
+                settlement: [-without, without],
+                pressure: without,
+                force: without,
+                release: 0.0,
+                are_kept: false,
+            };
+        }
         let up = if problem.plate_load.is_some() { NORMAL } else { D - 1 };
         let cells = problem.grid.cells[up] as f64;
         let force = if problem.forcing.is_some() || problem.loading_time > 0.0 {
@@ -73,6 +81,7 @@ impl PhysicalBounds {
         let passing = cells * cell_size / problem.least_of_soils(formula::undrained_wave_speed);
         Self {
             settlement_scale: scale,
+            energy_scale: of_load * scale,
             settlement: SETTLEMENTS.map(|share| share * scale),
             pressure: MOST_PRESSURE * problem.pressure_scale,
             force,

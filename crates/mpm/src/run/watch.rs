@@ -42,7 +42,7 @@ pub struct Watch<'a> {
 impl<'a> Watch<'a> {
     /// Nothing seen yet.
     pub fn of(plan: &'a Plan<'a>) -> Self {
-        let energy = EnergyAccount::default();
+        let energy = EnergyAccount::of_scale(plan.bounds.energy_scale);
         let (steps_to_account, seen, done) = (0, None, 0);
         Self { plan, velocity: 0.0, growth: None, energy, steps_to_account, seen, done, bounds: plan.bounds }
     }
