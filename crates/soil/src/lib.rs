@@ -9,5 +9,6 @@ pub mod continuity;
 pub mod elementary;
 pub mod law;
 pub mod material;
+pub mod plasticity;
 pub mod tensor;
 pub mod wording;
