@@ -7,7 +7,7 @@ use crate::case::quantity::{Quantity, Sample};
 use crate::case::tier::Tier;
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
-use crate::study::inputs::{Inputs, add_inputs, take_inputs};
+use crate::study::inputs::{Inputs, add_inputs, add_units, take_inputs};
 use crate::study::reading::{Placed, Typed};
 use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
@@ -68,6 +68,7 @@ pub struct StudyFile {
     /// What is done with the cases.
     pub task: Typed<Task>,
     /// Longest wall time of a case, s.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub case_seconds: Typed<f64>,
     /// What the soil is made of.
     #[serde(default)]
@@ -156,6 +157,7 @@ pub struct ColumnTable {
     pub strain: Typed<f64>,
     /// Layers of soil from the base up: their thicknesses and what differs from `[material]`.
     #[serde(default)]
+    #[schemars(transform = add_units)]
     pub soils: Vec<Placed<SoilLayer>>,
 }
 
@@ -324,8 +326,10 @@ pub struct LevelTable {
     /// Material points per cell and direction.
     pub points_per_cell: Typed<i64>,
     /// Step, s.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub seconds: Option<f64>,
     /// Bulk modulus of the water, Pa.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "Pa"))]
     pub water_bulk_modulus: Option<f64>,
     /// Upper bound.
     pub below: Option<f64>,
@@ -373,6 +377,7 @@ pub struct SolverTable {
     /// Command that prints its version; its first line is kept in the record.
     pub version: Typed<Vec<Placed<String>>>,
     /// Longest wall time of one run, s; `case_seconds` of the study where it is left out.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub timeout: Typed<f64>,
     /// Runs of each case that are timed, 1 where it is left out; their results must agree.
     pub repeats: Typed<i64>,
@@ -390,6 +395,7 @@ pub struct SolverTable {
     /// Unit of that time: `s` where it is left out, or `ms`, `min`, `h`.
     pub solve_unit: Typed<String>,
     /// Seconds from one numbered step to the next, where file names have the number of the step.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub time_step: Typed<f64>,
 }
 
@@ -412,6 +418,7 @@ pub struct ResultTable {
     /// File beside the study that says what columns or arrays mean.
     pub mapping: Typed<String>,
     /// Seconds from one numbered step to the next, where file names have the number of the step.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub time_step: Typed<f64>,
     /// Smallest tier that has it.
     #[serde(default)]

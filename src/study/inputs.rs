@@ -2,7 +2,7 @@
 //!
 //! [`KEYS`]: crate::case::keys::KEYS
 
-use crate::case::keys::{Key, Kind};
+use crate::case::keys::{KEYS, Key, Kind};
 use crate::study::reading::{Placed, Typed};
 use oedometer_mpm::method::{
     Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
@@ -10,6 +10,7 @@ use oedometer_mpm::method::{
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde_json::Value;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error, ValueDeserializer};
@@ -133,6 +134,23 @@ pub fn add_inputs(schema: &mut Schema, of: &str, are_lists: bool) {
     }
 }
 
+/// SI unit of the number that a key of a study file takes, where it has one.
+pub fn unit_of(name: &str) -> Option<&'static str> {
+    let of_key = || KEYS.iter().find(|key| key.name == name).map(|key| key.unit);
+    if name == "thickness" { Some("m") } else { of_key().filter(|unit| !unit.is_empty()) }
+}
+
+/// Lets numbers stand with their unit in the schema of a list of soils.
+pub fn add_units(schema: &mut Schema) {
+    let properties = schema.ensure_object().get_mut("items").and_then(|items| items.get_mut("properties"));
+    for (name, value) in properties.and_then(Value::as_object_mut).into_iter().flatten() {
+        if let Some(unit) = unit_of(name) {
+            value["type"] = serde_json::json!(["number", "string"]);
+            value["unit"] = unit.into();
+        }
+    }
+}
+
 /// Schema of the values of a key.
 fn schema_of_values(key: &Key, generator: &mut SchemaGenerator) -> Schema {
     match key.kind {
@@ -146,6 +164,9 @@ fn schema_of_values(key: &Key, generator: &mut SchemaGenerator) -> Schema {
         Kind::Word(words) => json_schema!({ "enum": words }),
         Kind::Flag => json_schema!({ "type": "boolean" }),
         Kind::Count(_) => json_schema!({ "type": "integer" }),
+        Kind::Number(_) if !key.unit.is_empty() => {
+            json_schema!({ "type": ["number", "string"], "unit": key.unit })
+        }
         Kind::Number(_) => json_schema!({ "type": "number" }),
     }
 }
@@ -159,6 +180,7 @@ pub struct TimeStepTable {
     /// Share of a cell that the fastest wave crosses in a step.
     pub courant: Typed<f64>,
     /// Step, s.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub seconds: Typed<f64>,
     /// Step over the time that has passed.
     pub growth: Typed<f64>,

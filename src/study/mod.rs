@@ -13,3 +13,4 @@ pub mod reading;
 pub mod shipped;
 pub mod solver;
 pub mod sweep;
+pub mod units;

@@ -5,6 +5,8 @@ use crate::study::check::Purpose;
 use crate::study::check::Study;
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
+use crate::study::inputs::unit_of;
+use crate::study::units::{has_unit, in_si};
 use oedometer_exact::{ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
 
 /// Repeats are for the cases of a study.
@@ -33,7 +35,7 @@ impl OverrideError {
 /// Keys of a study file that are set at the command line.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Assignments {
-    /// Set a dotted key of a study file, like material.porosity=0.45
+    /// Set a dotted key of a study file, like material.porosity=0.45 or column.load="50 kPa"
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub assignments: Vec<String>,
 }
@@ -60,12 +62,17 @@ impl Assignments {
                         "`--set {key}` has no effect in `{problem}`: it is for {problems}"
                     )));
                 }
-                Some(own) => match value.parse() {
+                Some(own) if own.unit.is_empty() => match value.parse() {
                     Ok(number) => (own.set)(&mut shelf, number),
                     Err(_) => {
                         return Err(OverrideError::typed(format!("`{key}` must be a number, got {value}")));
                     }
                 },
+                Some(own) => {
+                    let typed = value.trim_matches(['"', '\'']);
+                    let number = typed.parse().or_else(|_| in_si(typed, own.unit));
+                    (own.set)(&mut shelf, number.map_err(|told| refused_quantity(&key, told))?);
+                }
             }
         }
         Ok((others, shelf))
@@ -168,10 +175,12 @@ impl StudyLines {
         Ok(())
     }
 
-    /// The keys as one table, for use outside a study.
+    /// The keys as one table, for use outside a study, with numbers in SI units.
     pub fn table(&self) -> Result<toml::Table, OverrideError> {
-        toml::from_str(&self.lines.join("\n"))
-            .map_err(|error| OverrideError::typed(error.message().to_owned()))
+        let mut table = toml::from_str(&self.lines.join("\n"))
+            .map_err(|error| OverrideError::typed(error.message().to_owned()))?;
+        numbers_in_si(&mut table)?;
+        Ok(table)
     }
 
     /// Whether a key has been given.
@@ -213,6 +222,31 @@ impl StudyLines {
     }
 }
 
+/// Turns the numbers with units of a table, by the units of its keys, into numbers in SI units.
+fn numbers_in_si(table: &mut toml::Table) -> Result<(), OverrideError> {
+    for (key, value) in table {
+        match value {
+            toml::Value::Table(inner) => numbers_in_si(inner)?,
+            toml::Value::Array(list) => {
+                list.iter_mut().filter_map(toml::Value::as_table_mut).try_for_each(numbers_in_si)?;
+            }
+            toml::Value::String(text) => {
+                if let Some(unit) = unit_of(key) {
+                    let number = in_si(text, unit).map_err(|told| refused_quantity(key, told))?;
+                    *value = number.into();
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// What is said of a value that should be a number with a unit: the message, then what would be right.
+fn refused_quantity(key: &str, (message, help): (String, String)) -> OverrideError {
+    OverrideError::typed(format!("`{key}`: {message}: {help}"))
+}
+
 /// A value as TOML spells it.
 pub fn toml_of(value: impl Into<toml::Value>) -> String {
     value.into().to_string()
@@ -220,11 +254,14 @@ pub fn toml_of(value: impl Into<toml::Value>) -> String {
 
 /// Turns `stable=0.5` into a step rule of a study file.
 pub fn step_rule(typed: &str) -> Result<String, OverrideError> {
-    let rule = typed
-        .split_once('=')
-        .and_then(|(rule, value)| Some((rule.trim(), value.trim().parse::<f64>().ok()?)));
+    // A number with a unit is judged as it is in files.
+    let value_of = |text: &str| match text.parse::<f64>() {
+        Ok(number) => Some(toml_of(number)),
+        Err(_) => has_unit(text.trim_matches('"')).then(|| toml_of(text.trim_matches('"'))),
+    };
+    let rule = typed.split_once('=').and_then(|(rule, value)| Some((rule.trim(), value_of(value.trim())?)));
     match rule {
-        Some((rule, value)) => Ok(format!("{{ {rule} = {} }}", toml_of(value))),
+        Some((rule, value)) => Ok(format!("{{ {rule} = {value} }}")),
         None => Err(OverrideError::typed(format!(
             "`{typed}` is not a step rule: write stable=0.5, courant=0.5, seconds=1e-6, growth=0.05 or tolerance=1e-4"
         ))),
@@ -283,6 +320,7 @@ mod tests {
             assert_eq!(toml::from_str::<toml::Table>(&text).expect("TOML")["a"].as_float(), Some(number));
         }
         assert_eq!(step_rule("courant=1").unwrap_or_default(), "{ courant = 1.0 }");
+        assert_eq!(step_rule("seconds=2 min").unwrap_or_default(), "{ seconds = \"2 min\" }");
         assert!(step_rule("seconds").is_err() && numbers("--zeta", "0.1,x").is_err());
     }
 }

@@ -3,6 +3,7 @@
 use crate::case::keys::{KEYS, Key};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest, one_of};
 use crate::study::file::StudySource;
+use crate::study::units::{has_unit, in_si, leading_number};
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Deserialize;
@@ -60,7 +61,7 @@ impl<T: JsonSchema> JsonSchema for Placed<T> {
 const RENAMED: [(&str, &str); 2] = [("layers", "sets"), ("one_layer_within", "one_set_within")];
 /// What is said where no better help is known.
 const A_LINE: &str =
-    "a line is `key = value`: words stand in quotes, lists in [ ], numbers without units, comments after #";
+    "a line is `key = value`: words and numbers with units stand in quotes, lists in [ ], comments after #";
 /// Longest excerpt of the text in a message, letters.
 const LONGEST_EXCERPT: usize = 40;
 
@@ -74,22 +75,27 @@ impl StudySource {
         self.read_by(|root| T::deserialize(Deserializer::from(root)))
     }
 
-    /// Reads TOML by a function, whose refusal the schema of its type explains.
+    /// Reads TOML by a function, whose refusal the schema of its type explains. Numbers with units, like `"50 kPa"`,
+    /// reach it as numbers in SI units, where the schema names the unit of their key.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_by<T: JsonSchema>(
         &self,
-        read: impl FnOnce(Spanned<DeTable<'_>>) -> Result<T, Error>,
+        read: impl Fn(Spanned<DeTable<'_>>) -> Result<T, Error>,
     ) -> Result<T, StudyError> {
         let root = DeTable::parse(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))?;
-        read(root.clone()).map_err(|error| {
-            let mut mistakes = Mistakes { text: &self.text, found: Vec::new() };
+        read(root.clone()).or_else(|error| {
+            let mut mistakes = Mistakes { text: &self.text, found: Vec::new(), quantities: Vec::new() };
             mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
+            if mistakes.found.is_empty() && !mistakes.quantities.is_empty() {
+                return read(in_numbers(root, &mistakes.quantities))
+                    .map_err(|error| self.error(vec![self.syntax(&error)]));
+            }
             if mistakes.found.is_empty() {
                 mistakes.found.push(self.syntax(&error));
             }
-            self.error(mistakes.found)
+            Err(self.error(mistakes.found))
         })
     }
 
@@ -125,10 +131,12 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
     let rest = value[number.len()..].trim_start();
     let write = |right: &str| format!("write `{key} = {}`", cut(right));
     let shown = cut(value);
-    if !number.is_empty() && rest.starts_with(|c: char| c.is_alphabetic() || c == '%') {
-        let help =
-            format!("numbers stand without units, in SI (m, s, Pa), shares as in 0.3: {}", write(number));
-        (Some(format!("`{shown}` is not a plain number")), help)
+    if has_unit(value) {
+        (Some(format!("`{shown}` needs quotes")), write(&format!("\"{value}\"")))
+    } else if !number.is_empty() && rest.starts_with(|c: char| c.is_alphabetic() || c == '%') {
+        let help = "a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like \"50 kPa\"; a \
+                    share as in 0.3";
+        (Some(format!("`{shown}` is not a plain number")), help.to_owned())
     } else if value.starts_with(char::is_alphabetic) {
         let quoted = write(&format!("\"{}\"", value.trim_end_matches(['"', '\''])));
         (Some(format!("`{shown}` needs quotes")), quoted)
@@ -139,17 +147,35 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
     }
 }
 
-/// The number that a text begins with.
-fn leading_number(text: &str) -> &str {
-    let mut ends = text.char_indices().map(|(at, _)| at).chain([text.len()]);
-    let end = ends.rfind(|end| text[..*end].trim_end().parse::<f64>().is_ok()).unwrap_or(0);
-    text[..end].trim_end()
+/// A text with the numbers of quantities in place of the words that stand there.
+fn in_numbers<'a>(
+    mut root: Spanned<DeTable<'a>>,
+    quantities: &'a [(Range<usize>, String)],
+) -> Spanned<DeTable<'a>> {
+    fn replace<'a>(value: &mut Spanned<DeValue<'a>>, quantities: &'a [(Range<usize>, String)]) {
+        let place = value.span();
+        match value.as_mut() {
+            DeValue::Table(table) => table.iter_mut().for_each(|(_, one)| replace(one, quantities)),
+            DeValue::Array(list) => list.iter_mut().for_each(|one| replace(one, quantities)),
+            word @ DeValue::String(_) => {
+                let number = quantities.iter().find(|(span, _)| *span == place);
+                if let Some(Ok(number)) = number.map(|(_, text)| DeValue::parse(text)) {
+                    *word = number.into_inner();
+                }
+            }
+            _ => {}
+        }
+    }
+    root.as_mut().iter_mut().for_each(|(_, one)| replace(one, quantities));
+    root
 }
 
 /// Mistakes in a text, as they are found.
 struct Mistakes<'a> {
     text: &'a str,
     found: Vec<Diagnostic>,
+    /// Words that are numbers with units: their places, and the numbers in SI units.
+    quantities: Vec<(Range<usize>, String)>,
 }
 
 impl Mistakes<'_> {
@@ -195,6 +221,14 @@ impl Mistakes<'_> {
                     self.found.push(Diagnostic::at(value.span(), message, one_of(word, &names)));
                 }
             }
+            DeValue::String(text) if schema["unit"].is_string() => {
+                match in_si(text, schema["unit"].as_str().unwrap_or_default()) {
+                    Ok(number) => self.quantities.push((value.span(), format!("{number:?}"))),
+                    Err((message, help)) => {
+                        self.found.push(Diagnostic::at(value.span(), format!("`{key}`: {message}"), help));
+                    }
+                }
+            }
             other if self::fits(schema, other) => {}
             _ => self.wrong_kind(schema, value, key),
         }
@@ -219,7 +253,7 @@ impl Mistakes<'_> {
             DeValue::String(word) if is_number => match word.trim().parse::<f64>() {
                 Ok(_) => format!("write it without quotes: `{key} = {word}`"),
                 Err(_) => format!(
-                    "numbers stand without quotes and units, in SI (m, s, Pa), like `{key} = {}`",
+                    "it has no unit: write it as a plain number without quotes, like `{key} = {}`",
                     example_of(schema)
                 ),
             },
@@ -253,7 +287,8 @@ fn names_of(schema: &Value) -> Vec<&str> {
 fn kind_of(schema: &Value) -> &str {
     match schema["anyOf"].as_array().and_then(|choices| choices.first()) {
         Some(first) => kind_of(first),
-        None => schema["type"].as_str().unwrap_or("string"),
+        // Of a number with a unit the first kind is the number.
+        None => schema["type"].as_str().or(schema["type"][0].as_str()).unwrap_or("string"),
     }
 }
 
@@ -379,11 +414,11 @@ mod tests {
         for (from, to, parts) in [
             ("porosity = 0.3", "porosty = 0.3", ["unknown key `porosty`", "did you mean `porosity`?"]),
             ("porosity = 0.3", "cells = 3", ["unknown key `cells`", "belongs to [[sweep]]"]),
-            ("porosity = 0.3", "porosity = 30 %", ["t.toml:4:", "without units, in SI"]),
-            ("porosity = 0.3", "load = 5 kPa", ["t.toml:4:", "write `load = 5`"]),
+            ("porosity = 0.3", "porosity = 30 %", ["t.toml:4:", "a share as in 0.3"]),
+            ("porosity = 0.3", "load = 5 kPa", ["t.toml:4:", "write `load = \"5 kPa\"`"]),
             ("porosity = 0.3", "law = linear", ["t.toml:4:", "write `law = \"linear\"`"]),
             ("porosity = 0.3", "porosity = \"0.3\"", ["takes a number", "without quotes: `porosity = 0.3`"]),
-            ("porosity = 0.3", "porosity = \"30 %\"", ["takes a number", "without quotes and units"]),
+            ("porosity = 0.3", "porosity = \"30 %\"", ["takes a number", "it has no unit"]),
             (
                 "porosity = 0.3",
                 "porosity = [0.3]",
@@ -403,6 +438,34 @@ mod tests {
             let told = refusal(&SOUND.replacen(from, to, 1));
             assert!(parts.iter().all(|part| told.contains(part)), "{to}:\n{told}");
         }
+    }
+
+    #[test]
+    fn numbers_with_units_make_the_cases_of_plain_numbers() {
+        let study = |text: &str| {
+            let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+            Study::check(&source).unwrap_or_else(|error| panic!("{error}"))
+        };
+        let more = |material: &str, sweep: &str| {
+            let text = SOUND.replace("porosity = 0.3", material);
+            format!("case_seconds = {}\n{text}{sweep}", if sweep.contains('"') { "\"2 min\"" } else { "120" })
+        };
+        let plain = study(&more(
+            "porosity = 0.3\nyoungs_modulus = 1e6",
+            "hydraulic_conductivity = [1e-9, 1e-4]\ntime_step = [{ seconds = 120.0 }]\nload = [5e4]\n",
+        ));
+        let with_units = study(&more(
+            "porosity = 0.3\nyoungs_modulus = \"1 MPa\"",
+            "hydraulic_conductivity = [\"1e-9 m/s\", 1e-4]\ntime_step = [{ seconds = \"2 min\" }]\n\
+             load = [\"50 kPa\"]\n",
+        ));
+        assert_eq!(with_units.planned, plain.planned);
+        assert_eq!((with_units.planned.len(), with_units.case_seconds), (4, 120.0));
+        let told = refusal(&SOUND.replace("porosity = 0.3", "youngs_modulus = \"5 m\""));
+        let parts = ["t.toml:4:18", "^^^^^", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""];
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        let told = refusal(&SOUND.replace("[4, 8]", "[4, 8]\nload = [5.0, \"2 days\"]"));
+        assert!(told.contains("t.toml:8:14") && told.contains("not a unit"), "{told}");
     }
 
     #[test]

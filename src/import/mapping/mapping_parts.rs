@@ -25,6 +25,7 @@ pub struct Time {
     /// Times of the files, in the order in which they are given.
     pub list: Vec<f64>,
     /// Seconds from one numbered step to the next, if file names have the number of the step.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub step: Option<f64>,
     /// The file name with `{step}` where the number of the step stands and `*` for what differs; the last number of
     /// the name by default.
@@ -54,8 +55,10 @@ pub enum ZeroState {
 #[serde(deny_unknown_fields)]
 pub struct Hydrostatic {
     /// Its unit weight, Pa per m.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "N/m³"))]
     pub unit_weight: f64,
     /// Height of its table over the base, m; the surface by default.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "m"))]
     pub surface: Option<f64>,
 }
 

@@ -38,13 +38,13 @@ const UNIT_MISTAKES: [(&str, Range<f64>, &str, &str); 3] = [
         "youngs_modulus",
         f64::MIN_POSITIVE..1e2,
         "no soil has a Young's modulus of {} Pa",
-        "give pascals, not kPa or MPa: 1000 kPa is 1.0e6",
+        "write it with its unit, like \"5 MPa\", or in pascals, like 5.0e6",
     ),
     (
         "water_bulk_modulus",
         f64::MIN_POSITIVE..1e3,
         "no liquid has a bulk modulus of {} Pa",
-        "give pascals: water has 2.2e9",
+        "write it with its unit, like \"2.2 GPa\", or in pascals: water has 2.2e9",
     ),
 ];
 

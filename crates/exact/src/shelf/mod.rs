@@ -98,6 +98,8 @@ pub struct ShelfKey {
     pub key: &'static str,
     /// Problems that heed it.
     pub problems: &'static [ShelfProblem],
+    /// SI unit, empty where it has none.
+    pub unit: &'static str,
     /// Sets it.
     pub set: fn(&mut ShelfParameters, f64),
 }
@@ -112,26 +114,31 @@ impl ShelfKey {
         Self {
             key: "material.biot_coefficient",
             problems: OF_BIOT,
+            unit: "",
             set: |shelf, value| shelf.biot_coefficient = Some(value),
         },
         Self {
             key: "material.grain_bulk_modulus",
             problems: OF_BIOT,
+            unit: "Pa",
             set: |shelf, value| shelf.grain_bulk_modulus = Some(value),
         },
         Self {
             key: "drain.radius",
             problems: &[ShelfProblem::Barron, ShelfProblem::BarronFreeStrain],
+            unit: "m",
             set: |shelf, value| shelf.drain_radius = value,
         },
         Self {
             key: "wave.period",
             problems: &[ShelfProblem::Seabed],
+            unit: "s",
             set: |shelf, value| shelf.wave_period = value,
         },
         Self {
             key: "column.initial_stress",
             problems: &[ShelfProblem::DavisRaymond],
+            unit: "Pa",
             set: |shelf, value| shelf.initial_stress = Some(value),
         },
     ];

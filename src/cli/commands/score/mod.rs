@@ -16,6 +16,7 @@ use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::study::asked::Asked;
 use crate::study::overrides::Outputs;
+use crate::study::units::in_si;
 use oedometer_mpm::scene::SceneKind;
 use std::path::PathBuf;
 
@@ -36,7 +37,7 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     preset: Option<Preset>,
     /// Seconds from one numbered step to the next, if file names have the number of the step
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     set_time_step: Option<f64>,
     /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
@@ -67,6 +68,11 @@ pub struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
+}
+
+/// A time, s, as a plain number or with its unit.
+fn seconds(typed: &str) -> Result<f64, String> {
+    typed.parse().or_else(|_| in_si(typed, "s").map_err(|(message, help)| format!("{message}: {help}")))
 }
 
 /// Scores and prints.

@@ -1,0 +1,185 @@
+//! Numbers with a unit, like `"50 kPa"`: read as numbers in SI units where a key has a unit.
+
+use crate::study::diagnostic::nearest;
+use std::f64::consts::PI;
+
+/// A unit that a number may stand with: its names, the prefixes that it takes, the exponents of kilogram, metre and
+/// second, and its size in these as a power of ten times a factor.
+type Symbol = (&'static [&'static str], &'static str, [i32; 3], i32, f64);
+
+/// Prefixes that nobody means are left out: an `mPa` is a mistyped `MPa`.
+const SYMBOLS: [Symbol; 12] = [
+    (&["Pa"], "kMG", [1, -1, -2], 0, 1.0),
+    (&["bar"], "", [1, -1, -2], 5, 1.0),
+    (&["N"], "kM", [1, 1, -2], 0, 1.0),
+    (&["m"], "kcmµu", [0, 1, 0], 0, 1.0),
+    (&["g"], "kM", [1, 0, 0], -3, 1.0),
+    (&["t"], "", [1, 0, 0], 3, 1.0),
+    (&["s", "second", "seconds"], "mµu", [0, 0, 1], 0, 1.0),
+    (&["min", "minute", "minutes"], "", [0, 0, 1], 0, 60.0),
+    (&["h", "hour", "hours"], "", [0, 0, 1], 0, 3600.0),
+    (&["d", "day", "days"], "", [0, 0, 1], 0, 86_400.0),
+    (&["a", "year", "years"], "", [0, 0, 1], 0, 365.25 * 86_400.0),
+    (&["rad", "deg"], "", [0, 0, 0], 0, 1.0),
+];
+
+const PREFIXES: [(char, i32); 7] = [('G', 9), ('M', 6), ('k', 3), ('c', -2), ('m', -3), ('µ', -6), ('u', -6)];
+
+/// Units as messages name them.
+const USUAL: [&str; 24] = [
+    "kPa", "MPa", "GPa", "Pa", "kN/m²", "bar", "m", "cm", "mm", "s", "min", "h", "days", "years", "m/s",
+    "cm/s", "m/day", "m/year", "kg/m³", "g/cm³", "kN/m³", "m/s²", "rad", "rad/s",
+];
+
+/// What a unit is of, and how large it is in SI units: `10^tens · up / down`.
+#[derive(Clone, Copy, PartialEq)]
+struct Unit {
+    dimension: [i32; 3],
+    tens: i32,
+    up: f64,
+    down: f64,
+}
+
+impl Unit {
+    /// Reads a product of powers of symbols, like `kN/m³` or `m/day`.
+    fn read(text: &str) -> Option<Self> {
+        let text = text.replace('²', "2").replace('³', "3");
+        let mut unit = Self { dimension: [0; 3], tens: 0, up: 1.0, down: 1.0 };
+        for (number, product) in text.split('/').enumerate() {
+            for power in product.split([' ', '*', '·']).filter(|power| !power.is_empty()) {
+                let end = power.find(|letter: char| letter.is_ascii_digit() || "^-".contains(letter));
+                let (symbol, exponent) = power.split_at(end.unwrap_or(power.len()));
+                let exponent: i32 =
+                    if exponent.is_empty() { 1 } else { exponent.trim_start_matches('^').parse().ok()? };
+                if exponent.abs() > 9 {
+                    return None;
+                }
+                unit.multiply(symbol, if number == 0 { exponent } else { -exponent })?;
+            }
+        }
+        (!text.trim().is_empty()).then_some(unit)
+    }
+
+    fn multiply(&mut self, symbol: &str, exponent: i32) -> Option<()> {
+        let plain = |names: &[&str], symbol: &str| names.contains(&symbol).then_some(0);
+        let prefixed = |(names, prefixes, ..): &Symbol| {
+            let (prefix, tens) = PREFIXES.iter().find(|(prefix, _)| symbol.starts_with(*prefix))?;
+            let rest = symbol.strip_prefix(*prefix)?;
+            (prefixes.contains(*prefix) && names.first() == Some(&rest)).then_some(*tens)
+        };
+        let whole = SYMBOLS.iter().find_map(|one| Some((one, plain(one.0, symbol)?)));
+        let found = whole.or_else(|| SYMBOLS.iter().find_map(|one| Some((one, prefixed(one)?))));
+        let ((_, _, dimension, own, factor), prefix) = found?;
+        for (sum, one) in self.dimension.iter_mut().zip(dimension) {
+            *sum += exponent * one;
+        }
+        self.tens += exponent * (own + prefix);
+        let factor = if symbol == "deg" { PI / 180.0 } else { *factor };
+        let side = if exponent < 0 { &mut self.down } else { &mut self.up };
+        *side *= (0..exponent.abs()).map(|_| factor).product::<f64>();
+        Some(())
+    }
+}
+
+/// The number in SI units of a text like `50 kPa`, for a key with this SI unit; or what is wrong and what would be
+/// right.
+///
+/// Decimal units shift the decimal point and round nothing: `"1.1 kPa"` is the number `1100`.
+///
+/// # Errors
+/// Where the text is not a number with a unit, or where the unit is of another kind.
+pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
+    let number = leading_number(text);
+    let symbol = text[number.len()..].trim();
+    let wanted = Unit::read(si).map(|unit| unit.dimension);
+    let fits = |name: &&str| Unit::read(name).map(|unit| unit.dimension) == wanted;
+    let usual: Vec<&str> = USUAL.into_iter().filter(fits).collect();
+    let example = usual.first().unwrap_or(&si);
+    let help = |near: &str| {
+        format!(
+            "write a plain number in {si}, or one with its unit in quotes, like \"10 {near}\": {}",
+            usual.join(", ")
+        )
+    };
+    if number.is_empty() || symbol.is_empty() {
+        return Err((format!("`{text}` is not a number with a unit"), help(example)));
+    }
+    let Some(unit) = Unit::read(symbol) else {
+        let near = nearest(symbol, usual.iter().copied()).unwrap_or(example);
+        return Err((format!("the unit `{symbol}` is not known"), help(near)));
+    };
+    if Some(unit.dimension) != wanted {
+        return Err((format!("`{symbol}` is not a unit of what is measured in {si}"), help(example)));
+    }
+    let value = number.parse::<f64>().unwrap_or(f64::NAN) * unit.up / unit.down;
+    let scaled = format!("{value:e}");
+    let shifted = scaled.split_once('e').and_then(|(digits, exponent)| {
+        format!("{digits}e{}", exponent.parse::<i32>().ok()? + unit.tens).parse::<f64>().ok()
+    });
+    match shifted {
+        Some(value) if value.is_finite() => Ok(value),
+        _ => Err((format!("`{text}` is not a finite number"), help(example))),
+    }
+}
+
+/// The number that a text begins with.
+pub fn leading_number(text: &str) -> &str {
+    let mut ends = text.char_indices().map(|(at, _)| at).chain([text.len()]);
+    let end = ends.rfind(|end| text[..*end].trim_end().parse::<f64>().is_ok()).unwrap_or(0);
+    text[..end].trim_end()
+}
+
+/// Whether a text is a number with a unit, of whatever kind.
+pub fn has_unit(text: &str) -> bool {
+    let number = leading_number(text);
+    !number.is_empty() && Unit::read(text[number.len()..].trim()).is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_with_a_unit_is_the_number_that_one_would_type_in_si() {
+        for (text, si, value) in [
+            ("50 kPa", "Pa", 50e3),
+            ("1.1 kPa", "Pa", 1100.0),
+            ("2 GPa", "Pa", 2e9),
+            ("2.2e3 MPa", "Pa", 2.2e9),
+            ("3 kN/m2", "Pa", 3e3),
+            ("3 N/mm²", "Pa", 3e6),
+            ("1 bar", "Pa", 1e5),
+            ("5 m", "m", 5.0),
+            ("12.5cm", "m", 0.125),
+            ("1e-9 m/s", "m/s", 1e-9),
+            ("8.64 m/day", "m/s", 1e-4),
+            ("36 cm/h", "m/s", 1e-4),
+            ("2 days", "s", 172_800.0),
+            ("0.5 h", "s", 1800.0),
+            ("2 min", "s", 120.0),
+            ("20 kN/m3", "N/m³", 20e3),
+            ("2.65 g/cm³", "kg/m³", 2650.0),
+            ("9.81 m/s^2", "m/s²", 9.81),
+            ("180 deg", "rad", PI),
+        ] {
+            assert_eq!(in_si(text, si), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_unit_of_another_kind_and_an_unknown_one_are_refused_with_what_would_be_right() {
+        for (text, si, message, help) in [
+            ("5 m", "Pa", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""),
+            ("5 kpa", "Pa", "the unit `kpa` is not known", "\"10 kPa\""),
+            ("5 mPa", "Pa", "the unit `mPa` is not known", "\"10 MPa\""),
+            ("5 m/s2", "m/s", "`m/s2` is not a unit of what is measured in m/s", "\"10 m/s\""),
+            ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),
+            ("5", "s", "`5` is not a number with a unit", "\"10 s\""),
+            ("1e400 kPa", "Pa", "is not a finite number", ""),
+            ("5 m^99999999999", "m", "is not known", ""),
+        ] {
+            let (told, right) = in_si(text, si).expect_err(text);
+            assert!(told.contains(message) && right.contains(help), "{text}: {told}; {right}");
+        }
+    }
+}
