@@ -112,6 +112,12 @@ impl Case {
             ),
             when(
                 "sets",
+                two && method.has_projection(),
+                "the projection is of a pressure that the points of the skeleton carry",
+                "take the method \"VP\", or `sets = 1`",
+            ),
+            when(
+                "sets",
                 two && method.memory == Memory::Cells,
                 "cell averages need points that carry both phases, and here are two point sets",
                 "take a method without the suffix -cells, or `sets = 1`",

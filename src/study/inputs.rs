@@ -203,6 +203,8 @@ pub struct MethodTable {
     /// Where the pressure is remembered.
     #[serde(default)]
     pub memory: Memory,
+    /// Parameter of a pressure projection over that of its source, 1 where nothing is named.
+    pub projection: Typed<f64>,
     /// Configuration on which the operators live.
     pub configuration: Typed<Configuration>,
 }

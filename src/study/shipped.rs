@@ -15,7 +15,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "value-uncertainty" "terzaghi-methods" "terzaghi-integrators" "any-soil" "any-column" "jittered-points" "work-precision" "terzaghi-moving"
     "single-mode" "dynamic-column" "dynamic-ramp" "dynamic-growth" "dynamic-mode" "standing-wave-mesh"
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
-    "layer-smooth" "mandel" "self-weight" "self-weight-large" "self-weight-options" "self-weight-plane"
+    "layer-smooth" "pressure-projection" "mandel" "self-weight" "self-weight-large" "self-weight-options" "self-weight-plane"
     "self-weight-waves" "at-rest"
     "layered-conductivity" "layered-stiffness" "layered-node" "yield-front-moduli" "sealed-element" "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
     "stability-offset" "stability-flip" "stability-slow-growth" "hard-undrained" "hard-stiff-water"

@@ -60,7 +60,7 @@ fn every_integrator_says_where_its_time_goes_and_solves_the_same() {
 #[test]
 fn semi_implicit_and_u_p_run_for_every_method_and_configuration() {
     let methods = "method = [\"MPM\", \"GIMP-SRI\", \"GIMP-SRI-patch\", \"GC-SRI-patch\", \"CPDI-SRI-patch\", \
-                   \"GIMP-Bbar\", \"GIMP-null-space\", \"TL-GC-SRI-patch\", \
+                   \"GIMP-Bbar\", \"GIMP-null-space\", \"PPP-step\", \"TL-GC-SRI-patch\", \
                    { basis = \"cpgimp\", strain = \"cmpm\", pressure = \"sri\", recovery = \"patch\", configuration = \"updated\" }]";
     for rest in [
         "integrator = [\"semi-implicit\"]\nformulation = [\"v-w\", \"u-p\"]\ntime_step = [{ stable = 0.05 }]",

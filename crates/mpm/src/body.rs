@@ -158,7 +158,7 @@ pub struct Body<const D: usize> {
     /// `R`, from the sites of the divergence to the points.
     pub recovery: RecoveryOperator<D>,
     /// Values at the sites on their way to the points: pressure increments, Pa, or rates of dilation, 1/s;
-    /// `[cell]` or `[point]`.
+    /// `[cell]`, `[point]` or `[node]`.
     pub site_values: Vec<f64>,
     /// The skeleton's volumetric rate at the points, 1/s, where the method is B-bar.
     pub dilation_rates: Vec<f64>,
@@ -191,7 +191,11 @@ impl<const D: usize> Body<D> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let sites = if method.pressure.is_by_cells() { grid.cell_count() } else { count };
+        let sites = match (method.pressure.is_by_cells(), method.has_projection()) {
+            (true, _) => grid.cell_count(),
+            (false, true) => grid.node_count(),
+            (false, false) => count,
+        };
         let domains = Domains::of(method, configuration, &points);
         let strains_vertically =
             load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none() && soils.len() == 1;

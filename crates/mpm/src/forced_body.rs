@@ -70,6 +70,7 @@ impl<const D: usize> Body<D> {
             let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));
             dt * body.coupling_at(place, porosity) * (body.source_at(place) - gained)
         });
+        self.project_site_values();
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;
         self.recovery

@@ -103,13 +103,38 @@ pub enum Recovery {
     /// Of values at the points, without the part that no nodal force feels: null-space filter by
     /// cells (Gritton & Berzins 2017; Tran & Sołowski 2019).
     NullSpace,
+    /// A nodal field stabilised by polynomial pressure projection (Dohrmann & Bochev 2004), with the parameter
+    /// `1/(2G)` (White & Borja 2008).
+    Ppp,
+    /// The stabilised field with the parameter of Sun, Ostien & Salinger (2013), which falls with the time step.
+    PppStep,
+    /// The stabilised field with the least parameter that makes the matrix of a column monotone (Rodrigo et al. 2016;
+    /// Monforte et al. 2019).
+    PppMonotone,
 }
 
-words!(Recovery: Constant "constant", Patch "patch", PatchSoils "patch-soils", Nodal "nodal", NullSpace "null-space");
+words!(Recovery: Constant "constant",
+    Patch "patch",
+    PatchSoils "patch-soils",
+    Nodal "nodal",
+    NullSpace "null-space",
+    Ppp "ppp",
+    PppStep "ppp-step",
+    PppMonotone "ppp-monotone",);
 
 impl Recovery {
-    /// Why a recovery does not go with a place of the divergence, where it does not.
-    pub fn refuses(self, pressure: PressureIntegration) -> Option<&'static str> {
+    /// Why a recovery does not go with a place of the divergence or a strain gradient, where it does not.
+    pub fn refuses(self, pressure: PressureIntegration, strain: StrainGradient) -> Option<&'static str> {
+        if self.is_projected() && pressure.is_by_cells() {
+            return Some(
+                "the projection is of a pressure at the nodes, whose divergence is taken at the points",
+            );
+        }
+        if self.is_projected() && strain.is_bbar() {
+            return Some(
+                "B-bar takes the volumetric rate of a point or cell, and a projection has it at the nodes",
+            );
+        }
         match (self, pressure.is_by_cells()) {
             (Self::NullSpace, true) => Some("a single value in a cell has no null space"),
             (Self::Patch | Self::PatchSoils, false) => {
@@ -117,6 +142,11 @@ impl Recovery {
             }
             _ => None,
         }
+    }
+
+    /// Whether it is a stabilised nodal field.
+    pub fn is_projected(self) -> bool {
+        matches!(self, Self::Ppp | Self::PppStep | Self::PppMonotone)
     }
 }
 
@@ -182,15 +212,30 @@ pub struct Method {
     /// Where the state is kept while points move.
     #[serde(default, skip_serializing_if = "Memory::is_points")]
     pub memory: Memory,
+    /// Parameter of a pressure projection over that of its source, in thousandths.
+    #[serde(default = "whole", skip_serializing_if = "is_whole")]
+    pub projection: u32,
     /// Configuration of the shape functions, where the method insists on one.
     pub configuration: Option<Configuration>,
 }
 
+/// The projection's own parameter, in thousandths.
+pub const WHOLE_PROJECTION: u32 = 1000;
+
+fn whole() -> u32 {
+    WHOLE_PROJECTION
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_whole(thousandths: &u32) -> bool {
+    *thousandths == WHOLE_PROJECTION
+}
+
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 15] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 18] = {
     use Basis::{Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
-    use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils};
+    use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp, PppMonotone, PppStep};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
     [
         ("MPM", Hat, Standard, Points, Constant),
@@ -205,6 +250,9 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 15] 
         ("GIMP-mean", Cpgimp, Standard, Mean, Constant),
         ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
         ("VP", Cpgimp, Standard, Points, Nodal),
+        ("PPP", Cpgimp, Standard, Points, Ppp),
+        ("PPP-step", Cpgimp, Standard, Points, PppStep),
+        ("PPP-monotone", Cpgimp, Standard, Points, PppMonotone),
         ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
         ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
         ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
@@ -230,6 +278,7 @@ impl Method {
         pressure: PressureIntegration::Points,
         recovery: Recovery::Constant,
         memory: Memory::Points,
+        projection: WHOLE_PROJECTION,
         configuration: None,
     };
 
@@ -261,8 +310,7 @@ impl Method {
             (true, Basis::Cpgimp) => Basis::Ugimp,
             (true, _) => return None,
         };
-        let memory = Memory::Points;
-        Some(Self { basis, strain, pressure, recovery, memory, configuration: None })
+        Some(Self { basis, strain, pressure, recovery, ..Self::STANDARD })
     }
 
     /// Every name that `named` knows.
@@ -286,6 +334,9 @@ impl Method {
         if (self.pressure, self.recovery) != (PressureIntegration::Points, Recovery::Constant) {
             choices = format!("{choices}+{}", self.recovery.name());
         }
+        if self.projection != WHOLE_PROJECTION {
+            choices = format!("{choices}({})", f64::from(self.projection) / f64::from(WHOLE_PROJECTION));
+        }
         match self.memory {
             Memory::Points => choices,
             Memory::Cells => format!("{choices}+{}", self.memory.name()),
@@ -299,7 +350,13 @@ impl Method {
 
     /// Whether the pressure is a nodal field of its own.
     pub fn has_nodal_pressure(&self) -> bool {
-        self.pressure == PressureIntegration::Points && self.recovery == Recovery::Nodal
+        self.pressure == PressureIntegration::Points
+            && (self.recovery == Recovery::Nodal || self.recovery.is_projected())
+    }
+
+    /// Whether the pressure is a nodal field with a stabilised storage: its sites are nodes.
+    pub fn has_projection(&self) -> bool {
+        self.pressure == PressureIntegration::Points && self.recovery.is_projected()
     }
 
     /// Whether the domains of the points follow the deformation.
@@ -366,8 +423,11 @@ mod tests {
             pressure: PressureIntegration::Sri,
             recovery: Recovery::Patch,
             memory: Memory::Points,
+            projection: WHOLE_PROJECTION,
             configuration: Some(Configuration::Updated),
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
+        let weaker = Method { projection: 125, ..Method::named("PPP").expect("a known method") };
+        assert_eq!(weaker.to_string(), "cpgimp+standard+points+ppp(0.125)");
     }
 }

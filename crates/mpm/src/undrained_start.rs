@@ -7,8 +7,10 @@ use crate::assembled::stiffness::pressure_stiffness;
 use crate::body::Body;
 use crate::direct_solver::Singular;
 use crate::direct_solver::system::{Factors, SystemMatrix};
+use crate::implicit::linear_system::LinearSystem;
 use crate::implicit::unknowns::Unknowns;
 use crate::method::Configuration;
+use crate::operators::projection::ProjectedStorage;
 use crate::operators::volumetric::VolumetricRows;
 use crate::time_limit::TimeLimit;
 use oedometer_soil::tensor::{Tensor, Vector};
@@ -19,6 +21,9 @@ impl<const D: usize> Body<D> {
     /// # Errors
     /// When its stiffness is singular, because nothing holds the body, or the time is over.
     pub fn settle_undrained(&mut self, threads: usize, time_limit: TimeLimit) -> Result<(), Singular> {
+        if self.method.has_projection() {
+            return self.settle_with_pressures(threads, time_limit);
+        }
         let rows = self.volumetric_rows();
         let mut stiffness = self.skeleton_stiffness(&rows);
         stiffness.add(&pressure_stiffness(&self.coupled_pressure_forces(&rows), &rows.divergence));
@@ -28,8 +33,6 @@ impl<const D: usize> Body<D> {
         });
         unknowns.visit_blocks(&stiffness, |row, column, value| matrix.add(row, column, value));
         drop(stiffness);
-        let mut factors = Factors::of_shape(&matrix, threads, time_limit);
-        factors.factor(&matrix)?;
         self.map_forces();
         let mut rest = vec![0.0; unknowns.count];
         for (numbers, force) in unknowns.displacement.iter().zip(&self.nodes.mixture_force) {
@@ -39,21 +42,38 @@ impl<const D: usize> Body<D> {
                 }
             }
         }
-        let mut solution = vec![0.0; unknowns.count];
-        // Water that is nearly incompressible costs a sparse factorisation, with few pivots to choose from, some digits;
-        // a second solve with what is left of the forces brings them back.
-        for _ in 0..2 {
-            let mut correction = rest.clone();
-            factors.solve(&mut correction);
-            matrix.subtract_product(&correction, &mut rest);
-            for (value, correction) in solution.iter_mut().zip(&correction) {
-                *value += correction;
-            }
-        }
+        let mut factors = Factors::of_shape(&matrix, threads, time_limit);
+        factors.factor(&matrix)?;
+        let solution = solved_twice(&mut factors, &matrix, rest);
         let displacement = |number: Option<usize>| number.map_or(0.0, |number| solution[number]);
         let field: Vec<Vector<D>> =
             unknowns.displacement.iter().map(|numbers| numbers.map(displacement)).collect();
         self.displace_points(&unknowns.rows, &field, &field, &field);
+        self.follow_points();
+        Ok(())
+    }
+
+    /// The undrained equilibrium with the pressures of the sites as unknowns: a projected storage is no pressure times
+    /// modulus site by site.
+    fn settle_with_pressures(&mut self, threads: usize, time_limit: TimeLimit) -> Result<(), Singular> {
+        let system = LinearSystem::of(self);
+        let (unknowns, scales) = (&system.unknowns, &system.unknowns.scales);
+        let mut matrix = system.fixed.clone();
+        system.set_matrix(&mut matrix, 0.0, self.projection_parameter(0.0));
+        let mut rest = system.start_residual.clone();
+        for unknown in &unknowns.pressure {
+            rest[*unknown] = 0.0;
+        }
+        let mut factors = Factors::of_shape(&matrix, threads, time_limit);
+        factors.factor(&matrix)?;
+        let solution = solved_twice(&mut factors, &matrix, rest);
+        let displacement =
+            |number: Option<usize>| number.map_or(0.0, |number| scales.length * solution[number]);
+        let field: Vec<Vector<D>> =
+            unknowns.displacement.iter().map(|numbers| numbers.map(displacement)).collect();
+        let pressures: Vec<f64> =
+            unknowns.pressure.iter().map(|unknown| scales.pressure * solution[*unknown]).collect();
+        self.change_points(&unknowns.rows, &field, &pressures, &field);
         self.follow_points();
         Ok(())
     }
@@ -69,6 +89,9 @@ impl<const D: usize> Body<D> {
         let mut pressures = rows.at_sites(flux);
         for (value, coupling) in pressures.iter_mut().zip(&rows.coupling) {
             *value *= -coupling;
+        }
+        if let Some(mut storage) = ProjectedStorage::of(self, &rows.sites, &rows.projection) {
+            storage.project(&mut pressures);
         }
         self.change_points(rows, strained, &pressures, displacements);
     }
@@ -119,4 +142,19 @@ impl<const D: usize> Body<D> {
         }
         (gradient, dilation)
     }
+}
+
+/// The solution of a factored system. Water that is nearly incompressible costs a sparse factorisation, with few pivots to
+/// choose from, some digits; a second solve with what is left of the right-hand side brings them back.
+fn solved_twice(factors: &mut Factors, matrix: &SystemMatrix, mut rest: Vec<f64>) -> Vec<f64> {
+    let mut solution = vec![0.0; rest.len()];
+    for _ in 0..2 {
+        let mut correction = rest.clone();
+        factors.solve(&mut correction);
+        matrix.subtract_product(&correction, &mut rest);
+        for (value, correction) in solution.iter_mut().zip(&correction) {
+            *value += correction;
+        }
+    }
+    solution
 }

@@ -7,7 +7,7 @@ use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
 use crate::study::reading::Placed;
-use oedometer_mpm::method::{Method, PressureIntegration, Recovery};
+use oedometer_mpm::method::{Method, PressureIntegration, Recovery, WHOLE_PROJECTION};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::conductivity::ConductivityMean;
@@ -96,13 +96,14 @@ impl Checker<'_> {
                 return None;
             }
         };
-        if let (Some(why), Some(word)) = (recovery.refuses(pressure), &table.recovery) {
+        if let (Some(why), Some(word)) = (recovery.refuses(pressure, strain), &table.recovery) {
             self.complain(word.span(), why, "leave the key out, or choose another");
             return None;
         }
+        let Some(projection) = self.projection_of(table, recovery) else { return None };
         let configuration = table.configuration.as_deref().copied();
         let place = table.configuration.as_ref().map_or(span, Placed::span);
-        let method = Method { basis, strain, pressure, recovery, memory, configuration };
+        let method = Method { basis, strain, pressure, recovery, memory, projection, configuration };
         self.method_fits(Solver::Own(method), place, scene)
     }
 
@@ -110,6 +111,28 @@ impl Checker<'_> {
     pub(super) fn entered(&mut self, value: Value, span: TextSpan, scene: SceneKind) -> Option<Value> {
         let Value::Method(method) = value else { return Some(value) };
         self.method_fits(method, span, scene).map(Value::Method)
+    }
+
+    /// Parameter of a method's projection over that of its source, in thousandths.
+    fn projection_of(&mut self, table: &MethodTable, recovery: Recovery) -> Option<u32> {
+        let Some(typed) = &table.projection else { return Some(WHOLE_PROJECTION) };
+        let refusal = if !recovery.is_projected() {
+            ("this recovery has no projection", "leave `projection` out, or take the recovery \"ppp\"")
+        } else if !(0.001..=1000.0).contains(&**typed) {
+            (
+                "the parameter of a projection is between 0.001 and 1000 of its source's",
+                "take 1, or leave it out",
+            )
+        } else {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "at most a million"
+            )]
+            return Some((1000.0 * **typed).round() as u32);
+        };
+        self.complain(typed.span(), refusal.0, refusal.1);
+        None
     }
 
     /// The method, where its scene allows it.

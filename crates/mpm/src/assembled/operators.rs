@@ -3,6 +3,7 @@
 use crate::assembled::constraints::{SlidingRows, TiedRows};
 use crate::assembled::stiffness::entry_of;
 use crate::body::Body;
+use crate::operators::projection::ProjectedStorage;
 use crate::operators::volumetric::VolumetricRows;
 use oedometer_soil::tensor::{Tensor, Vector};
 
@@ -19,6 +20,8 @@ pub struct FrozenOperators<const D: usize> {
     pub divergence: Vec<Vec<(usize, Vector<D>)>>,
     /// `A Q`: force of a unit dilation of each site with its sign turned, `[row] → (site, N)`.
     pub pressure_force: Vec<Vec<(usize, Vector<D>)>>,
+    /// What is solved between `D` and `A Q` where the storage is projected.
+    pub storage: Option<ProjectedStorage>,
     /// `K_σ`: force of the effective stress over the displacements with its sign turned,
     /// `[row] → (row, N/m)`.
     pub skeleton_force: Vec<Vec<(usize, Tensor<D>)>>,
@@ -51,6 +54,7 @@ impl<const D: usize> FrozenOperators<D> {
         Self {
             free: nodes.iter().map(|node| [fields.free[*node], fields.water_free[*node]]).collect(),
             divergence: volumetric.divergence.iter().map(|row| numbered(row, &number)).collect(),
+            storage: ProjectedStorage::of(body, &volumetric.sites, &volumetric.projection),
             pressure_force: nodes.iter().map(|node| forces[*node].clone()).collect(),
             skeleton_force: nodes.iter().map(|node| numbered(&skeleton[*node], &number)).collect(),
             projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),

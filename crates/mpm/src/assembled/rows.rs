@@ -7,6 +7,7 @@
 use crate::assembled::operators::FrozenOperators;
 use crate::assembled::state::{Displacements, LANES, Lanes, MARGIN};
 use crate::assembled::stiffness::pressure_stiffness;
+use crate::operators::projection::ProjectedStorage;
 use crate::operators::sparse_rows::SparseRows;
 use oedometer_soil::tensor::{Tensor, Vector};
 
@@ -69,10 +70,10 @@ struct BandBlock<const D: usize> {
 pub struct BandsWithin<'a, const D: usize, const R: usize>(pub &'a BandedStorage<D>);
 
 impl<const D: usize> BandedStorage<D> {
-    /// Takes the rows of a frozen body; `None` where one reaches beyond the band, or a component of its node
-    /// is held.
+    /// Takes the rows of a frozen body; `None` where one reaches beyond the band, a component of its node is held, or a
+    /// projection reaches everywhere.
     pub fn of(operators: &FrozenOperators<D>) -> Option<Self> {
-        if operators.free.iter().any(|free| *free != [[1.0; D]; 2]) {
+        if operators.storage.is_some() || operators.free.iter().any(|free| *free != [[1.0; D]; 2]) {
             return None;
         }
         let projection_reach = reach(&operators.projection, |weight| *weight != 0.0)?;
@@ -199,6 +200,8 @@ pub struct SparseStorage<const D: usize> {
     pressure_force: SparseRows<Vector<D>>,
     skeleton_force: SparseRows<Tensor<D>>,
     projection: SparseRows<f64>,
+    /// What is solved between the two factors where the storage is projected, and the moduli `Q` of the sites, Pa.
+    storage: Option<(ProjectedStorage, Vec<f64>)>,
     /// One where a component of a phase is free, else zero, by row.
     free: Vec<[Vector<D>; 2]>,
 }
@@ -221,13 +224,17 @@ impl<const D: usize> SparseStorage<D> {
             pressure_force: placed(&operators.pressure_force, 0),
             skeleton_force: placed(&operators.skeleton_force, MARGIN),
             projection: placed(&operators.projection, MARGIN),
+            storage: operators
+                .storage
+                .clone()
+                .map(|storage| (storage, operators.volumetric.coupling.clone())),
             free,
         }
     }
 
-    /// Dilation at the sites, `D U_f`.
+    /// Dilation at the sites, `D U_f`; of a projected storage that which makes its pressures.
     #[inline(always)]
-    pub fn dilate(&self, flux_displacement: &[Vector<D>], dilation: &mut [f64]) {
+    pub fn dilate(&mut self, flux_displacement: &[Vector<D>], dilation: &mut [f64]) {
         for (site, dilation) in dilation.iter_mut().enumerate() {
             let mut sum = 0.0;
             for (column, coefficients) in self.divergence.row(site) {
@@ -237,6 +244,11 @@ impl<const D: usize> SparseStorage<D> {
                 }
             }
             *dilation = sum;
+        }
+        if let Some((storage, coupling)) = &mut self.storage {
+            dilation.iter_mut().zip(&*coupling).for_each(|(dilation, coupling)| *dilation *= coupling);
+            storage.project(dilation);
+            dilation.iter_mut().zip(&*coupling).for_each(|(dilation, coupling)| *dilation /= coupling);
         }
     }
 

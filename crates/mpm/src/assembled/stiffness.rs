@@ -222,7 +222,9 @@ mod tests {
 
     #[test]
     fn the_stiffness_is_what_the_forces_do() {
-        for name in Method::names().iter().filter(|name| *name != "MPM" && !name.starts_with("TL-")) {
+        // A projected storage makes pressures of dilations by a solution and not site by site.
+        let is_tried = |name: &&String| *name != "MPM" && !name.starts_with("TL-") && !name.contains("PPP");
+        for name in Method::names().iter().filter(is_tried) {
             let method = Method::named(name).expect("a known method");
             let column = Column { load: 1.0, ..Column::layer() };
             let soil = Material { water_bulk_modulus: 1e7, ..Material::default() };

@@ -123,6 +123,7 @@ impl<const D: usize> Body<D> {
             let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
             -dt * body.coupling_at(place, porosity) * rate
         });
+        self.project_site_values();
         let at = points_in_cells!(self);
         let pressures = &mut self.points.pressure;
         self.recovery

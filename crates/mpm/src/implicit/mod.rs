@@ -12,7 +12,7 @@
 
 mod guess;
 pub mod linear;
-mod linear_system;
+pub(crate) mod linear_system;
 pub(crate) mod newton;
 mod residual;
 mod secants;

@@ -8,7 +8,7 @@ use crate::implicit::secants::Secants;
 use crate::implicit::tangent::{DIFFERENCE, Pattern};
 use crate::implicit::trial::{Skeleton, Trial};
 use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
-use crate::method::{PressureIntegration, Recovery};
+use crate::method::PressureIntegration;
 use crate::run::integrator::StepBound;
 use crate::run::profile::{Phase, enter};
 use crate::run::results::outcome::FailureKind;
@@ -343,7 +343,7 @@ impl<const D: usize> NewtonStepper<D> {
         let is_known = D > 1
             && body.configuration.moves_points()
             && body.method.pressure == PressureIntegration::Points
-            && body.method.recovery != Recovery::Nodal;
+            && !body.method.has_nodal_pressure();
         if !is_known || failure.kind == FailureKind::Stopped {
             return failure;
         }

@@ -106,12 +106,17 @@ impl<const D: usize> Trial<D> {
     fn storage(&mut self, increments: &[f64], start: &StageStart<D>, residual: &mut [f64]) {
         self.body.evaluate_volume_rates();
         let (body, unknowns) = (&self.body, &self.unknowns);
+        let changed =
+            |number: usize| unknowns.scales.pressure * (increments[number] - start.unknowns[number]);
         for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
             let porosity = body.porosity_of(*place);
-            let stored = body.storage_of(*place, porosity)
-                * unknowns.scales.pressure
-                * (increments[*number] - start.unknowns[*number]);
+            let stored = body.storage_of(*place, porosity) * changed(*number);
             residual[*number] = stored + start.duration * body.site_values[*place];
+        }
+        let parameter = body.projection_parameter(start.duration);
+        for (number, row) in unknowns.pressure.iter().zip(&unknowns.rows.projection) {
+            let projected = |(site, value): &(usize, f64)| value * changed(unknowns.pressure[*site]);
+            residual[*number] += parameter * row.iter().map(projected).sum::<f64>();
         }
     }
 }

@@ -172,7 +172,9 @@ fn dependencies<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<V
     let is_by_cells = body.method.pressure.is_by_cells();
     for (point, felt) in by_point.iter().enumerate() {
         let place = if is_by_cells { body.cells.of_point[point] } else { point };
-        let Some(site) = unknowns.rows.site_of_place[place] else { continue };
+        // Sites that are nodes depend on the points around them, which `by_node` has below.
+        let site = unknowns.rows.site_of_place.get(place).copied().flatten();
+        let Some(site) = site.filter(|_| !body.method.has_projection()) else { continue };
         let row = &mut rows[unknowns.pressure[site]];
         if !row.ends_with(felt) {
             row.extend_from_slice(felt);

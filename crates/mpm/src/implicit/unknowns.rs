@@ -63,6 +63,7 @@ impl<const D: usize> Unknowns<D> {
     pub fn of(body: &Body<D>) -> Self {
         let rows = body.volumetric_rows();
         let position = |site: &usize| match body.method.pressure {
+            PressureIntegration::Points if body.method.has_projection() => body.grid.node_position(*site),
             PressureIntegration::Points => body.points.position[*site],
             PressureIntegration::Sri | PressureIntegration::Mean => body.grid.cell_centre(*site),
         };

@@ -3,6 +3,7 @@
 
 pub mod basis;
 pub mod corners;
+pub mod projection;
 pub mod recovery;
 pub mod sparse_rows;
 pub mod stencil;

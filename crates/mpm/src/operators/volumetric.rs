@@ -6,6 +6,7 @@
 
 use crate::body::Body;
 use crate::method::PressureIntegration;
+use crate::operators::projection::SiteRows;
 use crate::operators::recovery::points_in_cells;
 use oedometer_soil::tensor::Vector;
 
@@ -25,6 +26,8 @@ pub struct VolumetricRows<const D: usize> {
     pub coupling: Vec<f64>,
     /// Sites that each point recovers its value from, with their weights.
     pub recovery: Vec<Vec<(usize, f64)>>,
+    /// What a projection adds to the storage of each site, over its parameter; nothing without one.
+    pub projection: SiteRows,
 }
 
 /// A place where a divergence is taken.
@@ -53,9 +56,11 @@ impl<const D: usize> Body<D> {
         (cell, self.points.volume(point) / self.cells.volume(cell))
     }
 
-    /// Porosity of a cell or point that is a site.
+    /// Porosity of a cell, point or node that is a site.
     pub fn porosity_of(&self, place: usize) -> f64 {
-        if self.method.pressure.is_by_cells() {
+        if self.method.has_projection() {
+            self.nodes.porosity[place]
+        } else if self.method.pressure.is_by_cells() {
             self.cells.porosity[place]
         } else {
             self.soil_of(place).porosity_at(self.points.volume_ratio[place])
@@ -96,12 +101,25 @@ impl<const D: usize> Body<D> {
     }
 
     /// `D` in place: fills `site_values` with what a function gives at each site from a place and the porosity
-    /// there. Sites are points, cells at their centres, or cells as means over their points, weighted with
-    /// volume.
+    /// there. Sites are points, cells at their centres, cells as means over their points, weighted with volume, or
+    /// nodes as means over the points around them.
     #[inline]
     pub fn evaluate_sites(&mut self, value: impl Fn(&Self, Place, f64) -> f64) {
         let mut sites = std::mem::take(&mut self.site_values);
         match self.method.pressure {
+            PressureIntegration::Points if self.method.has_projection() => {
+                sites.fill(0.0);
+                for point in 0..self.points.len() {
+                    let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+                    let given = self.points.volume(point) * value(self, Place::Point(point), porosity);
+                    self.basis.visit(self.grid.node_stride(), point, |node, share, _| {
+                        sites[node] += share * given;
+                    });
+                }
+                for (node, site) in sites.iter_mut().enumerate() {
+                    *site = if self.nodes.is_active(node) { *site / self.nodes.volume[node] } else { 0.0 };
+                }
+            }
             PressureIntegration::Points => {
                 for (point, site) in sites.iter_mut().enumerate() {
                     let porosity = self.soil_of(point).porosity_at(self.points.volume_ratio[point]);
@@ -154,11 +172,12 @@ impl<const D: usize> Body<D> {
 
     /// `D` and `R` of the body's method as rows; gradients are those of small strain.
     pub fn volumetric_rows(&self) -> VolumetricRows<D> {
-        let is_by_cells = self.method.pressure.is_by_cells();
-        let places = if is_by_cells { self.grid.cell_count() } else { self.points.len() };
-        let sites: Vec<usize> =
-            if is_by_cells { self.cells.occupied().collect() } else { (0..places).collect() };
-        let mut site_of_place = vec![None; places];
+        let sites: Vec<usize> = match self.method.pressure {
+            PressureIntegration::Points if self.method.has_projection() => self.nodes.active.clone(),
+            PressureIntegration::Points => (0..self.points.len()).collect(),
+            PressureIntegration::Sri | PressureIntegration::Mean => self.cells.occupied().collect(),
+        };
+        let mut site_of_place = vec![None; self.site_values.len()];
         for (site, place) in sites.iter().enumerate() {
             site_of_place[*place] = Some(site);
         }
@@ -171,6 +190,7 @@ impl<const D: usize> Body<D> {
             divergence: self.divergence_rows(&sites, &site_of_place),
             coupling: sites.iter().map(|place| self.coupling_of(*place, self.porosity_of(*place))).collect(),
             recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
+            projection: self.projection_rows(&sites, &site_of_place),
             sites,
             site_of_place,
         }
@@ -179,6 +199,18 @@ impl<const D: usize> Body<D> {
     fn divergence_rows(&self, sites: &[usize], site_of_place: &[Option<usize>]) -> Vec<VectorRow<D>> {
         let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
+            PressureIntegration::Points if self.method.has_projection() => {
+                let mut rows = vec![VectorRow::new(); sites.len()];
+                for point in 0..self.points.len() {
+                    for (site, value) in self.sites_around(point, site_of_place) {
+                        let share = value * self.points.volume(point) / self.nodes.volume[sites[site]];
+                        for (node, gradient) in at_point(point) {
+                            accumulate(&mut rows[site], node, &gradient.map(|component| share * component));
+                        }
+                    }
+                }
+                rows
+            }
             PressureIntegration::Points => sites.iter().map(|point| at_point(*point)).collect(),
             PressureIntegration::Sri => {
                 sites.iter().map(|cell| self.cells.centre_divergence_row(&self.grid, *cell)).collect()

@@ -38,7 +38,7 @@ fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
 
 #[test]
 fn the_assembled_column_is_the_point_wise_step_to_round_off() {
-    for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"] {
+    for name in ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch", "PPP"] {
         for (scheme, drag, flip, mapping_back) in [
             (Scheme::ForwardEuler, Drag::Explicit, 1.0, true),
             (Scheme::ForwardEuler, Drag::Implicit, 1.0, false),
@@ -73,7 +73,7 @@ fn the_assembled_column_is_the_point_wise_step_to_round_off() {
 #[test]
 fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
     for (share, stable) in [(0.97, true), (1.03, false)] {
-        for name in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch"] {
+        for name in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch", "PPP"] {
             for mapping_back in [true, false] {
                 let settings = ExplicitSettings { mapping_back, ..ExplicitSettings::default() };
                 let mut schedule = schedule(Kernel::Fastest, settings, 0.3);

@@ -8,6 +8,7 @@ mod nodal;
 mod null_space;
 mod patch;
 
+use crate::assembled::stiffness::entry_of;
 use crate::method::{Method, Recovery};
 use crate::operators::recovery::nodal::{NodalMeans, Sites};
 use crate::operators::recovery::null_space::CellPlanes;
@@ -41,6 +42,17 @@ impl<const D: usize> PointsInCells<'_, D> {
     pub fn volume(&self, point: usize) -> f64 {
         self.volumes[0][point] * self.volumes[1][point]
     }
+
+    /// Nodes around a point, ascending, with the values of their shape functions there.
+    pub fn around(&self, point: usize) -> Vec<(usize, f64)> {
+        let mut row = Vec::new();
+        self.basis.visit(self.grid.node_stride(), point, |node, value, _| {
+            if value != 0.0 {
+                *entry_of(&mut row, node, 0.0) += value;
+            }
+        });
+        row
+    }
 }
 
 /// [`PointsInCells`] of a body, field by field: what is recovered may be another field of it.
@@ -71,6 +83,8 @@ pub enum RecoveryOperator<const D: usize> {
     Nodal(NodalMeans),
     /// Values at the points without the part that no nodal force feels.
     NullSpace(CellPlanes<D>),
+    /// The sites are the nodes, whose values are interpolated.
+    Interpolated,
 }
 
 impl<const D: usize> RecoveryOperator<D> {
@@ -80,9 +94,10 @@ impl<const D: usize> RecoveryOperator<D> {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
             (false, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Points, grid.node_count())),
             (false, Recovery::Constant | Recovery::Patch | Recovery::PatchSoils) => Self::Own,
-            (true, Recovery::Constant | Recovery::NullSpace) => Self::Constant,
+            (false, Recovery::Ppp | Recovery::PppStep | Recovery::PppMonotone) => Self::Interpolated,
             (true, Recovery::Patch | Recovery::PatchSoils) => Self::Patch(PatchRows::new(points, grid)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Cells, grid.node_count())),
+            (true, _) => Self::Constant,
         }
     }
 
@@ -122,6 +137,9 @@ impl<const D: usize> RecoveryOperator<D> {
                 planes.fit(at, |point| sites[point]);
                 each(out, put, |point| planes.value(at, point));
             }
+            Self::Interpolated => each(out, put, |point| {
+                at.around(point).iter().map(|(node, value)| value * sites[*node]).sum()
+            }),
         }
     }
 
@@ -139,6 +157,7 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Patch(rows) => points.map(|point| rows.row(at.grid, point)).collect(),
             Self::Nodal(means) => means.rows(at),
             Self::NullSpace(_) => null_space::rows(at),
+            Self::Interpolated => points.map(|point| at.around(point)).collect(),
         }
     }
 }
@@ -198,11 +217,12 @@ pub(crate) mod tests {
     fn every_way_is_one_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();
-        for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space", "VP"] {
+        for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space", "VP", "PPP"] {
             let method = Method::named(name).expect("a known method");
             let mut operator = RecoveryOperator::of(method, at.grid, at.positions.len());
             operator.build(at.grid, at.cells);
             let count = if method.pressure.is_by_cells() { at.grid.cell_count() } else { at.positions.len() };
+            let count = if method.has_projection() { at.grid.node_count() } else { count };
             let sites: Vec<f64> = (0..count).map(|site| (2.3 * site as f64).cos()).collect();
             let mut in_place = vec![0.0; at.positions.len()];
             operator.recover(&at, &sites, &mut in_place, |place, value| *place = value);

@@ -1,0 +1,211 @@
+//! Polynomial pressure projection (PPP): what stabilises a nodal pressure of the order of the velocities (Dohrmann & Bochev
+//! 2004; in poromechanics White & Borja 2008, by material points Zhao & Choo 2020, Eqs 73–79; docs/theory.md, Eq. 37).
+//!
+//! ```text
+//! V_j (n_j/K_w) ṗ_j + τ Σ_k P_jk ṗ_k = −Σ_p N_jp V_p (∇·f)_p,     P = Σ_p V_p (N_p − N̄_c)(N_p − N̄_c)ᵀ,
+//! N̄_c = Σ_{p in c} V_p N_p / Σ_{p in c} V_p
+//! ```
+//!
+//! `P` sees only what a pressure has beyond its mean over each cell: constants are free of it, a smooth field feels it with
+//! the square of the cell size, and the checkerboard that no divergence sees feels it in full.
+
+use crate::assembled::stiffness::entry_of;
+use crate::body::Body;
+use crate::direct_solver::system::{Factors, SystemMatrix};
+use crate::method::Recovery;
+use crate::operators::recovery::points_in_cells;
+use crate::time_limit::TimeLimit;
+use oedometer_soil::elementary;
+
+/// Rows of a matrix between sites.
+pub type SiteRows = Vec<Vec<(usize, f64)>>;
+
+impl<const D: usize> Body<D> {
+    /// Parameter `τ` of the method's projection for a step or stage of a duration, s; 1/Pa.
+    ///
+    /// - `ppp`: `1/(2G)` (White & Borja 2008).
+    /// - `ppp-step`: `(3/M) [1 + tanh(2 − 12 c_v Δt/h²)]/2` with `M = E_oed` (Sun, Ostien & Salinger 2013): Darcy's flow
+    ///   itself damps the checkerboard in steps longer than `h²/(6 c_v)` (Vermeer & Verruijt 1981).
+    /// - `ppp-monotone`: `max(0, 2/M − 12 k Δt/(γ_w h²))`, the least for which the matrix of a column has no positive entry
+    ///   off its diagonal (Rodrigo, Gaspar, Hu & Zikatanov 2016): of `D K⁻¹ Dᵀ` `h/(6M)`, of the flow `−k Δt/(γ_w h)`,
+    ///   of `τ P` `−τ h/12`. Monforte et al. (2019) give `M` the inertia of the mixture too.
+    pub(crate) fn projection_parameter(&self, duration: f64) -> f64 {
+        let (soil, modulus) = (&self.material, self.material.oedometric_modulus());
+        let area = self.grid.cell_size * self.grid.cell_size;
+        let flow = 12.0 * soil.coefficient_of_consolidation() * duration / area;
+        let source = match self.method.recovery {
+            Recovery::Ppp => (1.0 + soil.poissons_ratio) / soil.youngs_modulus,
+            Recovery::PppStep => 3.0 / modulus / (1.0 + elementary::exp(2.0 * flow - 4.0)),
+            Recovery::PppMonotone => (2.0 - flow).max(0.0) / modulus,
+            Recovery::Constant
+            | Recovery::Patch
+            | Recovery::PatchSoils
+            | Recovery::Nodal
+            | Recovery::NullSpace => 0.0,
+        };
+        source * f64::from(self.method.projection) / 1000.0
+    }
+
+    /// The nodes that carry a pressure of their own, and the site of each node.
+    pub(crate) fn nodal_sites(&self) -> (Vec<usize>, Vec<Option<usize>>) {
+        let mut site_of_node = vec![None; self.nodes.len()];
+        for (site, node) in self.nodes.active.iter().enumerate() {
+            site_of_node[*node] = Some(site);
+        }
+        (self.nodes.active.clone(), site_of_node)
+    }
+
+    /// Sites around a point with the values of their shape functions there.
+    pub(crate) fn sites_around(&self, point: usize, site_of_node: &[Option<usize>]) -> Vec<(usize, f64)> {
+        let around = points_in_cells!(self).around(point);
+        around.into_iter().filter_map(|(node, value)| Some((site_of_node[node]?, value))).collect()
+    }
+
+    /// `P_jk/V_j` of each site; nothing for a method without projection.
+    pub(crate) fn projection_rows(&self, sites: &[usize], site_of_node: &[Option<usize>]) -> SiteRows {
+        if !self.method.has_projection() {
+            return Vec::new();
+        }
+        let mut rows: SiteRows = vec![Vec::new(); sites.len()];
+        let mut add = |around: &[(usize, f64)], factor: f64| {
+            for (row, value) in around {
+                let factor = factor * value / self.nodes.volume[sites[*row]];
+                for (column, other) in around {
+                    *entry_of(&mut rows[*row], *column, 0.0) += factor * other;
+                }
+            }
+        };
+        let mut sums: SiteRows = vec![Vec::new(); self.grid.cell_count()];
+        for point in 0..self.points.len() {
+            let (around, volume) = (self.sites_around(point, site_of_node), self.points.volume(point));
+            add(&around, volume);
+            for (site, value) in around {
+                *entry_of(&mut sums[self.cells.of_point[point]], site, 0.0) += volume * value;
+            }
+        }
+        for cell in self.cells.occupied() {
+            add(&sums[cell], -1.0 / self.cells.volume(cell));
+        }
+        rows
+    }
+
+    /// Makes of the increments at the nodes without projection, in `site_values`, those with it.
+    pub(crate) fn project_site_values(&mut self) {
+        let (sites, site_of_node) = self.nodal_sites();
+        let rows = self.projection_rows(&sites, &site_of_node);
+        let Some(mut storage) = ProjectedStorage::of(self, &sites, &rows) else { return };
+        let mut values: Vec<f64> = sites.iter().map(|node| self.site_values[*node]).collect();
+        storage.project(&mut values);
+        for (node, value) in sites.iter().zip(values) {
+            self.site_values[*node] = value;
+        }
+    }
+}
+
+/// Factors of `I + τ Q V⁻¹ P` with the parameter of steps so short that it does not depend on them, as explicit ones are.
+#[derive(Clone, Debug)]
+pub struct ProjectedStorage(Factors);
+
+impl ProjectedStorage {
+    /// The storage of a body at the nodes that are its sites, from its [`Body::projection_rows`]; none where there are
+    /// none.
+    pub(crate) fn of<const D: usize>(body: &Body<D>, sites: &[usize], rows: &SiteRows) -> Option<Self> {
+        if rows.is_empty() {
+            return None;
+        }
+        let parameter = body.projection_parameter(0.0);
+        let positions: Vec<_> = sites.iter().map(|node| body.grid.node_position(*node)).collect();
+        let mut matrix = SystemMatrix::spanning(&positions, 0, |visitor| {
+            for (row, entries) in rows.iter().enumerate() {
+                entries.iter().for_each(|(column, _)| visitor(row, *column));
+            }
+        });
+        for (row, entries) in rows.iter().enumerate() {
+            let coupling = body.material.water_bulk_modulus / body.porosity_of(sites[row]);
+            matrix.add(row, row, 1.0);
+            for (column, value) in entries {
+                matrix.add(row, *column, parameter * coupling * value);
+            }
+        }
+        let mut factors = Factors::of_shape(&matrix, 1, TimeLimit::default());
+        factors.factor(&matrix).is_ok().then_some(Self(factors))
+    }
+
+    /// From the pressures at the sites that an unprojected storage would have to those of the projected one.
+    pub(crate) fn project(&mut self, pressures: &mut [f64]) {
+        self.0.solve(pressures);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    fn layer(name: &str) -> Body<2> {
+        let (column, method) = (Column::layer(), Method::named(name).expect("a known method"));
+        let problem =
+            column_problem::<2>(SceneKind::CosineLayer, &column, &Material::default(), method, 4, 2);
+        Body::new(problem.expect("the seed layer"))
+    }
+
+    #[test]
+    fn constants_are_free_of_the_projection_and_a_checkerboard_is_not() {
+        let body = layer("PPP");
+        let (sites, site_of_node) = body.nodal_sites();
+        let rows = body.projection_rows(&sites, &site_of_node);
+        let product = |row: &Vec<(usize, f64)>, field: &dyn Fn(usize) -> f64| -> f64 {
+            row.iter().map(|(site, value)| value * field(sites[*site])).sum()
+        };
+        let sign = |node: usize| {
+            let [x, y] = body.grid.node_position(node).map(|place| (place / body.grid.cell_size).round());
+            if (x + y) % 2.0 == 0.0 { 1.0 } else { -1.0 }
+        };
+        for (site, row) in rows.iter().enumerate() {
+            let node = sites[site];
+            assert!(product(row, &|_| 1.0).abs() < 1e-14);
+            // Two points a direction have ±1/4 of the sign, and a node the share 9/16, 3/16 or 1/16 of each.
+            assert!((product(row, &sign) / sign(node) - 0.0625).abs() < 1e-12, "{node}");
+            // Symmetric but for the volumes of the rows.
+            for (column, value) in row {
+                let back =
+                    rows[*column].iter().find(|entry| entry.0 == site).expect("a pattern that is symmetric");
+                let volume = |site: usize| body.nodes.volume[sites[site]];
+                assert!((volume(site) * value - volume(*column) * back.1).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_projected_storage_is_solved() {
+        let body = layer("PPP");
+        let (sites, site_of_node) = body.nodal_sites();
+        let rows = body.projection_rows(&sites, &site_of_node);
+        let given: Vec<f64> = (0..sites.len()).map(|site| (1.3 * site as f64).sin()).collect();
+        let mut solved = given.clone();
+        ProjectedStorage::of(&body, &sites, &rows).expect("a projection").project(&mut solved);
+        for (site, row) in rows.iter().enumerate() {
+            let coupling = body.material.water_bulk_modulus / body.porosity_of(sites[site]);
+            let projected: f64 = row.iter().map(|(column, value)| value * solved[*column]).sum();
+            let sum = solved[site] + body.projection_parameter(0.0) * coupling * projected;
+            assert!((sum - given[site]).abs() < 1e-9, "{sum} for {}", given[site]);
+        }
+    }
+
+    #[test]
+    fn parameters_are_those_of_their_sources() {
+        // E = 1 MPa, ν = 1/4: G = 400 kPa, M = 1200 kPa, c_v = k M/γ_w; h = 1/4 m.
+        let at = |name: &str, duration: f64| layer(name).projection_parameter(duration);
+        let steps = |flow: f64| flow / 12.0 * 0.0625 * 9.81e3 / (1e-4 * 1.2e6);
+        assert!((at("PPP", 5.0) * 8e5 - 1.0).abs() < 1e-12);
+        assert!((at("PPP-step", steps(2.0)) * 1.2e6 - 1.5).abs() < 1e-12, "half of 3/M at h²/(6 c_v)");
+        assert!((at("PPP-step", 0.0) * 1.2e6 - 1.5 * (1.0 + 2.0_f64.tanh())).abs() < 1e-12);
+        assert!((at("PPP-monotone", steps(0.5)) * 1.2e6 - 1.5).abs() < 1e-12);
+        assert_eq!(at("PPP-monotone", steps(2.5)), 0.0, "Darcy's flow is enough");
+        assert_eq!(at("VP", 0.0), 0.0);
+    }
+}
