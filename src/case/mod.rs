@@ -200,6 +200,11 @@ impl Case {
         of_set(self.points_per_cell) + of_set(self.column.points.water_per_cell)
     }
 
+    /// Whether some motion moves skeleton and water together, so that no drag damps it: what limits semi-implicit steps.
+    pub fn has_undamped_motions(&self) -> bool {
+        self.column.dimensions > 1 || self.method.own().is_some_and(|method| method.has_projection())
+    }
+
     /// Time, s, at which `T_v = 1`; of a motion half its period.
     pub fn seconds_per_time_factor(&self) -> f64 {
         column_parameters(&self.column, &self.material).time(1.0)

@@ -49,7 +49,8 @@ pub fn estimated_steps(case: &Case) -> f64 {
     let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
     let step = match case.time_step {
         TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {
-            share * formula::semi_implicit_limit(&case.material, case.cell_size(), case.column.dimensions)
+            share
+                * formula::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions())
         }
         TimeStepRule::Stable(share) => {
             1.5 * share * formula::combined_limit(&case.material, case.cell_size(), case.settings.drag)

@@ -108,7 +108,8 @@ impl SlowestWave {
         if case.integrator != IntegratorKind::SemiImplicit {
             return 0.0;
         }
-        let limit = formula::semi_implicit_limit(&case.material, case.cell_size(), case.column.dimensions);
+        let limit =
+            formula::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions());
         let step = match case.time_step {
             TimeStepRule::Stable(share) => share * limit,
             TimeStepRule::Seconds(seconds) => seconds,

@@ -42,16 +42,17 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
 /// `c = γ_w/(k m)`.
 ///
 /// In one dimension incompressible water moves against the skeleton, `n (v_w − v_s) = −v_s`: inertia
-/// `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` per volume, taken at the end of the step. In more dimensions shear moves
-/// both together and is not damped.
-pub fn semi_implicit_limit(soil: &Material, cell_size: f64, dimensions: usize) -> f64 {
+/// `m = (1−n)ρ_s + (1−n)²/n ρ_w` and drag `γ_w/k` per volume, taken at the end of the step. Where motions `are_undamped`
+/// that move both together, `h/√(E_oed/ρ)` is a second limit: shear in more dimensions, and volumes that a projected
+/// storage of the pressure takes in.
+pub fn semi_implicit_limit(soil: &Material, cell_size: f64, are_undamped: bool) -> f64 {
     let n = soil.porosity;
     let per_length = 2.0 / cell_size;
     let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
     let square = soil.initial_modulus() / inertia * per_length * per_length;
     let damping = soil.unit_weight_of_water() / (soil.hydraulic_conductivity * inertia);
     let column = (damping + (damping * damping + 4.0 * square).sqrt()) / square;
-    if dimensions == 1 {
+    if !are_undamped {
         return column;
     }
     let density = (1.0 - n) * soil.grain_density + n * soil.water_density;

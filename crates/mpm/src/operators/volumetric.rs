@@ -71,7 +71,8 @@ impl<const D: usize> Body<D> {
     /// in it.
     #[inline]
     pub fn storage_of(&self, place: usize, porosity: f64) -> f64 {
-        if self.soils.len() == 1 {
+        // The water is that of all soils.
+        if self.soils.len() == 1 || self.method.has_projection() {
             porosity / self.material.water_bulk_modulus
         } else if self.method.pressure.is_by_cells() {
             self.cells.storage[place]
@@ -110,7 +111,7 @@ impl<const D: usize> Body<D> {
             PressureIntegration::Points if self.method.has_projection() => {
                 sites.fill(0.0);
                 for point in 0..self.points.len() {
-                    let porosity = self.material.porosity_at(self.points.volume_ratio[point]);
+                    let porosity = self.soil_of(point).porosity_at(self.points.volume_ratio[point]);
                     let given = self.points.volume(point) * value(self, Place::Point(point), porosity);
                     self.basis.visit(self.grid.node_stride(), point, |node, share, _| {
                         sites[node] += share * given;

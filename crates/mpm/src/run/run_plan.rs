@@ -79,7 +79,9 @@ impl<'a> Plan<'a> {
             (StepBound::AllWaves, Some(known)) => (known, None),
             (StepBound::SkeletonWaves, _) => {
                 let unknown = (!problem.points.began_on_lattice()).then_some(UnknownLimit::OffLattice);
-                (problem.least_of_soils(|soil| formula::semi_implicit_limit(soil, cell_size, D)), unknown)
+                let are_undamped = D > 1 || problem.method.has_projection();
+                let limit = |soil: &Material| formula::semi_implicit_limit(soil, cell_size, are_undamped);
+                (problem.least_of_soils(limit), unknown)
             }
             (StepBound::Accuracy, _) => {
                 let limit = |soil: &Material| formula::combined_limit(soil, cell_size, settings.drag);
