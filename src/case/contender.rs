@@ -3,9 +3,7 @@
 use crate::case::Case;
 use crate::case::keys::{Key, Value};
 use crate::case::solver::Solver;
-use oedometer_mpm::method::{
-    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
-};
+use oedometer_mpm::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
 use oedometer_mpm::scene::SceneKind;
 use std::sync::LazyLock;
 
@@ -37,7 +35,7 @@ const fn operators(
     pressure: PressureIntegration,
     recovery: Recovery,
 ) -> Method {
-    Method { basis, strain, pressure, recovery, memory: Memory::Points, configuration: None }
+    Method { basis, strain, pressure, recovery, ..Method::STANDARD }
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
