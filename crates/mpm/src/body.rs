@@ -166,6 +166,15 @@ pub struct Body<const D: usize> {
     pub surface_flux: f64,
 }
 
+/// Cells, nodes or points that may be a site of a method's divergence.
+fn site_places<const D: usize>(method: Method, grid: &Grid<D>, points: usize) -> usize {
+    match (method.pressure.is_by_cells(), method.has_projection()) {
+        (true, _) => grid.cell_count(),
+        (false, true) => grid.node_count(),
+        (false, false) => points,
+    }
+}
+
 impl<const D: usize> Body<D> {
     /// Discretises a problem: builds operators and nodal masses on the initial configuration and
     /// maps the points' velocities to the nodes.
@@ -191,11 +200,7 @@ impl<const D: usize> Body<D> {
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
-        let sites = match (method.pressure.is_by_cells(), method.has_projection()) {
-            (true, _) => grid.cell_count(),
-            (false, true) => grid.node_count(),
-            (false, false) => count,
-        };
+        let sites = site_places(method, &grid, count);
         let domains = Domains::of(method, configuration, &points);
         let strains_vertically =
             load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none() && soils.len() == 1;

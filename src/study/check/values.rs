@@ -100,7 +100,7 @@ impl Checker<'_> {
             self.complain(word.span(), why, "leave the key out, or choose another");
             return None;
         }
-        let Some(projection) = self.projection_of(table, recovery) else { return None };
+        let projection = self.projection_of(table, recovery)?;
         let configuration = table.configuration.as_deref().copied();
         let place = table.configuration.as_ref().map_or(span, Placed::span);
         let method = Method { basis, strain, pressure, recovery, memory, projection, configuration };

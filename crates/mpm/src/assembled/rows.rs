@@ -201,7 +201,7 @@ pub struct SparseStorage<const D: usize> {
     skeleton_force: SparseRows<Tensor<D>>,
     projection: SparseRows<f64>,
     /// What is solved between the two factors where the storage is projected, and the moduli `Q` of the sites, Pa.
-    storage: Option<(ProjectedStorage, Vec<f64>)>,
+    storage: Option<Box<(ProjectedStorage, Vec<f64>)>>,
     /// One where a component of a phase is free, else zero, by row.
     free: Vec<[Vector<D>; 2]>,
 }
@@ -227,7 +227,7 @@ impl<const D: usize> SparseStorage<D> {
             storage: operators
                 .storage
                 .clone()
-                .map(|storage| (storage, operators.volumetric.coupling.clone())),
+                .map(|storage| Box::new((storage, operators.volumetric.coupling.clone()))),
             free,
         }
     }
@@ -245,7 +245,8 @@ impl<const D: usize> SparseStorage<D> {
             }
             *dilation = sum;
         }
-        if let Some((storage, coupling)) = &mut self.storage {
+        if let Some(projected) = &mut self.storage {
+            let (storage, coupling) = &mut **projected;
             dilation.iter_mut().zip(&*coupling).for_each(|(dilation, coupling)| *dilation *= coupling);
             storage.project(dilation);
             dilation.iter_mut().zip(&*coupling).for_each(|(dilation, coupling)| *dilation /= coupling);

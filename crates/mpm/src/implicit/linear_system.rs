@@ -80,7 +80,9 @@ impl<const D: usize> LinearSystem<D> {
         let projection = operators.projection();
         let mut fixed = SystemMatrix::spanning(&unknowns.positions, unknowns.border, |visitor| {
             visit(&mut |(row, column, _, _)| visitor(row, column));
-            projection.iter().for_each(|(row, column, _)| visitor(*row, *column));
+            for (row, column, _) in &projection {
+                visitor(*row, *column);
+            }
         });
         let mut proportional = fixed.clone();
         // Each entry belongs to one of the two; looking up the place of a zero would cost time.

@@ -117,7 +117,9 @@ impl ProjectedStorage {
         let positions: Vec<_> = sites.iter().map(|node| body.grid.node_position(*node)).collect();
         let mut matrix = SystemMatrix::spanning(&positions, 0, |visitor| {
             for (row, entries) in rows.iter().enumerate() {
-                entries.iter().for_each(|(column, _)| visitor(row, *column));
+                for (column, _) in entries {
+                    visitor(row, *column);
+                }
             }
         });
         for (row, entries) in rows.iter().enumerate() {
