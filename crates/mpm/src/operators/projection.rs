@@ -91,6 +91,9 @@ impl<const D: usize> Body<D> {
 
     /// Makes of the increments at the nodes without projection, in `site_values`, those with it.
     pub(crate) fn project_site_values(&mut self) {
+        if !self.method.has_projection() {
+            return;
+        }
         let (sites, site_of_node) = self.nodal_sites();
         let rows = self.projection_rows(&sites, &site_of_node);
         let Some(mut storage) = ProjectedStorage::of(self, &sites, &rows) else { return };
