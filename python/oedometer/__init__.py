@@ -11,6 +11,7 @@ lists of the same shape. Nothing is computed in Python: every number is the one 
 from __future__ import annotations
 
 import json
+import os
 from array import array
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
@@ -27,10 +28,14 @@ __all__ = [
     "Convergence",
     "Exact",
     "Score",
+    "Table",
+    "assert_below",
     "assert_converges",
     "convergence",
+    "converges",
     "exact",
     "score",
+    "score_files",
 ]
 
 Numbers = Union[float, Sequence[float], Any]
@@ -40,7 +45,10 @@ Numbers = Union[float, Sequence[float], Any]
 def _doubles(numbers: Numbers) -> Tuple[bytes, Tuple[int, ...]]:
     """The bytes of numbers as doubles, and their shape."""
     if _numpy is not None:
-        whole = _numpy.ascontiguousarray(numbers, dtype=_numpy.float64)
+        try:
+            whole = _numpy.ascontiguousarray(numbers, dtype=_numpy.float64)
+        except TypeError as error:
+            raise ValueError(f"these are no numbers: {error}") from None
         return whole.tobytes(), _numpy.shape(numbers)
     if isinstance(numbers, (int, float)):
         return array("d", [numbers]).tobytes(), ()
@@ -62,10 +70,9 @@ def _shaped(data: bytes, shape: Tuple[int, ...]) -> Any:
     numbers.frombytes(data)
     if not shape:
         return numbers[0]
-    if len(shape) == 1:
-        return list(numbers)
-    rows, columns = shape
-    return [list(numbers[row * columns : (row + 1) * columns]) for row in range(rows)]
+    for size in reversed(shape[1:]):
+        numbers = [list(numbers[at : at + size]) for at in range(0, len(numbers), size)]
+    return list(numbers)
 
 
 def _inputs(given: Dict[str, Any]) -> List[Tuple[str, str]]:
@@ -101,44 +108,101 @@ class Exact:
     """By settlement: ``[time]``."""
     tail_bound: Any
     """Bound on the truncation error of the pressure over the load: ``[time]``."""
+    horizontal_displacement: Any
+    """Displacement along a layer, m: ``[time][depth][x]``; ``None`` where no ``x`` is given."""
     height: float
     """Initial height, m."""
     load: float
     """Load on the surface, Pa."""
 
 
-def exact(scene: str, time_factor: Numbers, zeta: Numbers, **material: Union[float, str]) -> Exact:
-    """An exact solution, like ``terzaghi``, ``xie-leo`` or ``dynamic-column``.
+def exact(
+    scene: str,
+    time_factor: Numbers,
+    zeta: Optional[Numbers] = None,
+    *,
+    x: Optional[Numbers] = None,
+    **material: Union[float, str],
+) -> Exact:
+    """Evaluate an exact solution, like ``terzaghi``, ``xie-leo`` or ``cosine-layer``.
 
-    ``time_factor`` and ``zeta`` are numbers or sequences; fields have the shape ``[time][depth]``. ``material`` takes the
-    keys of study files: ``youngs_modulus`` (Pa), ``porosity``, ``hydraulic_conductivity`` (m/s), ``load`` (Pa), ``height``
-    (m), … Of a layer the fields are those under the crest of its load.
+    Parameters
+    ----------
+    scene : str
+        Name of the solution; ``oedometer list`` shows them.
+    time_factor : array_like
+        Time factors ``T_v``, 0 at the undrained start.
+    zeta : array_like
+        Depths over the height, 0 at the drained surface. Fields have the shape ``[time][depth]``.
+    x : array_like, optional
+        Distances from the crest of a layer's load, over its length: fields are then ``[time][depth][x]``; without it they
+        are those under the crest. Of ``mandel`` distances from the middle over the half width, and no ``zeta``.
+    **material
+        Keys of study files: ``youngs_modulus`` (Pa), ``hydraulic_conductivity`` (m/s), ``load`` (Pa), ``height`` (m), …
 
-    Raises ``ValueError`` with a sentence where a name or a value is refused.
+    Raises
+    ------
+    ValueError
+        With a sentence where a name or a value is refused.
 
-    >>> exact("terzaghi", [0.05, 0.1], [0.5, 1.0]).pressure[1][0] < 1.0
+    Examples
+    --------
+    >>> bool(exact("terzaghi", [0.05, 0.1], [0.5, 1.0]).pressure[1][0] < 1.0)
     True
     """
+    empty: Tuple[bytes, Tuple[int, ...]] = (b"", ())
     times, of_time = _doubles(time_factor)
-    depths, of_depth = _doubles(zeta)
-    found = dict(_native.exact(scene, times, depths, _inputs(material)))
+    depths, of_depth = empty if zeta is None else _doubles(zeta)
+    distances, of_distance = empty if x is None else _doubles(x)
+    if x is not None and not distances:
+        raise ValueError("`x` is empty: give at least one distance, or leave it out")
+    if zeta is None and x is None:
+        raise ValueError("give depths `zeta`, or of `mandel` distances `x`")
+    found = dict(_native.exact(scene, times, depths, distances, _inputs(material)))
     height, load = array("d", found.pop("scales"))
+    across = found.pop("horizontal_displacement")
     per_time = {"time", "settlement", "degree_of_consolidation", "tail_bound"}
-    fields = {
-        name: _shaped(data, of_time if name in per_time else of_time + of_depth) for name, data in found.items()
-    }
-    return Exact(height=height, load=load, **fields)
+    of_fields = of_time + of_depth + of_distance
+    fields = {name: _shaped(data, of_time if name in per_time else of_fields) for name, data in found.items()}
+    horizontal = _shaped(across, of_fields) if across else None
+    return Exact(height=height, load=load, horizontal_displacement=horizontal, **fields)
+
+
+class Table(Dict[str, Any]):
+    """Columns by their names: arrays where numpy is installed, else lists.
+
+    ``table["value"]`` is a column, ``len(table.rows())`` the number of rows, ``table.to_pandas()`` a data frame.
+    """
+
+    @classmethod
+    def _of(cls, rows: List[Dict[str, Any]]) -> "Table":
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        columns = {name: [row.get(name) for row in rows] for name in names}
+        if _numpy is not None:
+            return cls({name: _numpy.array(column) for name, column in columns.items()})
+        return cls(columns)
+
+    def rows(self) -> List[Dict[str, Any]]:
+        """The rows, a dictionary each."""
+        plain = [list(column) if isinstance(column, list) else column.tolist() for column in self.values()]
+        return [dict(zip(self, row)) for row in zip(*plain)]
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` with these columns."""
+        import pandas
+
+        return pandas.DataFrame(dict(self))
 
 
 @dataclass(frozen=True)
 class Score:
     """A result held against the references of a scene."""
 
-    errors: List[Dict[str, Any]]
-    """A dictionary an error: ``time_factor``, ``quantity`` (pressure, effective_stress, displacement, settlement),
+    errors: Table
+    """A row an error: ``time_factor``, ``quantity`` (pressure, effective_stress, displacement, settlement),
     ``sample``, ``norm`` (l1, l2, linf, relative), ``reference``, ``value`` (relative) and ``absolute`` (over the load, or
     over the final settlement)."""
-    worst: List[Dict[str, Any]]
+    worst: Table
     """The place that carries most of each error: ``zeta``, ``computed``, ``exact``, ``share`` of the squared error."""
     warnings: List[str]
     """In what the result is not whole."""
@@ -146,6 +210,8 @@ class Score:
     """What seems to be wrong with its numbers: units, signs, times."""
     reference: str
     """The scene's own reference."""
+    name: str = ""
+    """The files, where it was read from files."""
 
     def error(
         self,
@@ -160,7 +226,7 @@ class Score:
         reference = reference or self.reference
         near = [
             row
-            for row in self.errors
+            for row in self.errors.rows()
             if (row["quantity"], row["norm"], row["reference"]) == (quantity, norm, reference)
             and abs(row["time_factor"] - time_factor) <= 1e-3 * abs(time_factor)
         ]
@@ -185,15 +251,35 @@ def score(
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> Score:
-    """Holds a result against the references of a scene, or against one of them.
+    """Compare a result with the references of a scene, or with one of them.
 
-    ``time`` (s): ``[time]``. ``height``: *initial* heights over the base (m), ``[place]``, and where places are in a plane
-    ``distance`` (m) from the crest of the load. ``pressure`` and ``effective_stress`` (Pa), ``displacement`` and
-    ``horizontal_displacement`` (m): ``[time][place]``, or ``[place]`` of a single time. ``settlement`` (m): ``[time]``.
-    ``volume``: weights, ``[place]``; all alike where left out. ``sample`` names the kind of places: points, centres or
-    nodes. ``material`` as in :func:`exact`.
+    Parameters
+    ----------
+    scene : str
+        The scene, like ``terzaghi``.
+    time, height : array_like
+        Times (s) ``[time]``, and *initial* heights over the base (m) ``[place]``.
+    pressure, effective_stress : array_like, optional
+        Pa, ``[time][place]``, or ``[place]`` of a single time; compression and tension positive.
+    displacement, horizontal_displacement : array_like, optional
+        m, ``[time][place]``, positive upward and away from the crest.
+    settlement : array_like, optional
+        m, ``[time]``, positive downward.
+    volume : array_like, optional
+        Weights ``[place]``; all alike where left out.
+    distance : array_like, optional
+        m from the crest of the load ``[place]``, where places are in a plane.
+    sample : {"points", "centres", "nodes"}
+        The kind of places.
+    reference : str, optional
+        The one reference to compare with.
+    **material
+        As in :func:`exact`.
 
-    Raises ``ValueError`` where shapes do not fit, a number is not finite, or the scene refuses.
+    Raises
+    ------
+    ValueError
+        Where shapes do not fit, a number is not finite, or the scene refuses.
     """
     lists = (
         time,
@@ -207,10 +293,54 @@ def score(
         settlement,
     )
     data = [b"" if one is None else _doubles(one)[0] for one in lists]
-    found = json.loads(_native.score(scene, data, sample, reference, _inputs(material)))
+    return _score(json.loads(_native.score(scene, data, sample, reference, _inputs(material))))
+
+
+def score_files(
+    scene: str,
+    files: Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]],
+    *,
+    preset: Optional[str] = None,
+    mapping: Union[str, "os.PathLike[str]", None] = None,
+    time_step: Optional[float] = None,
+    reference: Optional[str] = None,
+    **material: Union[float, str],
+) -> List[Score]:
+    """Compare files of another program with the references of a scene: one score per mesh.
+
+    Parameters
+    ----------
+    scene : str
+        The scene, like ``terzaghi``.
+    files : path or sequence of paths
+        CSV, VTU, PVD, legacy VTK, NPZ, HDF5 or XDMF; patterns with ``*`` and ``?`` are expanded.
+    preset : str, optional
+        The program that wrote them, like ``ogs``: what its arrays mean.
+    mapping : path, optional
+        A mapping file, which overrides the preset key by key.
+    time_step : float, optional
+        Seconds from one numbered step to the next, where file names have the number of the step.
+    reference, **material
+        As in :func:`score`.
+
+    Raises
+    ------
+    ValueError
+        Where a file cannot be read or does not fit, with its name.
+    """
+    named = [files] if isinstance(files, (str, os.PathLike)) else list(files)
+    meaning = (preset, None if mapping is None else os.fspath(mapping), time_step)
+    paths = [os.fspath(name) for name in named]
+    found = json.loads(_native.score_files(scene, paths, meaning, reference, _inputs(material)))
+    return [_score(one, name) for name, one in found]
+
+
+def _score(found: Dict[str, Any], name: str = "") -> Score:
+    """A score from its JSON."""
     return Score(
-        errors=found["errors"],
-        worst=found["worst"],
+        name=name,
+        errors=Table._of(found["errors"]),
+        worst=Table._of(found["worst"]),
         warnings=[f"{one['name']}: {one['sentence']}" for one in found["warnings"]],
         diagnosis=found["diagnosis"],
         reference=found["errors"][0]["reference"] if found["errors"] else "",
@@ -264,27 +394,4 @@ def convergence(sizes: Numbers, errors: Numbers, formal_order: Optional[float] =
     )
 
 
-def assert_converges(
-    sizes: Numbers,
-    errors: Numbers,
-    order: Optional[float] = None,
-    *,
-    minus: float = 0.1,
-    plus: float = 0.1,
-    at: Optional[Tuple[float, float]] = None,
-    kind: Optional[str] = None,
-) -> None:
-    """For tests: raises ``AssertionError`` with the sentence of the verdict where a series is not as demanded.
-
-    ``order`` is a band from ``order - minus`` to ``order + plus`` on the finest three levels, of a series that is
-    asymptotic; ``at`` a size and the bound on the error there, for a doubled error constant keeps the order; ``kind`` the
-    class, where another than ``asymptotic`` is expected. NaN, a missing level or a negative order never pass.
-
-    >>> assert_converges([0.1, 0.05, 0.025], [4e-2, 1e-2, 2.5e-3], order=2.0, at=(0.1, 5e-2))
-    """
-    __tracebackhide__ = True
-    band = None if order is None else (float(order), float(minus), float(plus))
-    bound = None if at is None else (float(at[0]), float(at[1]))
-    passes, reason = _native.verdict(_doubles(sizes)[0], _doubles(errors)[0], band, bound, kind)
-    if not passes:
-        raise AssertionError(reason)
+from .testing import assert_below, assert_converges, converges  # noqa: E402

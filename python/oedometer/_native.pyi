@@ -1,15 +1,22 @@
 from typing import List, Optional, Sequence, Tuple
 
-__all__ = ["__version__", "convergence", "exact", "main", "score", "verdict"]
+__all__ = ["__version__", "convergence", "exact", "main", "score", "score_files", "verdict"]
 __version__: str
 
 def exact(
-    solution: str, time_factors: bytes, depths: bytes, inputs: Sequence[Tuple[str, str]]
+    solution: str, time_factors: bytes, depths: bytes, x: bytes, inputs: Sequence[Tuple[str, str]]
 ) -> List[Tuple[str, bytes]]: ...
 def score(
     scene: str,
     lists: Sequence[bytes],
     sample: str,
+    reference: Optional[str],
+    inputs: Sequence[Tuple[str, str]],
+) -> str: ...
+def score_files(
+    scene: str,
+    files: Sequence[str],
+    meaning: Tuple[Optional[str], Optional[str], Optional[float]],
     reference: Optional[str],
     inputs: Sequence[Tuple[str, str]],
 ) -> str: ...

@@ -5,11 +5,14 @@
 
 use oedometer::api;
 use oedometer::api::convergence::Demand;
+use oedometer::api::read::Meaning;
 use oedometer::api::score::Samples;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 
 /// Bytes to doubles.
 fn doubles(bytes: &[u8]) -> Vec<f64> {
@@ -25,6 +28,17 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
 
 fn refused(why: impl ToString) -> PyErr {
     PyValueError::new_err(why.to_string())
+}
+
+/// Calls the interface without the lock of the interpreter. What it refuses is a `ValueError`; a panic, which would be a
+/// fault of this program, is a `RuntimeError` and never the end of the interpreter.
+fn call<T: Send>(py: Python<'_>, of: impl FnOnce() -> Result<T, String> + Send) -> PyResult<T> {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(of))) {
+        Ok(found) => found.map_err(refused),
+        Err(_) => Err(PyRuntimeError::new_err(
+            "oedometer failed at these inputs, which is a fault of it: please report it",
+        )),
+    }
 }
 
 fn json(value: &impl serde::Serialize) -> PyResult<String> {
@@ -46,17 +60,18 @@ fn exact<'py>(
     solution: &str,
     time_factors: &[u8],
     depths: &[u8],
+    x: &[u8],
     inputs: Vec<(String, String)>,
 ) -> PyResult<Vec<(&'static str, Bound<'py, PyBytes>)>> {
     let assignments = assignments(solution, inputs)?;
-    let (time_factors, depths) = (doubles(time_factors), doubles(depths));
-    let found = py.detach(|| api::exact::exact(solution, &time_factors, &depths, &assignments));
-    let found = found.map_err(refused)?;
+    let (time_factors, depths, x) = (doubles(time_factors), doubles(depths), doubles(x));
+    let found = call(py, || api::exact::exact(solution, &time_factors, &depths, &x, &assignments))?;
     Ok(vec![
         ("time", bytes(py, &found.time)),
         ("pressure", bytes(py, &found.pressure)),
         ("effective_stress", bytes(py, &found.effective_stress)),
         ("displacement", bytes(py, &found.displacement)),
+        ("horizontal_displacement", bytes(py, &found.horizontal_displacement)),
         ("settlement", bytes(py, &found.settlement)),
         ("degree_of_consolidation", bytes(py, &found.degree_of_consolidation)),
         ("tail_bound", bytes(py, &found.tail_bound)),
@@ -101,20 +116,36 @@ fn score(
         horizontal_displacement,
         settlement,
     };
-    let found = py.detach(|| api::score::score(scene, &samples, sample, reference, &assignments));
-    json(&found.map_err(refused)?)
+    json(&call(py, || api::score::score(scene, &samples, sample, reference, &assignments))?)
+}
+
+/// Names and scores of files as JSON, one per mesh.
+#[pyfunction]
+fn score_files(
+    py: Python<'_>,
+    scene: &str,
+    files: Vec<PathBuf>,
+    meaning: (Option<String>, Option<PathBuf>, Option<f64>),
+    reference: Option<&str>,
+    inputs: Vec<(String, String)>,
+) -> PyResult<String> {
+    let assignments = assignments(scene, inputs)?;
+    let (preset, mapping, time_step) = meaning;
+    let meaning = Meaning { preset, mapping, time_step };
+    json(&call(py, || api::score::score_files(scene, &files, &meaning, reference, &assignments))?)
 }
 
 /// Class and orders of errors as JSON.
 #[pyfunction]
-fn convergence(sizes: &[u8], errors: &[u8], formal_order: Option<f64>) -> PyResult<String> {
-    let found = api::convergence::convergence(&doubles(sizes), &doubles(errors), formal_order);
-    json(&found.map_err(refused)?)
+fn convergence(py: Python<'_>, sizes: &[u8], errors: &[u8], formal_order: Option<f64>) -> PyResult<String> {
+    let (sizes, errors) = (doubles(sizes), doubles(errors));
+    json(&call(py, || api::convergence::convergence(&sizes, &errors, formal_order))?)
 }
 
 /// Whether errors meet a demand, and the reason.
 #[pyfunction]
 fn verdict(
+    py: Python<'_>,
     sizes: &[u8],
     errors: &[u8],
     order: Option<(f64, f64, f64)>,
@@ -122,7 +153,8 @@ fn verdict(
     class: Option<String>,
 ) -> PyResult<(bool, String)> {
     let demand = Demand { order, at, class };
-    api::convergence::verdict(&doubles(sizes), &doubles(errors), &demand).map_err(refused)
+    let (sizes, errors) = (doubles(sizes), doubles(errors));
+    call(py, || api::convergence::verdict(&sizes, &errors, &demand))
 }
 
 /// Runs a command line, beginning with the program's name, and returns the exit code.
@@ -137,6 +169,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(exact, module)?)?;
     module.add_function(wrap_pyfunction!(score, module)?)?;
+    module.add_function(wrap_pyfunction!(score_files, module)?)?;
     module.add_function(wrap_pyfunction!(convergence, module)?)?;
     module.add_function(wrap_pyfunction!(verdict, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)

@@ -1,6 +1,8 @@
 """The module against numbers that were computed elsewhere, and against itself."""
 
 import math
+import random
+import re
 import runpy
 import subprocess
 import sys
@@ -11,6 +13,7 @@ import pytest
 import oedometer
 
 numpy = pytest.importorskip("numpy")
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def isochrone(zeta, time_factor):
@@ -52,7 +55,7 @@ def test_a_score_is_what_the_result_is_off_by():
     found = oedometer.exact("terzaghi", [0.1, 0.2], depths, load=1000.0)
     given = dict(time=found.time, height=1 - depths, sample="centres", load=1000.0)
     clean = oedometer.score("terzaghi", pressure=found.pressure, settlement=found.settlement, **given)
-    assert all(abs(row["value"]) < 1e-9 for row in clean.errors if row["reference"] == "terzaghi")
+    assert all(abs(row["value"]) < 1e-9 for row in clean.errors.rows() if row["reference"] == "terzaghi")
     assert clean.error("settlement", 0.1) == pytest.approx(0.0, abs=1e-9)
     off = oedometer.score("terzaghi", pressure=1.01 * found.pressure, **given)
     assert off.error("pressure", 0.1) == pytest.approx(0.01, rel=1e-6)
@@ -112,6 +115,146 @@ def test_the_command_comes_with_the_wheel(tmp_path):
     assert run("--version").stdout.split() == ["oedometer", oedometer.__version__]
     script = Path(sys.executable).parent / "oedometer"
     assert subprocess.run([script, "--version"], capture_output=True).returncode == 0
+
+
+def test_errors_are_a_table_of_columns():
+    found = oedometer.exact("terzaghi", [0.1, 0.2], [0.25, 0.5, 0.75])
+    score = oedometer.score("terzaghi", time=found.time, height=[0.75, 0.5, 0.25], pressure=found.pressure)
+    assert isinstance(score.errors["value"], numpy.ndarray)
+    rows = score.errors.rows()
+    assert rows[0]["quantity"] == "pressure" and len(rows) == len(score.errors["value"])
+    pandas = pytest.importorskip("pandas")
+    frame = score.errors.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame["norm"]) == [row["norm"] for row in rows]
+
+
+def test_arrays_of_any_layout_are_read():
+    found = oedometer.exact("terzaghi", [0.1, 0.2], [0.25, 0.5, 0.75])
+    of = lambda pressure: oedometer.score(
+        "terzaghi", time=found.time, height=[0.75, 0.5, 0.25], pressure=pressure
+    ).error("pressure", 0.1)
+    assert of(numpy.asfortranarray(found.pressure)) == of(found.pressure) < 1e-12
+    assert of(numpy.repeat(found.pressure, 2, axis=1)[:, ::2]) < 1e-12
+    assert of(found.pressure.astype(numpy.float32)) < 1e-6
+
+
+def test_fields_over_distances():
+    layer = oedometer.exact("cosine-layer", [0.1, 0.2], [0.25, 0.5], x=[0.0, 0.5])
+    assert layer.pressure.shape == (2, 2, 2)
+    crest = oedometer.exact("cosine-layer", [0.1, 0.2], [0.25, 0.5])
+    assert layer.pressure[:, :, 0] == pytest.approx(crest.pressure, rel=1e-12)
+    assert crest.horizontal_displacement is None
+    slab = oedometer.exact("mandel", 0.1, x=[0.0, 1.0])
+    assert slab.pressure[0] > 0.1 and abs(slab.pressure[1]) < 1e-12
+    for call, told in [
+        (lambda: oedometer.exact("terzaghi", 0.1, 0.5, x=0.5), "depends on the depth alone"),
+        (lambda: oedometer.exact("mandel", 0.1, 0.5), "give `x`"),
+        (lambda: oedometer.exact("mandel", 0.1, x=1.5), "got 1.5"),
+        (lambda: oedometer.exact("terzaghi", 0.1), "give depths"),
+    ]:
+        with pytest.raises(ValueError, match=told):
+            call()
+
+
+def test_files_are_scored_as_the_command_scores_them(tmp_path):
+    files = ROOT / "tests" / "foreign" / "ogs" / "col.pvd"
+    (score,) = oedometer.score_files("terzaghi", files, preset="ogs")
+    words = ["score", str(files), "--preset", "ogs", "--scene", "terzaghi", "--format", "csv"]
+    told = subprocess.run([sys.executable, "-m", "oedometer", *words], capture_output=True, text=True)
+    assert told.returncode == 0, told.stderr
+    lines = [line.split(",") for line in told.stdout.splitlines()]
+    values = [float(line[lines[0].index("value")]) for line in lines[1:]]
+    assert values == score.errors["value"].tolist() and values
+    for arguments, told in [
+        (dict(files=files, preset="ogr"), "ogr"),
+        (dict(files=tmp_path / "none.csv"), "none.csv"),
+        (dict(files=files, preset="ogs", mapping=tmp_path / "none.toml"), "none.toml"),
+        (dict(files=files, preset="ogs", time_step=-1.0), "-1"),
+    ]:
+        with pytest.raises(ValueError, match=told):
+            oedometer.score_files("terzaghi", **arguments)
+
+
+def test_assert_below_fails_on_errors_holes_and_nothing():
+    depths = (numpy.arange(20) + 0.5) / 20
+    found = oedometer.exact("terzaghi", [0.1], depths)
+    of = lambda factor, places: oedometer.score(
+        "terzaghi",
+        time=found.time,
+        height=(1 - depths)[places],
+        pressure=factor * found.pressure[:, places],
+        sample="centres",
+    )
+    whole = slice(None)
+    oedometer.assert_below(0.02, of(1.01, whole))
+    for result, quantity, told in [
+        (of(1.03, whole), None, "pressure at T_v = 0.1: 3.000e-02 is not below 0.02"),
+        (of(1.0, slice(10)), None, "height-not-covered"),
+        (of(1.0, whole), "settlement", "no error of settlement"),
+    ]:
+        with pytest.raises(AssertionError, match=re.escape(told)):
+            oedometer.assert_below(0.02, result, quantity)
+    with pytest.raises(AssertionError):
+        oedometer.assert_below(math.nan, of(1.01, whole))
+
+
+def test_the_plugin_makes_tests_that_can_fail(pytester):
+    pytester.makepyfile(
+        """
+        import numpy, oedometer, pytest
+
+        @pytest.fixture
+        def power():
+            return 2
+
+        def solved(cells, power):
+            heights = (numpy.arange(cells) + 0.5) / cells
+            exact = oedometer.exact("terzaghi", [0.1], 1 - heights)
+            return dict(time=exact.time, height=heights, pressure=exact.pressure * (1 + 0.3 / cells**power))
+
+        @oedometer.converges("terzaghi", cells=[10, 20, 40], order=2.0, at=(10, 5e-3), sample="centres")
+        def test_second(cells, power):
+            return solved(cells, power)
+
+        @oedometer.converges("terzaghi", cells=[10, 20, 40], order=2.0, sample="centres")
+        def test_first(cells):
+            return solved(cells, 1)
+
+        @oedometer.converges("terzaghi", cells=[10, 20, 40], order=2.0, at=(10, 1e-3), sample="centres")
+        def test_large(cells):
+            return solved(cells, 2)
+        """
+    )
+    told = pytester.runpytest_subprocess("-p", "no:cacheprovider")
+    told.assert_outcomes(passed=1, failed=2)
+    told.stdout.fnmatch_lines(["*errors on finer meshes*", "test_second: terzaghi, pressure: 10 cells 3.000e-03*"])
+
+
+def test_no_input_ends_the_interpreter():
+    numbers = [0.0, -1.0, math.nan, math.inf, 1e300, 1e-300, 0.5, [], [[0.5]], "x", None]
+    draw = random.Random(1)
+    names = ["terzaghi", "xie-leo", "mandel", "cosine-layer", "single-mode", "no-such"]
+    refused = 0
+    for _ in range(300):
+        name, time, depth, value = (draw.choice(of) for of in (names, numbers, numbers, numbers))
+        key = draw.choice(["load", "height", "porosity", "youngs_modulus"])
+        try:
+            oedometer.exact(name, time, depth, **{key: value} if isinstance(value, float) else {})
+            oedometer.score("terzaghi", time=time, height=depth, pressure=value)
+        except (ValueError, TypeError):
+            refused += 1
+    assert refused > 100
+
+
+def test_the_examples_of_the_manual_run(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.S)
+    assert len(blocks) > 5
+    for block in blocks:
+        exec(compile(block, "docs/python.md", "exec"), {})
+    doctest = __import__("doctest")
+    for module in (oedometer, oedometer.testing):
+        assert doctest.testmod(module).failed == 0
 
 
 def test_the_example_runs(capsys):

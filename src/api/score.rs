@@ -1,5 +1,6 @@
 //! Scores a result given as lists against the references of a scene.
 
+use crate::api::read::{Meaning, runs_with};
 use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::import::mapping::Mapping;
@@ -7,11 +8,11 @@ use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::runs::Run;
 use crate::import::{SampledState, states_of};
 use crate::judge::score::Score;
-use crate::judge::score::results::{Comparison, Results};
+use crate::judge::score::results::Results;
 use crate::study::asked::Asked;
 use crate::study::overrides::{Assignments, Outputs};
 use oedometer_formats::ImportError;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Samples of a result. Lists of fields have one number per time and place, `[time][place]`, or are empty.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,12 +49,7 @@ pub fn score(
     reference: Option<&str>,
     assignments: &[String],
 ) -> Result<Score, String> {
-    let outputs = Outputs {
-        reference: reference.map(str::to_owned),
-        time_factor: None,
-        set: Assignments { assignments: assignments.to_vec() },
-    };
-    let asked = Asked::of_scene(scene, &outputs).map_err(|error| error.to_string())?;
+    let asked = asked(scene, reference, assignments)?;
     let case = asked.case();
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
@@ -65,21 +61,38 @@ pub fn score(
     mapping.sample = kind;
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
-    let comparison = Comparison {
-        case,
-        parameters: asked.parameters,
-        mapping: &mapping,
-        references: &asked.references,
-        requested: &[],
-        tolerance: 1e-3,
-        are_cells_found: false,
+    let comparison = asked.comparison(&mapping);
+    let mut results = Results::of(vec![run], &comparison).map_err(|error| error.to_string())?;
+    results.all.pop().map(|one| one.score).ok_or_else(|| "there is nothing to score".to_owned())
+}
+
+/// Scores files of another program: their names and a score per mesh, in the order of the files.
+///
+/// # Errors
+/// When a file cannot be read or does not fit, with its name, or the scene or a reference refuses its inputs.
+pub fn score_files(
+    scene: &str,
+    files: &[PathBuf],
+    meaning: &Meaning,
+    reference: Option<&str>,
+    assignments: &[String],
+) -> Result<Vec<(String, Score)>, String> {
+    let asked = asked(scene, reference, assignments)?;
+    let case = asked.case();
+    let (mapping, runs) = runs_with(files, meaning, SolvedBody::of(case), case.scene.has_plane_fields())?;
+    let comparison = asked.comparison(&mapping);
+    let results = Results::of(runs, &comparison).map_err(|error| error.to_string())?;
+    Ok(results.all.into_iter().map(|one| (one.name(), one.score)).collect())
+}
+
+/// What a result is compared with.
+fn asked(scene: &str, reference: Option<&str>, assignments: &[String]) -> Result<Asked, String> {
+    let outputs = Outputs {
+        reference: reference.map(str::to_owned),
+        time_factor: None,
+        set: Assignments { assignments: assignments.to_vec() },
     };
-    let results = Results::of(vec![run], &comparison).map_err(|error| error.to_string())?;
-    results
-        .scores()
-        .first()
-        .map(|score| (*score).clone())
-        .ok_or_else(|| "there is nothing to score".to_owned())
+    Asked::of_scene(scene, &outputs).map_err(|error| error.to_string())
 }
 
 impl Samples<'_> {
@@ -178,7 +191,7 @@ mod tests {
     fn exact_lists_score_round_off_and_others_what_they_are_off_by() {
         let depths: Vec<f64> = (0..20).map(|place| (f64::from(place) + 0.5) / 20.0).collect();
         let load = ["column.load=1000.0".to_owned()];
-        let found = exact("terzaghi", &[0.1, 0.2], &depths, &load).expect("inside its range");
+        let found = exact("terzaghi", &[0.1, 0.2], &depths, &[], &load).expect("inside its range");
         let height: Vec<f64> = depths.iter().map(|depth| 1.0 - depth).collect();
         let with = |pressure: &[f64]| {
             let samples = Samples {

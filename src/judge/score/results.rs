@@ -10,6 +10,7 @@ use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
 use crate::judge::score::{Score, score};
 use crate::record::ErrorRow;
+use crate::study::asked::Asked;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;
@@ -42,6 +43,21 @@ pub struct Comparison<'a> {
     pub tolerance: f64,
     /// Whether the numbers of cells were found in the files, and not given by the user.
     pub are_cells_found: bool,
+}
+
+impl Asked {
+    /// The comparison at every time there is, as the files' own numbers of cells have it.
+    pub fn comparison<'a>(&'a self, mapping: &'a Mapping) -> Comparison<'a> {
+        Comparison {
+            case: self.case(),
+            parameters: self.parameters,
+            mapping,
+            references: &self.references,
+            requested: &self.requested,
+            tolerance: 1e-3,
+            are_cells_found: true,
+        }
+    }
 }
 
 /// One result with its score.

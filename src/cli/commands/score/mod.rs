@@ -100,15 +100,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for run in &mut runs {
         run.leave_out(&without);
     }
-    let comparison = Comparison {
-        case,
-        parameters: asked.parameters,
-        mapping: &mapping,
-        references: &asked.references,
-        requested: &asked.requested,
-        tolerance,
-        are_cells_found: arguments.cells.is_none(),
-    };
+    let are_cells_found = arguments.cells.is_none();
+    let comparison = Comparison { tolerance, are_cells_found, ..asked.comparison(&mapping) };
     let mut results = Results::of(runs, &comparison)?;
     let series = results.series();
     if let Some((series, cells)) = &series {
