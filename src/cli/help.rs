@@ -58,7 +58,13 @@ const GROUPS: [Group; 5] = [
     (
         "Over time",
         &[
-            ("compare", ["compare HEAD~1 HEAD", "compare out-before out-after terzaghi-mesh"]),
+            (
+                "compare",
+                [
+                    "compare HEAD~1 HEAD",
+                    "compare --commands './old {case} {out}' './new {case} {out}' gate.toml --allow-solvers",
+                ],
+            ),
             ("history", ["history", "history terzaghi-mesh --format csv"]),
             (
                 "bisect",

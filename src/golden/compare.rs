@@ -96,7 +96,7 @@ fn is_better_if_smaller(study: &str, name: &str) -> bool {
 }
 
 /// Every difference beyond the tolerance `atol + rtol · max(|x|, |g|)`, the worst first; a value that is
-/// not a number never agrees.
+/// not a finite number never agrees.
 pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Difference> {
     let mut differences = Vec::new();
     for (name, value) in &golden.values {
@@ -105,7 +105,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
         let tolerance = golden.tolerance(name, largest);
         let change = match present {
             None => Change::Missing,
-            Some(present) if (present - value).abs() <= tolerance => continue,
+            Some(present) if tolerance.is_finite() && (present - value).abs() <= tolerance => continue,
             Some(present) if present.abs() < value.abs() && is_better_if_smaller(&golden.study, name) => {
                 Change::Stale
             }
@@ -390,6 +390,18 @@ mod tests {
         // At the same cost some errors fell and some grew: a change of method, not a trade of cost for accuracy.
         let mixed = only(&[difference(error, 0.1, 0.2), difference(other, 0.1, 0.05)]);
         assert_eq!((mixed.change, mixed.is_stale()), (ParetoChange::Traded, false));
+    }
+
+    #[test]
+    fn what_is_no_number_never_agrees() {
+        let golden = GoldenFile {
+            values: BTreeMap::from([("a | pressure T_v=0.1".to_owned(), 0.1)]),
+            ..GoldenFile::of("study", &[], "test")
+        };
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let found = BTreeMap::from([("a | pressure T_v=0.1".to_owned(), wrong)]);
+            assert_eq!(compare(&golden, &found)[0].change, Change::Moved, "{wrong}");
+        }
     }
 
     #[test]

@@ -210,6 +210,11 @@ pub(crate) fn is_counter(measure: &str) -> bool {
     matches!(measure, "steps" | "point updates")
 }
 
+/// Whether a measure is an error at a time, and no balance.
+pub(crate) fn is_error(measure: &str) -> bool {
+    measure.contains(" T_v=") && !measure.starts_with("water")
+}
+
 /// Every measured error and work counter of records, by name.
 pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::new();

@@ -3,14 +3,16 @@
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
-use crate::golden::{is_counter, parts};
+use crate::golden::{is_counter, is_error, parts};
+use crate::history::orders::{OrderChange, order_changes};
 use crate::history::state::{Inputs, State, StudyState};
+use crate::measure::statistics::spread;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where something went from the first state to the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Trend {
+pub enum Trend {
     /// Nothing moved beyond its tolerance.
     Same,
     /// Better and nowhere worse.
@@ -49,7 +51,7 @@ impl Trend {
 
 /// An input that differs in the same way in some cases of a study.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub(crate) struct InputChange {
+pub struct InputChange {
     /// Key, `material.youngs_modulus`.
     pub key: String,
     /// Value before; empty where it was not given.
@@ -62,7 +64,7 @@ pub(crate) struct InputChange {
 
 /// A study in two states.
 #[derive(Clone, Debug, serde::Serialize)]
-pub(crate) struct StudyComparison {
+pub struct StudyComparison {
     /// Its name.
     pub study: String,
     /// Errors of what both states have; values that only one state has are in `unpaired`.
@@ -79,16 +81,49 @@ pub(crate) struct StudyComparison {
     pub groups: Vec<DifferenceGroup>,
     /// Cases that moved.
     pub changes: Vec<CaseChange>,
-    /// Sum of the processor times of the cases that both states timed, s: before and after.
-    pub seconds: Option<[f64; 2]>,
+    /// Series whose order or class is another. They are shown; accuracy is judged by the errors themselves.
+    pub orders: Vec<OrderChange>,
+    /// Processor times of the cases that both states timed, before and after. Never judged.
+    pub seconds: Option<[Seconds; 2]>,
     /// Each case in the plane of cost and error, before and after.
     #[serde(skip)]
     pub arrows: Vec<Arrow>,
 }
 
+/// Processor time of some cases, s.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Seconds {
+    /// Sum of the medians over the runs of each case.
+    pub median: f64,
+    /// Sum of the shortest runs.
+    pub least: f64,
+    /// Sum of the longest runs.
+    pub most: f64,
+}
+
+impl Seconds {
+    /// Of the cases that two states timed.
+    fn of_both(before: &StudyState, after: &StudyState) -> Option<[Self; 2]> {
+        let sum = |one: &StudyState, other: &StudyState| {
+            let runs = one.seconds.iter().filter(|(case, _)| other.seconds.contains_key(*case));
+            let all = runs.filter_map(|(_, runs)| spread(runs)).map(|one| Self {
+                median: one.median,
+                least: one.minimum,
+                most: one.maximum,
+            });
+            all.reduce(|sum, one| Self {
+                median: sum.median + one.median,
+                least: sum.least + one.least,
+                most: sum.most + one.most,
+            })
+        };
+        Some([sum(before, after)?, sum(after, before)?])
+    }
+}
+
 /// A case in the plane of cost and error.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Arrow {
+pub struct Arrow {
     /// Label of the case.
     pub case: String,
     /// Point updates and error before.
@@ -98,6 +133,11 @@ pub(crate) struct Arrow {
 }
 
 impl StudyComparison {
+    /// Whether a value or an input is another.
+    pub fn has_changed(&self) -> bool {
+        !(self.groups.is_empty() && self.inputs.is_empty())
+    }
+
     /// Whether accuracy or cost got worse, or values have gone.
     pub fn is_regression(&self) -> bool {
         let is_missing = self.groups.iter().any(|group| group.change == Change::Missing);
@@ -117,7 +157,6 @@ impl StudyComparison {
         let is_better = |one: &&Difference| matches!(one.change, Change::Stale | Change::Smaller);
         let accuracy = Trend::of(errors.iter().any(is_better), errors.iter().any(|one| !is_better(one)));
         let names = before.golden.values.keys().chain(found.keys()).map(String::as_str);
-        let seconds = before.seconds.iter().filter_map(|(case, a)| Some([*a, *after.seconds.get(case)?]));
         Self {
             study: study.to_owned(),
             accuracy,
@@ -127,7 +166,8 @@ impl StudyComparison {
             inputs: input_changes(before.inputs.as_ref(), after.inputs.as_ref()),
             groups: groups_of(&differences, names.collect::<BTreeSet<_>>()),
             changes: case_changes(&differences),
-            seconds: seconds.reduce(|sum, one| [sum[0] + one[0], sum[1] + one[1]]),
+            orders: order_changes(&before.golden.values, found, &differences),
+            seconds: Seconds::of_both(before, after),
             arrows: arrows(&before.golden.values, found),
         }
     }
@@ -216,8 +256,7 @@ fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<
     let time = |measure: &str| measure.rsplit_once(" T_v=").and_then(|(_, time)| time.parse::<f64>().ok());
     let arrow = |(case, measures): (&str, Vec<&str>)| {
         let work = measures.iter().find(|measure| **measure == "point updates")?;
-        let errors =
-            measures.iter().filter(|measure| time(measure).is_some() && !measure.starts_with("water"));
+        let errors = measures.iter().filter(|measure| is_error(measure));
         let error = errors.max_by(|a, b| {
             let rank = |measure: &str| (measure.starts_with("pressure"), time(measure).unwrap_or(0.0));
             rank(a).partial_cmp(&rank(b)).unwrap_or(std::cmp::Ordering::Equal)

@@ -1,8 +1,11 @@
 //! Results over time: two states of a study beside each other, and golden values over the commits that changed them.
 //!
-//! Nothing here solves anything. A state is a folder of records, or the golden files of a git revision.
+//! A state is a folder of records, or the golden files of a git revision; `rounds`
+//! alone runs something, commands of an attached solver.
 
 pub(crate) mod comparison;
+pub(crate) mod orders;
 pub(crate) mod repository;
+pub(crate) mod rounds;
 pub(crate) mod state;
 pub(crate) mod timeline;

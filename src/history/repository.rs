@@ -100,6 +100,12 @@ impl Repository {
         self.run(&["rev-parse", "--is-shallow-repository"]).is_ok_and(|answer| answer.trim() == "true")
     }
 
+    /// Whether files have changes that no commit has; `words` narrow `git status`.
+    pub fn is_dirty(&self, words: &[&str]) -> bool {
+        let command = [&["status", "--porcelain"], words].concat();
+        self.run(&command).is_ok_and(|changes| !changes.trim().is_empty())
+    }
+
     /// The commit of a revision: a branch, a tag, a hash, `HEAD~3`.
     ///
     /// # Errors

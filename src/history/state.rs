@@ -9,6 +9,7 @@ use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
+use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,8 @@ pub(crate) struct StudyState {
     pub golden: GoldenFile,
     /// Inputs of its cases by label; `None` where they are not known.
     pub inputs: Option<BTreeMap<String, Inputs>>,
-    /// Processor seconds of each case by label, where they were measured.
-    pub seconds: BTreeMap<String, f64>,
+    /// Processor seconds of every run of each case by label, where they were measured.
+    pub seconds: BTreeMap<String, Vec<f64>>,
 }
 
 /// Studies in one state.
@@ -69,12 +70,23 @@ impl State {
             let name = name.to_string_lossy().into_owned();
             let store = RecordStore::new(folder, &name);
             state.notes.extend(store.damages().iter().map(ToString::to_string));
-            let records: Vec<Record> = store.hashes().iter().filter_map(|hash| store.read(hash)).collect();
+            let hashes = store.hashes();
+            let records: Vec<Record> = hashes.iter().filter_map(|hash| store.read(hash)).collect();
+            if records.len() < hashes.len() {
+                let unread = count_of(hashes.len() - records.len(), "record", "records");
+                state.notes.push(format!(
+                    "{unread} of `{name}` in {} passed over: of another layout or damaged; run the study again",
+                    folder.display()
+                ));
+            }
             if !records.is_empty() {
                 state.studies.insert(name.clone(), StudyState::of_records(&name, &records));
             }
         }
-        if state.studies.is_empty() { Err(StateError::NoRecords(folder.to_owned())) } else { Ok(state) }
+        if state.studies.is_empty() && state.notes.is_empty() {
+            return Err(StateError::NoRecords(folder.to_owned()));
+        }
+        Ok(state)
     }
 
     /// The golden values of a revision in a folder of the repository.
@@ -105,7 +117,7 @@ impl State {
                 Some(Ok(golden)) => {
                     let source = study_of(name).and_then(|path| Some((path, texts.get(&object(path))?)));
                     let inputs = source.and_then(|(path, text)| inputs_of_study(path, text));
-                    let study = StudyState { golden, inputs, seconds: BTreeMap::new() };
+                    let study = StudyState { inputs, ..StudyState::of_golden(golden) };
                     state.studies.insert(name.to_owned(), study);
                 }
                 Some(Err(reason)) => state.notes.push(unreadable(&commit, path, &reason)),
@@ -120,12 +132,18 @@ impl State {
 }
 
 impl StudyState {
+    /// The state of golden values, whose inputs are not known.
+    pub fn of_golden(golden: GoldenFile) -> Self {
+        Self { golden, inputs: None, seconds: BTreeMap::new() }
+    }
+
     /// The state of records.
     pub fn of_records(study: &str, records: &[Record]) -> Self {
         let inputs = records.iter().map(|record| (record.case.label(), inputs_of(&record.case)));
-        let seconds = records.iter().filter_map(|record| {
-            let sample = record.wall.first()?;
-            Some((record.case.label(), sample.cpu_seconds.unwrap_or(sample.seconds)))
+        let timed = records.iter().filter(|record| !record.wall.is_empty());
+        let seconds = timed.map(|record| {
+            let runs = record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds));
+            (record.case.label(), runs.collect())
         });
         Self {
             golden: GoldenFile::of(study, records, "records"),

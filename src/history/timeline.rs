@@ -1,12 +1,13 @@
 //! Golden values over the commits that changed them.
 
 use crate::golden::compare::{Difference, case_changes, compare};
-use crate::golden::{GoldenFile, is_counter, parts};
+use crate::golden::{GoldenFile, is_counter, is_error, parts};
 use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::history::state::{StudyState, golden_name, unreadable};
 use oedometer_soil::elementary;
-use std::collections::BTreeMap;
+use oedometer_soil::wording::count_of;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Errors below this are round-off: their ratios say nothing.
 const ROUND_OFF: f64 = 1e-12;
@@ -56,11 +57,15 @@ pub(crate) fn timelines(
     only: &[String],
 ) -> Result<(Vec<Timeline>, Vec<String>), GitError> {
     let commits = repository.changes_below(folder)?;
-    let mut files = Vec::new();
+    let is_asked = |study: &str| only.is_empty() || only.iter().any(|name| name == study);
+    let (mut files, mut others) = (Vec::new(), BTreeSet::new());
     for (commit, paths) in &commits {
         for path in paths {
-            let Some(study) = golden_name(path, folder) else { continue };
-            if only.is_empty() || only.iter().any(|name| name == study) {
+            let Some(study) = golden_name(path, folder) else {
+                others.extend(json_name(path, folder).filter(|study| is_asked(study)));
+                continue;
+            };
+            if is_asked(study) {
                 files.push((study, commit, format!("{}:{path}", commit.hash)));
             }
         }
@@ -69,6 +74,12 @@ pub(crate) fn timelines(
     let texts = repository.texts(&objects)?;
     let mut lines: BTreeMap<&str, (Vec<Step>, Option<GoldenFile>)> = BTreeMap::new();
     let mut notes = Vec::new();
+    if let Some(first) = others.first() {
+        notes.push(format!(
+            "{} passed over, like {folder}/{first}.json: golden values are read from layout 2 on, which is CSV",
+            count_of(others.len(), "golden file in JSON is", "golden files in JSON are")
+        ));
+    }
     for (study, commit, object) in &files {
         // A commit that deleted the file has no text.
         let Some(text) = texts.get(object) else { continue };
@@ -102,27 +113,26 @@ impl Step {
             cost: Trend::Same,
         };
         let Some(before) = before else { return step };
-        let is_error = |name: &str| parts(name).1.contains(" T_v=") && !parts(name).1.starts_with("water");
-        step.error_index *= mean_ratio(before, golden, |name| is_error(name));
+        step.error_index *= mean_ratio(before, golden, |name| is_error(parts(name).1));
         step.work_index *= mean_ratio(before, golden, |name| is_counter(parts(name).1));
         let differences = compare(before, &golden.values);
         let paired = |one: &&Difference| one.golden.is_some() && one.found.is_some();
         step.moved = differences.iter().filter(paired).count();
         step.unpaired = differences.len() - step.moved;
-        let errors = differences.iter().filter(|one| is_error(&one.name));
-        step.largest_change =
-            errors.filter_map(super::super::golden::compare::Difference::relative_change).fold(0.0, f64::max);
-        let state = |golden: &GoldenFile| StudyState {
-            golden: golden.clone(),
-            inputs: None,
-            seconds: BTreeMap::new(),
-        };
+        let errors = differences.iter().filter(|one| is_error(parts(&one.name).1));
+        step.largest_change = errors.filter_map(Difference::relative_change).fold(0.0, f64::max);
+        let state = |golden: &GoldenFile| StudyState::of_golden(golden.clone());
         if !case_changes(&differences).is_empty() {
             let found = StudyComparison::of(&golden.study, &state(before), &state(golden));
             (step.accuracy, step.cost) = (found.accuracy, found.cost);
         }
         step
     }
+}
+
+/// The study whose golden file of the first layout has this path.
+fn json_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
+    path.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(".json").filter(|name| !name.contains('/'))
 }
 
 /// Geometric mean of the ratios of what both files have.

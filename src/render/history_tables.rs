@@ -1,12 +1,13 @@
 //! Results over time as tables and pages: two states of studies, and golden values over commits.
 
-use crate::history::comparison::{Arrow, StudyComparison, Trend};
+use crate::history::comparison::{Arrow, Seconds, StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::summary;
+use oedometer_soil::wording::short;
 
 fn trend(trend: Trend) -> Cell {
     let mood = match trend {
@@ -14,6 +15,13 @@ fn trend(trend: Trend) -> Cell {
         Trend::Mixed | Trend::Regressed => Mood::Fail,
     };
     Cell::Verdict(mood, trend.name().to_owned())
+}
+
+/// A processor time with the shortest and longest runs, where there are several.
+fn time(seconds: Option<Seconds>) -> Cell {
+    let Some(Seconds { median, least, most }) = seconds else { return Cell::missing("not timed in both") };
+    let scatter = if least < most { format!(" ({}–{})", short(least), short(most)) } else { String::new() };
+    Cell::Text(format!("{}{scatter}", short(median)))
 }
 
 /// Two states beside each other: a row per study, then what moved in it.
@@ -34,14 +42,15 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
                 let changes = one.groups.iter().filter_map(|group| group.worst.relative_change());
                 changes.reduce(f64::max)
             }),
-            Cell::of(one.seconds.map(|[before, after]| after / before), Cell::Number, "not timed in both"),
+            time(one.seconds.map(|[before, _]| before)),
+            time(one.seconds.map(|[_, after]| after)),
         ]
     };
     let header = "study | accuracy | cost | > values | > moved | > in one state only | > largest relative change \
-                  | > processor time, after over before";
+                  | > processor time before [s] | > after [s]";
     let mut tables = vec![
         Table::of(format!("{} → {}", names[0], names[1]), columns(header), found.iter().map(row))
-            .note("Cost is judged by work counters; times are shown and never judged."),
+            .note("Cost is judged by work counters. Times are medians over runs, with the shortest and longest, and never judged."),
     ];
     let inputs: Vec<Vec<Cell>> = found
         .iter()
@@ -80,6 +89,21 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             ]
         })
         .collect();
+    let orders: Vec<Vec<Cell>> = found
+        .iter()
+        .flat_map(|one| one.orders.iter().map(move |change| (one, change)))
+        .map(|(one, change)| {
+            let mut row = vec![Cell::Code(one.study.clone()), Cell::Code(change.series.clone())];
+            for state in [&change.before, &change.after] {
+                row.extend([Cell::of(state.order, Cell::Number, "its class has none"), state.class.into()]);
+            }
+            row
+        })
+        .collect();
+    if !orders.is_empty() {
+        let header = "study | series | > order before | class before | > order after | class after";
+        tables.push(Table::of("orders and classes that changed", columns(header), orders));
+    }
     if !moved.is_empty() {
         tables.push(Table::of(
             "what moved",

@@ -45,7 +45,7 @@ fn file_of(step: usize) -> String {
 
 /// Exact pressure at a height and time factor.
 fn pressure(time_factor: f64, height: f64) -> f64 {
-    exact("terzaghi", &[time_factor], &[1.0 - height], &[]).expect("inside its range").pressure[0]
+    exact("terzaghi", &[time_factor], &[1.0 - height], &[], &[]).expect("inside its range").pressure[0]
 }
 
 /// A file of Kratos whose soil is more permeable by a share: everything happens so much earlier.

@@ -116,7 +116,8 @@ fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &[] };
+    let against = "the golden values";
+    let answers = Answers { results: &results, changes: Some(&[]), against, making: &making, race: &[] };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
     assert_eq!(open_questions(&page), 5, "{markdown}");

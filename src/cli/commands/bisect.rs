@@ -49,6 +49,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let repository = Repository::around(&here).map_err(|error| usage(&error))?;
     let [good, bad] = [&arguments.good, &arguments.bad].map(|named| repository.commit(named));
     let (good, bad) = (good.map_err(|error| usage(&error))?, bad.map_err(|error| usage(&error))?);
+    if repository.is_dirty(&["--untracked-files=no"]) {
+        say!("the work tree has changes that are not committed: no commit that is tried has them");
+    }
     let trial = Trial::new(arguments, &repository, &bad)?;
     let ended = search(&trial, &good, &bad);
     trial.clean();
@@ -127,14 +130,17 @@ fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
     if worse.is_empty() { moved } else { worse }
 }
 
-/// Whether any of the values has moved from the right ones in the direction that it had gone at the bad commit; `None`
-/// where none of them is there.
+/// Whether any of the values has moved from the right ones in the direction that it had gone at the bad commit, or has
+/// become no number, or one again; `None` where none of them is there.
 fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Option<bool> {
     let there = moved.iter().filter_map(|one| Some((one, *here.golden.values.get(&one.name)?)));
     let has_moved = |(one, value): (&Difference, f64)| {
         let (Some(before), Some(after)) = (one.golden, one.found) else { return false };
+        if !(before.is_finite() && value.is_finite()) {
+            return before.is_finite() != value.is_finite();
+        }
         let tolerance = right.golden.tolerance(&one.name, before.abs().max(value.abs()));
-        value.is_nan() || ((value - before).abs() > tolerance && (value > before) == (after > before))
+        after.is_finite() && (value - before).abs() > tolerance && (value > before) == (after > before)
     };
     there.map(has_moved).reduce(|any, one| any || one)
 }
@@ -248,4 +254,44 @@ fn ended(command: &mut Command) -> Result<(), String> {
     let said = String::from_utf8_lossy(&output.stderr);
     let last = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
     Err(format!("{}: {}", output.status, last.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::golden::GoldenFile;
+
+    const NAME: &str = "a | pressure T_v=0.1";
+
+    fn state(value: f64) -> StudyState {
+        let values = [(NAME.to_owned(), value)].into();
+        StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
+    }
+
+    #[test]
+    fn a_value_moves_to_no_number_and_back_and_never_agrees_with_one() {
+        let (nan, infinite) = (f64::NAN, f64::INFINITY);
+        for (right, wrong, here, has_moved) in [
+            (0.1, 0.2, 0.1, false),
+            (0.1, 0.2, 0.3, true),
+            // Better than the good commit is not what is searched for.
+            (0.1, 0.2, 0.05, false),
+            (0.1, 0.2, nan, true),
+            (0.1, infinite, infinite, true),
+            (0.1, infinite, 0.1, false),
+            // It got worse earlier, and was still a number.
+            (0.1, nan, 0.2, false),
+            (0.1, nan, infinite, true),
+            (nan, 0.1, nan, false),
+            (nan, 0.1, 0.1, true),
+            (infinite, 0.1, 0.2, true),
+        ] {
+            let moved = moved_values(&state(right), &state(wrong));
+            assert_eq!(moved.len(), 1, "{right} {wrong}");
+            let found = moved_like(&state(right), &state(here), &moved);
+            assert_eq!(found, Some(has_moved), "{right} -> {wrong}, here {here}");
+        }
+        let none = StudyState::of_golden(GoldenFile::of("s", &[], "-"));
+        assert_eq!(moved_like(&state(0.1), &none, &moved_values(&state(0.1), &state(0.2))), None);
+    }
 }

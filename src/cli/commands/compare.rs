@@ -1,12 +1,15 @@
 //! `oedometer compare`: two states of studies beside each other, accuracy and cost apart.
 
 use crate::cli::commands::check::GOLDEN;
+use crate::cli::commands::run::load;
 use crate::cli::destination::write_document;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
+use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
+use crate::history::rounds::{self, with_command};
 use crate::history::state::State;
 use crate::render::history_tables::{comparison_page, comparison_tables};
 use crate::render::page::render_html;
@@ -24,6 +27,14 @@ pub struct Arguments {
     /// Names of the studies; all that both states have where none is named
     #[arg(value_name = "STUDY")]
     studies: Vec<String>,
+    /// A and B are commands: in turn each solves the cases of one study file in place of the command of its `[[solver]]`
+    #[arg(long)]
+    commands: bool,
+    /// Rounds of both commands
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "commands", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    rounds: u64,
+    #[command(flatten)]
+    trust: TrustArguments,
     /// Folder of the golden values in the repository
     #[arg(long, value_name = "DIR", default_value = GOLDEN)]
     golden: PathBuf,
@@ -35,11 +46,16 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-/// Reads both states, compares and prints; exit code 1 where something got worse.
+/// Reads or makes both states, compares and prints; exit code 1 where something got worse.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let before = state_of(&arguments.before, &arguments.golden)?;
-    let after = state_of(&arguments.after, &arguments.golden)?;
-    let (found, notes) = compare_states(&before, &after, &arguments.studies);
+    let named = [&arguments.before, &arguments.after].map(String::as_str);
+    let ([before, after], studies) = if arguments.commands {
+        (states_of_commands(named, arguments)?, &[][..])
+    } else {
+        let [before, after] = named.map(|name| state_of(name, &arguments.golden));
+        ([before?, after?], &arguments.studies[..])
+    };
+    let (found, notes) = compare_states(&before, &after, studies);
     for note in &notes {
         say!("{note}");
     }
@@ -60,6 +76,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
     say!("{} of {} studies got worse", regressed.len(), found.len());
     Ok(if regressed.is_empty() { Exit::Pass } else { Exit::VerdictFailed })
+}
+
+/// The states of two commands on the one study that is named.
+fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Result<[State; 2]> {
+    let [named] = arguments.studies.as_slice() else {
+        return Err(Ended::usage(
+            "`--commands` takes one study file, whose `[[solver]]` the commands stand for",
+        ));
+    };
+    let named = [PathBuf::from(named)];
+    let mut study = load(&named)?;
+    arguments.trust.mark_all(&mut study, &named)?;
+    let [before, after] = commands.map(|command| with_command(&study[0], command).map_err(Ended::usage));
+    let rounds = usize::try_from(arguments.rounds).unwrap_or(1);
+    Ok(rounds::states_of_commands(&[before?, after?], commands, rounds))
 }
 
 /// A state as it is named: a folder, or a revision of the repository around the current folder.
@@ -83,5 +114,8 @@ pub fn repository_with(golden: &Path) -> anyhow::Result<(Repository, String)> {
         Ended::usage(format!("{} lies outside the repository {}", whole.display(), root.display()))
     })?;
     let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
+    if repository.is_dirty(&["--", &folder]) {
+        say!("{folder}/ has changes that are not committed: no revision has them");
+    }
     Ok((repository, folder))
 }

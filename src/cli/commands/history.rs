@@ -11,6 +11,9 @@ use crate::render::history_tables::{timeline_page, timeline_summary, timeline_ta
 use crate::render::page::render_html;
 use std::path::PathBuf;
 
+/// Files that cannot be read, named before the rest is counted.
+const MOST_NOTES: usize = 3;
+
 /// Arguments of `history`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -38,11 +41,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let (lines, notes) = timelines(&repository, &folder, &arguments.studies)
         .map_err(|error| Ended::usage(error.to_string()))?;
-    if let [first, rest @ ..] = notes.as_slice() {
-        say!(
-            "{first}{}",
-            if rest.is_empty() { String::new() } else { format!(", and {} more files", rest.len()) }
-        );
+    for note in notes.iter().take(MOST_NOTES) {
+        say!("{note}");
+    }
+    if notes.len() > MOST_NOTES {
+        say!("{} more files are passed over", notes.len() - MOST_NOTES);
     }
     if lines.is_empty() {
         let what = format!("no commit has golden values of these studies in {folder}/");

@@ -7,10 +7,30 @@ use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::largest;
 use oedometer_convergence::{Classification, Context, ErrorSeries, Undefined, classify, pair_orders};
 use oedometer_exact::ReferenceKind;
+use oedometer_soil::wording::words;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.
 pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];
+
+/// Where a number that stands beside ours comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// A closed form or a series with a bound on its error.
+    Exact,
+    /// A numerical solution that was refined until it no longer changed.
+    ConvergedReference,
+    /// The output of another program, as we ran it.
+    OtherProgram,
+    /// A published figure.
+    ReadOffAFigure,
+}
+
+words!(
+    Evidence:
+    Exact "exact", ConvergedReference "converged reference", OtherProgram "other program",
+    ReadOffAFigure "read off a figure",
+);
 
 /// Another program.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +51,8 @@ pub struct Peer {
     pub seconds: Option<f64>,
     /// Wall seconds, where they were taken.
     pub wall_seconds: Option<f64>,
+    /// Where its numbers come from.
+    pub evidence: Evidence,
 }
 
 impl Peer {
@@ -46,12 +68,14 @@ pub static PEERS: LazyLock<Vec<Peer>> =
 
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
     type Number = Option<f64>;
-    type Columns = (String, String, Option<usize>, String, String, Number, Number, Number, Number, Number);
+    type Columns =
+        (String, String, Option<usize>, String, String, Number, Number, Number, Number, Number, Evidence);
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
     let peer = |columns: Result<Columns, csv::Error>| {
-        let (name, kind, cells, samples, time_scheme, early, middle, late, seconds, wall_seconds) = columns?;
+        let (name, kind, cells, samples, time_scheme, early, middle, late, seconds, wall_seconds, evidence) =
+            columns?;
         let errors = [early, middle, late];
-        Ok(Peer { name, kind, cells, samples, time_scheme, errors, seconds, wall_seconds })
+        Ok(Peer { name, kind, cells, samples, time_scheme, errors, seconds, wall_seconds, evidence })
     };
     reader.deserialize().map(peer).collect()
 }
@@ -161,9 +185,12 @@ mod tests {
         assert!(
             PEERS.iter().all(|peer| peer.errors.iter().flatten().all(|error| (0.0..1.0).contains(error)))
         );
-        let broken =
-            read("# a note\na,b,c,d,e,f,g,h,i,j\nx,y,10,,,many,,,,\n").expect_err("no number").to_string();
+        let broken = read("# a note\na,b,c,d,e,f,g,h,i,j,k\nx,y,10,,,many,,,,,exact\n")
+            .expect_err("no number")
+            .to_string();
         assert!(broken.contains("line: 3"), "{broken}");
+        // No number without a label.
+        assert!(read("a,b,c,d,e,f,g,h,i,j,k\nx,y,10,,,0.1,,,,,guessed\n").is_err());
     }
 
     #[test]

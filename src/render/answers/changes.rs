@@ -1,90 +1,53 @@
-//! What changed since the golden values? The worst first.
+//! What changed since the golden values, or another state? What got worse first.
 
-use crate::golden::compare::{Change, Difference};
+use crate::history::comparison::StudyComparison;
 use crate::render::answers::{Answer, Question, short};
-use crate::render::number;
+use crate::render::history_tables::comparison_tables;
 use crate::render::page::Block;
-use crate::render::table::{Cell, Mood, Table, columns};
+use oedometer_soil::wording::count_of;
 
-const QUESTION: Question = Question { heading: "What changed since the golden values?", id: "changes" };
+const QUESTION: Question = Question { heading: "What changed?", id: "changes" };
 
-/// The worst differences of all studies together.
-pub fn answer(changes: Option<&[(String, Difference)]>) -> Answer {
+/// The studies that differ, as `oedometer compare` shows them.
+pub fn answer(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
     let Some(changes) = changes else {
-        return QUESTION.open("golden values of these studies, which `oedometer accept` writes");
+        return QUESTION.open(&format!("values of these studies in {against}"));
     };
     if changes.is_empty() {
-        let text =
-            "Nothing: every value of these studies with a golden value agrees with it within its tolerance.";
+        let text = format!(
+            "Nothing: every value that these studies share with {against} agrees within its tolerance."
+        );
         return QUESTION.told(text, Vec::new());
     }
-    let mut ranked: Vec<&(String, Difference)> = changes.iter().collect();
-    let size = |one: &Difference| one.relative_change().unwrap_or(0.0);
-    ranked.sort_by(|a, b| a.1.change.cmp(&b.1.change).then_with(|| size(&b.1).total_cmp(&size(&a.1))));
-    let count = |kind: Change| changes.iter().filter(|(_, one)| one.change == kind).count();
-    let kinds = [Change::Moved, Change::Missing, Change::Extra, Change::Smaller, Change::Stale];
-    let counted: Vec<String> = kinds
-        .into_iter()
-        .filter(|kind| count(*kind) > 0)
-        .map(|kind| format!("{} {}", count(kind), kind.name()))
-        .collect();
-    let rows = ranked.iter().map(|(study, one)| {
-        let mood = if one.change == Change::Moved { Mood::Fail } else { Mood::Note };
-        let [golden, found] = values_of(one);
-        vec![
-            Cell::Verdict(mood, one.change.name().to_owned()),
-            Cell::Code(study.clone()),
-            one.name.as_str().into(),
-            golden,
-            found,
-            Cell::of(one.relative_change(), Cell::Percent, "nothing to compare"),
-        ]
-    });
-    let table = Table::of(
-        "The worst first",
-        columns("change | study | value | > golden | > now | > relative change"),
-        rows,
+    let worse = changes.iter().filter(|one| one.is_regression()).count();
+    let sentence = format!(
+        "Against {against} {} changed, of which {worse} got worse.",
+        count_of(changes.len(), "study", "studies")
     );
-    let sentence = format!("Values that differ from the golden ones: {}.", counted.join(", "));
-    QUESTION.told(sentence, vec![Block::Table(short(table, "listed by oedometer check"))])
-}
-
-/// The golden and the present value, with digits that tell them apart.
-fn values_of(one: &Difference) -> [Cell; 2] {
-    if let (Some(golden), Some(found)) = (one.golden, one.found) {
-        return number::told_apart([golden, found]).map(Cell::Text);
-    }
-    [one.golden, one.found]
-        .map(|value| value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value))))
+    let tables = comparison_tables(changes, [against, "this report"]);
+    let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
+    QUESTION.told(sentence, tables.into_iter().map(block).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn change(name: &str, change: Change, found: f64) -> (String, Difference) {
-        let difference = Difference {
-            name: name.to_owned(),
-            change,
-            golden: Some(1.0),
-            found: Some(found),
-            tolerance: 0.0,
-        };
-        ("study".to_owned(), difference)
-    }
+    use crate::golden::GoldenFile;
+    use crate::history::state::StudyState;
 
     #[test]
-    fn the_worst_stands_first_and_what_is_better_last() {
-        let all = [
-            change("stale | T_v=1", Change::Stale, 0.1),
-            change("little | T_v=1", Change::Moved, 1.1),
-            change("much | T_v=1", Change::Moved, 2.0),
-        ];
-        let Answer::Told(section) = answer(Some(&all)) else { panic!("they differ") };
-        let Some(Block::Table(table)) = section.blocks.last() else { panic!("{section:?}") };
-        let names: Vec<&Cell> = table.rows.iter().map(|row| &row[2]).collect();
-        assert_eq!(names, [&"much | T_v=1".into(), &"little | T_v=1".into(), &"stale | T_v=1".into()]);
-        assert!(format!("{:?}", answer(Some(&[]))).contains("Nothing"));
-        assert!(matches!(answer(None), Answer::Open { .. }));
+    fn what_got_worse_is_counted_and_shown_and_nothing_is_said_to_be_nothing() {
+        let state = |error: f64| {
+            let values = [("GIMP cells=4 | pressure T_v=1".to_owned(), error)].into();
+            StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
+        };
+        let changes = [("worse", 0.3), ("better", 0.1)]
+            .map(|(name, error)| StudyComparison::of(name, &state(0.2), &state(error)));
+        let Answer::Told(section) = answer(Some(&changes), "v1.0") else { panic!("they differ") };
+        let told = format!("{section:?}");
+        assert!(told.contains("Against v1.0 2 studies changed, of which 1 got worse"), "{told}");
+        assert!(told.contains("regressed") && told.contains("improved"), "{told}");
+        assert!(format!("{:?}", answer(Some(&[]), "v1.0")).contains("Nothing"));
+        assert!(matches!(answer(None, "v1.0"), Answer::Open { .. }));
     }
 }

@@ -12,7 +12,7 @@ pub(crate) mod paper;
 mod race;
 mod regime;
 
-use crate::golden::compare::Difference;
+use crate::history::comparison::StudyComparison;
 use crate::judge::race::RaceRow;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::page::{Block, Callout, Page, Section, slug};
@@ -27,8 +27,10 @@ use std::fmt::Write;
 pub struct Answers<'a> {
     /// The studies with their records and judgements.
     pub results: &'a [StudyResults<'a>],
-    /// Differences from the golden values with the name of their study; `None` without golden values.
-    pub changes: Option<&'a [(String, Difference)]>,
+    /// The studies that differ from another state; `None` where it has none of them.
+    pub changes: Option<&'a [StudyComparison]>,
+    /// That state: a folder, a revision or the golden values.
+    pub against: &'a str,
     /// When, where and by which command.
     pub making: &'a Making,
     /// Every contender in every situation of the race.
@@ -161,7 +163,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         cost::answer(results, &links),
         audit::answer(results, &links),
         double_point::answer(results, &links),
-        changes::answer(answers.changes),
+        changes::answer(answers.changes, answers.against),
     ];
     let mut sections = Vec::new();
     let mut open = Vec::new();

@@ -244,8 +244,10 @@ pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
     let rows = peers::compare(&precision.runs).into_iter().map(|Comparison { peer, ahead }| {
         let cells = peer.cells.map_or(String::new(), |cells| format!(", {cells} cells"));
         let scheme = peer.time_scheme.replace("BE", "backward Euler");
-        let mut row: Vec<Cell> =
-            vec![format!("{}: {}{cells}, {scheme}, at {}", peer.name, peer.kind, peer.samples).into()];
+        let mut row: Vec<Cell> = vec![
+            format!("{}: {}{cells}, {scheme}, at {}", peer.name, peer.kind, peer.samples).into(),
+            peer.evidence.name().into(),
+        ];
         row.extend(peer.errors.map(|error| measured(error, Cell::Error)));
         row.push(measured(peer.seconds, Cell::Number));
         if let Some((run, errors)) = ahead {
@@ -253,13 +255,13 @@ pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
             row.extend(errors.map(|error| measured(error, Cell::Error)));
             row.push(Cell::Number(run.wall.median));
         }
-        row.resize(10, Cell::missing("every run here has a larger error at some of the times"));
+        row.resize(11, Cell::missing("every run here has a larger error at some of the times"));
         row
     });
     let times = peers::TIME_FACTORS.map(|factor| format!("> T_v = {factor}")).join(" | ");
     Table::of(
         "Other programs on this column, and the cheapest run here whose errors are no larger at any of the times",
-        columns(&format!("program | {times} | > CPU [s] | run here | {times} | > wall [s]")),
+        columns(&format!("program | evidence | {times} | > CPU [s] | run here | {times} | > wall [s]")),
         rows,
     )
     .note(

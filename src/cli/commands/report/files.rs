@@ -1,7 +1,7 @@
 //! The files of a report: the answer page, the list of studies, a page a study, and all tables and figures as
 //! files of their own.
 
-use crate::golden::compare::Difference;
+use crate::history::comparison::StudyComparison;
 use crate::judge::race::RaceRow;
 use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::{Answers, Making, answer_page};
@@ -19,7 +19,7 @@ use std::time::Instant;
 pub fn write(
     out: &Path,
     results: &[StudyResults<'_>],
-    changes: Option<&[(String, Difference)]>,
+    (against, changes): (&str, Option<&[StudyComparison]>),
     mut making: Making,
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
@@ -39,7 +39,7 @@ pub fn write(
     }
 
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, making: &making, race: &rows };
+    let answers = Answers { results, changes, against, making: &making, race: &rows };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
     let readme = results.iter().fold(render_markdown(&front)?, |text, one| match path_from(out, &one.file) {

@@ -7,14 +7,16 @@ use crate::campaign::runner::RunOptions;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
+use crate::cli::commands::compare::state_of;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::cli::study_files;
 use crate::cli::study_tables::Beside;
 use crate::cli::trust::{self, TrustArguments};
-use crate::golden::compare::{Difference, compare};
-use crate::golden::{GoldenFile, values_of};
+use crate::golden::{GoldenFile, parts};
+use crate::history::comparison::StudyComparison;
+use crate::history::state::{State, StudyState};
 use crate::record::Record;
 use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
@@ -41,6 +43,9 @@ pub struct Arguments {
     /// Folder of the golden values that the records are compared with
     #[arg(long, value_name = "DIR", default_value = GOLDEN)]
     golden: PathBuf,
+    /// Say what changed against this state instead: a folder of records, or a git revision with golden values
+    #[arg(long, value_name = "A")]
+    against: Option<String>,
     /// Run nothing: render the records that are there, whichever program made them
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
@@ -58,6 +63,10 @@ pub struct Arguments {
 /// its figures and tables as files.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let start = Instant::now();
+    let against = arguments.against.as_deref().map(|named| state_of(named, &arguments.golden)).transpose()?;
+    for note in against.iter().flat_map(|state| &state.notes) {
+        say!("{note}");
+    }
     let mut studies = load_or_shipped(&arguments.studies)?;
     let reports = if arguments.from_records {
         kept(&studies, arguments)?
@@ -82,8 +91,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
         left_out: results.iter().map(StudyResults::left_out).sum(),
     };
-    let changes = changes(&studies, &reports, arguments);
-    let written = files::write(&arguments.out, &results, changes.as_deref(), making, start)?;
+    let changes = changes(&studies, &reports, against.as_ref(), &arguments.golden);
+    let name = against.as_ref().map_or("the golden values", |state| &state.name);
+    let written = files::write(&arguments.out, &results, (name, changes.as_deref()), making, start)?;
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
     let mut tally = Tally::default();
@@ -152,27 +162,35 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
     Ok(reports)
 }
 
-/// How the CI tier's values differ from the golden ones, each with the name of its study; none where no study has
-/// golden values.
+/// The studies that differ from another state, or from their golden values, those that got worse first; `None` where no
+/// study is in it. Compared are the cases that it has, and those of the CI tier.
 fn changes(
     studies: &[Study],
     reports: &[RunReport],
-    arguments: &Arguments,
-) -> Option<Vec<(String, Difference)>> {
+    against: Option<&State>,
+    golden: &Path,
+) -> Option<Vec<StudyComparison>> {
     let of_study = |(study, report): &(&Study, &RunReport)| {
-        let golden = GoldenFile::read_or_embedded(&arguments.golden, &study.name).ok()?;
+        let before = match against {
+            Some(state) => state.studies.get(&study.name)?.clone(),
+            None => StudyState::of_golden(GoldenFile::read_or_embedded(golden, &study.name).ok()?),
+        };
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
-        let is_of_tier = |record: &&Record| of_tier.contains(&record.hash);
-        let records: Vec<Record> = report.records.iter().filter(is_of_tier).cloned().collect();
-        if records.is_empty() {
-            return Some(Vec::new());
-        }
-        let differences = compare(&golden, &values_of(&records));
-        Some(differences.into_iter().map(|one| (study.name.clone(), one)).collect::<Vec<_>>())
+        let known: HashSet<&str> = before.golden.values.keys().map(|name| parts(name).0).collect();
+        let is_compared =
+            |record: &&Record| of_tier.contains(&record.hash) || known.contains(record.case.label().as_str());
+        let records: Vec<Record> = report.records.iter().filter(is_compared).cloned().collect();
+        let after = StudyState::of_records(&study.name, &records);
+        (!records.is_empty()).then(|| StudyComparison::of(&study.name, &before, &after))
     };
     let all: Vec<(&Study, &RunReport)> = studies.iter().zip(reports).collect();
-    let held: Vec<_> = all.par_iter().filter_map(of_study).collect();
-    (!held.is_empty()).then(|| held.concat())
+    let mut found: Vec<StudyComparison> = all.par_iter().filter_map(of_study).collect();
+    if found.is_empty() {
+        return None;
+    }
+    found.retain(StudyComparison::has_changed);
+    found.sort_by_key(|one| !one.is_regression());
+    Some(found)
 }
 
 /// The processor by its name where the system tells it, else by its architecture, with the number of its threads.

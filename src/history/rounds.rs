@@ -1,0 +1,70 @@
+//! Two commands of an attached solver, run in turn on the cases of a study.
+
+use crate::campaign::runner::{RunOptions, run_study};
+use crate::case::tier::Tier;
+use crate::golden::compare::compare;
+use crate::history::state::{State, StudyState};
+use crate::record::Record;
+use crate::study::check::Study;
+use std::collections::BTreeMap;
+
+/// The study with a command in place of that of its one solver, and with the cases of that solver alone. The command is
+/// words with blanks between them and the placeholders of `[[solver]]`.
+///
+/// # Errors
+/// When the study attaches no solver or several, or the command is empty.
+pub(crate) fn with_command(study: &Study, command: &str) -> Result<Study, String> {
+    let mut study = study.clone();
+    let [solver] = study.solvers.as_mut_slice() else {
+        let count = study.solvers.len();
+        return Err(format!(
+            "{} attaches {count} solvers: a command stands for the one `[[solver]]` of a study",
+            study.name
+        ));
+    };
+    solver.command = command.split_whitespace().map(str::to_owned).collect();
+    if solver.command.is_empty() {
+        return Err(
+            "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`"
+                .to_owned(),
+        );
+    }
+    // Nothing of a result that is there already, one run a round, and no version of another program.
+    (solver.repeats, solver.warm_up) = (1, false);
+    (solver.files, solver.version) = (Vec::new(), Vec::new());
+    study.planned.retain(|planned| planned.case.is_attached());
+    Ok(study)
+}
+
+/// The states of two commands after some rounds: the values are those of the first round, the times those of all. Every
+/// other round begins with the second command, so that a machine that slows down slows both.
+pub(crate) fn states_of_commands(study: &[Study; 2], names: [&str; 2], rounds: usize) -> [State; 2] {
+    let mut states =
+        names.map(|name| State { name: format!("`{name}`"), studies: BTreeMap::new(), notes: Vec::new() });
+    for round in 0..rounds {
+        for side in if round % 2 == 0 { [0, 1] } else { [1, 0] } {
+            let report = run_study(&study[side], &RunOptions::whole(Tier::Full, 1), None, &|_| {});
+            states[side].notes.extend(report.errors.iter().map(ToString::to_string));
+            states[side].add_round(&study[side].name, &report.records);
+        }
+    }
+    states
+}
+
+impl State {
+    /// Takes the values of the first round and the times of each.
+    fn add_round(&mut self, study: &str, records: &[Record]) {
+        let found = StudyState::of_records(study, records);
+        let Some(first) = self.studies.get_mut(study) else {
+            self.studies.insert(study.to_owned(), found);
+            return;
+        };
+        let others = compare(&first.golden, &found.golden.values).len();
+        if others > 0 {
+            self.notes.push(format!("{}: {others} values of {study} differ from round to round", self.name));
+        }
+        for (case, seconds) in found.seconds {
+            first.seconds.entry(case).or_default().extend(seconds);
+        }
+    }
+}
