@@ -145,7 +145,7 @@ impl StudyComparison {
     }
 
     /// Compares a study's states; tolerances are those of the first.
-    pub fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
+    pub(crate) fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
         let found = &after.golden.values;
         let differences = compare(&before.golden, found);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences

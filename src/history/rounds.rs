@@ -4,7 +4,7 @@ use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::tier::Tier;
 use crate::golden::compare::compare;
 use crate::history::state::{State, StudyState};
-use crate::record::Record;
+use crate::record::{Record, Status};
 use crate::study::check::Study;
 use std::collections::BTreeMap;
 
@@ -44,7 +44,13 @@ pub(crate) fn states_of_commands(study: &[Study; 2], names: [&str; 2], rounds: u
     for round in 0..rounds {
         for side in if round % 2 == 0 { [0, 1] } else { [1, 0] } {
             let report = run_study(&study[side], &RunOptions::whole(Tier::Full, 1), None, &|_| {});
-            states[side].notes.extend(report.errors.iter().map(ToString::to_string));
+            let failed = report.records.iter().filter(|record| record.status != Status::Ok);
+            let failed = failed.map(|record| format!("{}: {}", record.case.label(), record.status.name()));
+            let told = report.errors.iter().map(ToString::to_string).chain(failed);
+            if round == 0 {
+                let name = states[side].name.clone();
+                states[side].notes.extend(told.map(|what| format!("{name}: {what}")));
+            }
             states[side].add_round(&study[side].name, &report.records);
         }
     }

@@ -1,5 +1,6 @@
 //! Results over time as tables and pages: two states of studies, and golden values over commits.
 
+use crate::golden::compare::Difference;
 use crate::history::comparison::{Arrow, Seconds, StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
@@ -77,15 +78,13 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
         .iter()
         .flat_map(|one| one.groups.iter().map(move |group| (one, group)))
         .map(|(one, group)| {
-            let value = |value: Option<f64>| {
-                value.map_or(Cell::missing("no value"), |value| number::exact(value).as_str().into())
-            };
+            let [before, after] = values_of(&group.worst);
             vec![
                 Cell::Code(one.study.clone()),
                 Cell::Text(summary(group)),
                 Cell::Code(group.worst.name.clone()),
-                value(group.worst.golden),
-                value(group.worst.found),
+                before,
+                after,
             ]
         })
         .collect();
@@ -112,6 +111,15 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
         ));
     }
     tables
+}
+
+/// The value before and after, with digits that tell them apart.
+fn values_of(one: &Difference) -> [Cell; 2] {
+    if let (Some(before), Some(after)) = (one.golden, one.found) {
+        return number::told_apart([before, after]).map(Cell::Text);
+    }
+    [one.golden, one.found]
+        .map(|value| value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value))))
 }
 
 /// Golden values over time: a row per commit that changed them.

@@ -1,7 +1,7 @@
 //! `compare`, `history` and `bisect` on a repository of ten commits: one makes results worse, one does not build, one
 //! crashes, one only renames.
 
-use crate::program::{PROGRAM, Told, call};
+use crate::program::{PROGRAM, Told, call, call_with};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -178,4 +178,120 @@ fn what_cannot_be_compared_is_refused_in_sentences() {
     git(at, &["commit", "-q", "-a", "-m", "Write another layout"]);
     let told = call(at, &["history"]);
     assert!(told.code == 0 && told.err.contains("is passed over"), "{}", told.err);
+}
+
+/// A solver in Python, right but for a factor, with its study.
+fn attached(at: &Path) {
+    let solver = |factor: &str| {
+        format!(
+            "import json, math, pathlib, sys\n\
+             case = json.loads(pathlib.Path(sys.argv[1]).read_text())\n\
+             cells, height = case['cells'], case['column']['height']\n\
+             with open(pathlib.Path(sys.argv[2]) / 'result.csv', 'w') as result:\n\
+             \x20   result.write('t,y,p,u_y\\n')\n\
+             \x20   for time, factor in zip(case['times'], case['time_factors']):\n\
+             \x20       u, before, load = 0.0, None, case['column']['load']\n\
+             \x20       for node in range(cells + 1):\n\
+             \x20           k = [(2 * m + 1) * math.pi / 2 for m in range(60)]\n\
+             \x20           p = sum(2 / a * math.sin(a * (1 - node / cells)) * math.exp(-a * a * factor) for a in k)\n\
+             \x20           p *= load * (1 + {factor})\n\
+             \x20           if node > 0:\n\
+             \x20               u -= height / cells * (load - (p + before) / 2) / case['derived']['oedometric_modulus']\n\
+             \x20           before = p\n\
+             \x20           result.write(f'{{time!r}},{{node * height / cells!r}},{{p!r}},{{u!r}}\\n')\n"
+        )
+    };
+    for (name, factor) in [("good.py", "0.3 / cells**2"), ("worse.py", "0.3 / cells"), ("crash.py", "1 / 0")]
+    {
+        fs::write(at.join(name), solver(factor)).expect("written");
+    }
+    fs::write(at.join("nodes.toml"), "sample = \"nodes\"\n").expect("written");
+    fs::write(
+        at.join("own.toml"),
+        "title = \"Own\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.1], references = [\"terzaghi-incompressible\"] }\n\
+         [[solver]]\nname = \"own\"\ncommand = [\"python3\", \"good.py\", \"{case}\", \"{out}\"]\n\
+         result = \"{out}/result.csv\"\nmapping = \"nodes.toml\"\ntimeout = 60.0\n\
+         [[sweep]]\nmethod = [\"own\"]\ncells = [8, 16, 32]\n",
+    )
+    .expect("written");
+}
+
+#[test]
+fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    attached(at);
+    let compare = |b: &str, more: &[&str]| {
+        let a = "python3 good.py {case} {out}";
+        call(
+            at,
+            &[&["compare", "--commands", a, b, "own.toml", "--allow-solvers", "--rounds", "2"], more]
+                .concat(),
+        )
+    };
+    let same = compare("python3 good.py {case} {out}", &[]);
+    assert_eq!(same.code, 0, "{}{}", same.out, same.err);
+    let worse = compare("python3 worse.py {case} {out}", &["--format", "json"]);
+    assert_eq!(worse.code, 1, "{}{}", worse.out, worse.err);
+    let found: serde_json::Value = serde_json::from_str(&worse.out).expect("JSON");
+    assert_eq!((&found[0]["accuracy"], &found[0]["cost"]), (&"regressed".into(), &"same".into()));
+    let orders = found[0]["orders"].as_array().expect("orders that changed");
+    let of_pressure = |one: &&serde_json::Value| {
+        one["series"].as_str().is_some_and(|name| name.contains("pressure nodes l2"))
+    };
+    let pressure = orders.iter().find(of_pressure).expect("the order of the pressure");
+    let [before, after] = ["before", "after"].map(|side| pressure[side]["order"].as_f64());
+    assert!((before.expect("an order") - 2.0).abs() < 0.1, "{found:#}");
+    assert!((after.expect("an order") - 1.0).abs() < 0.1, "{found:#}");
+    for side in 0..2 {
+        let [least, most] = ["least", "most"].map(|name| found[0]["seconds"][side][name].as_f64());
+        assert!(least.expect("timed") <= most.expect("timed"), "{found:#}");
+    }
+    let crash = compare("python3 crash.py {case} {out}", &[]);
+    assert_eq!(crash.code, 1, "{}{}", crash.out, crash.err);
+    for (arguments, told) in [
+        (&["compare", "--commands", "a", "b"][..], "takes one study file"),
+        (&["compare", "--commands", "a", "", "own.toml", "--allow-solvers"], "the command is empty"),
+    ] {
+        let refused = call(at, arguments);
+        assert!(refused.code != 0 && refused.err.contains(told), "{arguments:?}: {}", refused.err);
+    }
+    // What would be started is asked about, not what the study names.
+    let asked =
+        call_with(at, &[("OEDOMETER_ALLOW_SOLVERS", "")], &["compare", "--commands", "a", "b", "own.toml"]);
+    assert!(asked.code == 6 && asked.err.contains("starts `a` in"), "{}", asked.err);
+}
+
+#[test]
+fn states_that_are_not_whole_are_told_in_sentences() {
+    let folder = repository();
+    let at = folder.path();
+    // Golden values of the first layout are passed over with a word, and so is what is not committed.
+    fs::write(at.join("golden/old.json"), "{}\n").expect("written");
+    git(at, &["add", "-A"]);
+    git(at, &["commit", "-q", "-m", "Write the first layout"]);
+    fs::write(at.join("golden/gate.csv"), golden([9e-2, 9e-2], "not committed")).expect("written");
+    let told = call(at, &["history"]);
+    assert!(told.code == 0 && told.err.contains("1 golden file in JSON is passed over"), "{}", told.err);
+    assert!(told.err.contains("changes that are not committed"), "{}", told.err);
+    git(at, &["checkout", "-q", "--", "golden/gate.csv"]);
+    // Records of another layout.
+    assert_eq!(call(at, &["run", "studies/gate.toml", "--out", "a"]).code, 0);
+    let records = fs::read_dir(at.join("a/gate/cases")).expect("records");
+    let record = records.flatten().map(|entry| entry.path()).next().expect("a record").join("record.json");
+    fs::write(&record, "{\"schema\": 999}\n").expect("written");
+    let told = call(at, &["compare", "a", "a"]);
+    assert!(told.err.contains("1 record of `gate`") && told.err.contains("passed over"), "{}", told.err);
+    // A shallow clone, and no git at all.
+    let clone = TempDir::new().expect("a folder");
+    let from = format!("file://{}", at.display());
+    git(clone.path(), &["clone", "-q", "--depth", "1", &from, "shallow"]);
+    let shallow = clone.path().join("shallow");
+    let told = call(&shallow, &["history"]);
+    assert!(told.err.contains("the clone is shallow"), "{}", told.err);
+    let told = call(&shallow, &["compare", "HEAD~3", "HEAD"]);
+    assert!(told.code == 2 && told.err.contains("git fetch --unshallow"), "{}", told.err);
+    let without = Command::new(PROGRAM).arg("history").current_dir(at).env("PATH", "").output().expect("run");
+    let said = String::from_utf8_lossy(&without.stderr);
+    assert!(!without.status.success() && said.contains("cannot start `git`"), "{said}");
 }

@@ -55,14 +55,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let [before, after] = named.map(|name| state_of(name, &arguments.golden));
         ([before?, after?], &arguments.studies[..])
     };
-    let (found, notes) = compare_states(&before, &after, studies);
+    let (mut found, notes) = compare_states(&before, &after, studies);
     for note in &notes {
         say!("{note}");
     }
+    // Nothing that is the same is no agreement.
+    found.retain(|one| one.values + one.unpaired > 0);
     if found.is_empty() {
         return Err(Ended::with(
             Exit::NothingSelected,
-            format!("{} and {} have no study in common", before.name, after.name),
+            format!("{} and {} have no value of a study in common", before.name, after.name),
         ));
     }
     if arguments.format == TableFormat::Json {
@@ -86,11 +88,12 @@ fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Res
         ));
     };
     let named = [PathBuf::from(named)];
-    let mut study = load(&named)?;
-    arguments.trust.mark_all(&mut study, &named)?;
+    let study = load(&named)?;
     let [before, after] = commands.map(|command| with_command(&study[0], command).map_err(Ended::usage));
+    let mut studies = [before?, after?];
+    arguments.trust.mark_all(&mut studies, &named)?;
     let rounds = usize::try_from(arguments.rounds).unwrap_or(1);
-    Ok(rounds::states_of_commands(&[before?, after?], commands, rounds))
+    Ok(rounds::states_of_commands(&studies, commands, rounds))
 }
 
 /// A state as it is named: a folder, or a revision of the repository around the current folder.
