@@ -88,6 +88,19 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             ]
         })
         .collect();
+    tables.extend(orders_table(found));
+    if !moved.is_empty() {
+        tables.push(Table::of(
+            "what moved",
+            columns("study | what | worst value | > before | > after"),
+            moved,
+        ));
+    }
+    tables
+}
+
+/// The series whose order or class is another; none where there is none.
+fn orders_table(found: &[StudyComparison]) -> Option<Table> {
     let orders: Vec<Vec<Cell>> = found
         .iter()
         .flat_map(|one| one.orders.iter().map(move |change| (one, change)))
@@ -99,18 +112,8 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             row
         })
         .collect();
-    if !orders.is_empty() {
-        let header = "study | series | > order before | class before | > order after | class after";
-        tables.push(Table::of("orders and classes that changed", columns(header), orders));
-    }
-    if !moved.is_empty() {
-        tables.push(Table::of(
-            "what moved",
-            columns("study | what | worst value | > before | > after"),
-            moved,
-        ));
-    }
-    tables
+    let header = "study | series | > order before | class before | > order after | class after";
+    (!orders.is_empty()).then(|| Table::of("orders and classes that changed", columns(header), orders))
 }
 
 /// The value before and after, with digits that tell them apart.
