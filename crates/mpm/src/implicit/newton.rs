@@ -60,9 +60,9 @@ pub struct NewtonStepper<const D: usize> {
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
     /// Correction of the scaled unknowns by round-off, which a displacement sums over all cells: that of strains which are
-    /// differences of numbers near one, or of those of a body that keeps its shape.
+    /// differences of numbers near one, or of those of a body that keeps its shape and remembers nothing.
     round_off: f64,
-    /// Perturbation of a scaled unknown for the tangent: the problem's strain in a body that keeps its shape, which is linear.
+    /// Perturbation of a scaled unknown for the tangent: the problem's strain where the step is linear in it.
     difference: f64,
     error_scales: ErrorScales,
     stages: &'static [Stage],
@@ -94,7 +94,8 @@ impl<const D: usize> NewtonStepper<D> {
         let tangent = pattern.zeros();
         let scales = trial.unknowns.scales;
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
-        let (strain, deforms) = (plan.pressure_scale / scales.pressure, trial.body.configuration.deforms());
+        let strain = plan.pressure_scale / scales.pressure;
+        let is_linear = !trial.body.configuration.deforms() && !trial.body.has_history();
         let zero = vec![0.0; trial.unknowns.count];
         Self {
             factors: Factors::of_shape(&tangent, plan.schedule.threads, plan.schedule.time_limit),
@@ -107,8 +108,8 @@ impl<const D: usize> NewtonStepper<D> {
             factored: None,
             contraction: SLOW,
             tolerance: TOLERANCE * strain,
-            round_off: f64::EPSILON * cells * cells * if deforms { 1.0 } else { strain },
-            difference: if deforms { DIFFERENCE } else { strain },
+            round_off: f64::EPSILON * cells * cells * if is_linear { strain } else { 1.0 },
+            difference: if is_linear { strain } else { DIFFERENCE },
             error_scales: ErrorScales::of(&scales, plan),
             stages,
             start: StageStart::default(),

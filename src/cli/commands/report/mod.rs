@@ -72,6 +72,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         kept(&studies, arguments)?
     } else {
         arguments.trust.mark(&mut studies, &arguments.studies);
+        if arguments.studies.is_empty() {
+            thin_the_race(&mut studies);
+        }
         run_missing(&studies, arguments)?
     };
     let with_records: Vec<(&Study, &RunReport)> =
@@ -101,6 +104,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         tally.join(report.tally);
     }
     Ok(trust::end_with(tally, if is_whole { Exit::Pass } else { Exit::CaseFailed }))
+}
+
+/// Leaves of the race what a CI runs: the whole of it takes minutes, and `report race` runs it.
+fn thin_the_race(studies: &mut [Study]) {
+    for study in studies.iter_mut().filter(|study| study.is_race) {
+        study.planned.retain(|planned| planned.tier <= Tier::Ci);
+    }
 }
 
 /// What a study is called at the command line: its file, or its name where it came from inside the program and there
