@@ -39,7 +39,7 @@ const fn operators(
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 25] = {
+const LINES: [(&str, Option<Method>, Inputs); 26] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};
@@ -51,6 +51,7 @@ const LINES: [(&str, Option<Method>, Inputs); 25] = {
         ("GIMP-mean", None, &[]),
         ("GIMP-null-space", None, &[]),
         ("VP", None, &[]),
+        ("PPP", None, &[]),
         ("GIMP-SRI", None, &[]),
         ("GIMP-SRI-nodal", None, &[]),
         ("GIMP-SRI-patch", None, &[]),

@@ -162,14 +162,9 @@ pub struct StrainIncrement<const D: usize> {
 /// forgotten with its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct History {
-    /// Effective stress normal to the plane of the problem, Pa, tension positive; in a column that of both lateral
-    /// directions.
-    pub lateral_stress: f64,
     /// Stress at which the soil yields now, Pa: of [`Law::Preconsolidated`] the largest vertical effective stress so far,
     /// compression positive.
     pub yield_stress: f64,
-    /// Equivalent plastic strain.
-    pub plastic_strain: f64,
 }
 
 /// A law with the stiffness of a soil: what an effective stress follows from.

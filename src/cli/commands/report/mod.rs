@@ -72,9 +72,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         kept(&studies, arguments)?
     } else {
         arguments.trust.mark(&mut studies, &arguments.studies);
-        if arguments.studies.is_empty() {
-            thin_the_race(&mut studies);
-        }
         run_missing(&studies, arguments)?
     };
     let with_records: Vec<(&Study, &RunReport)> =
@@ -106,11 +103,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(trust::end_with(tally, if is_whole { Exit::Pass } else { Exit::CaseFailed }))
 }
 
-/// Leaves of the race what a CI runs: the whole of it takes minutes, and `report race` runs it.
-fn thin_the_race(studies: &mut [Study]) {
-    for study in studies.iter_mut().filter(|study| study.is_race) {
-        study.planned.retain(|planned| planned.tier <= Tier::Ci);
+/// The cases that a report runs of a study. Of the race only those of the CI tier where no study is named: the whole of
+/// it takes minutes, and `report race` runs it.
+fn selected(study: &Study, is_named: bool) -> Study {
+    let mut selected = study.clone();
+    if study.is_race && !is_named {
+        selected.planned.retain(|planned| planned.tier <= Tier::Ci);
     }
+    selected
 }
 
 /// What a study is called at the command line: its file, or its name where it came from inside the program and there
@@ -124,10 +124,12 @@ fn typed_name(study: &str, arguments: &Arguments) -> String {
 fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
     let tier = arguments.tier;
     let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
-    let mut reports = run_and_store(studies, studies, &options, &arguments.records, Beside::Machines)?;
+    let is_named = !arguments.studies.is_empty();
+    let chosen: Vec<Study> = studies.iter().map(|study| selected(study, is_named)).collect();
+    let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, Beside::Machines)?;
     refuse_unfinished(&reports)?;
-    if tier < Tier::Full {
-        for (study, report) in studies.iter().zip(&mut reports) {
+    for ((study, chosen), report) in studies.iter().zip(&chosen).zip(&mut reports) {
+        if chosen.cases(tier).len() < study.cases(Tier::Full).len() {
             add_finished(study, report, &arguments.records);
         }
     }
@@ -173,7 +175,7 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
 }
 
 /// The studies that differ from another state, or from their golden values, those that got worse first; `None` where no
-/// study is in it. Compared are the cases that it has, and those of the CI tier.
+/// study is in it. Golden values are those of the CI tier; of another state all cases that it has are compared too.
 fn changes(
     studies: &[Study],
     reports: &[RunReport],
@@ -187,8 +189,8 @@ fn changes(
         };
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
         let known: HashSet<&str> = before.golden.values.keys().map(|name| parts(name).0).collect();
-        let is_compared =
-            |record: &&Record| of_tier.contains(&record.hash) || known.contains(record.case.label().as_str());
+        let is_known = |record: &Record| against.is_some() && known.contains(record.case.label().as_str());
+        let is_compared = |record: &&Record| of_tier.contains(&record.hash) || is_known(record);
         let records: Vec<Record> = report.records.iter().filter(is_compared).cloned().collect();
         let after = StudyState::of_records(&study.name, &records);
         (!records.is_empty()).then(|| StudyComparison::of(&study.name, &before, &after))
