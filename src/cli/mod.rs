@@ -8,7 +8,6 @@ pub mod exit;
 mod help;
 pub mod job_list;
 pub mod output;
-mod problems;
 pub mod progress;
 pub mod slurm;
 pub mod stream;

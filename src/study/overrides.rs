@@ -5,7 +5,6 @@ use crate::study::check::Purpose;
 use crate::study::check::Study;
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
-use crate::study::inputs::unit_of;
 use crate::study::units::{has_unit, in_si};
 use oedometer_exact::{ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
 
@@ -175,14 +174,6 @@ impl StudyLines {
         Ok(())
     }
 
-    /// The keys as one table, for use outside a study, with numbers in SI units.
-    pub fn table(&self) -> Result<toml::Table, OverrideError> {
-        let mut table = toml::from_str(&self.lines.join("\n"))
-            .map_err(|error| OverrideError::typed(error.message().to_owned()))?;
-        numbers_in_si(&mut table)?;
-        Ok(table)
-    }
-
     /// Whether a key has been given.
     pub fn has(&self, key: &str) -> bool {
         self.given.iter().any(|(given, _)| given == key)
@@ -220,26 +211,6 @@ impl StudyLines {
         }
         Ok(study)
     }
-}
-
-/// Turns the numbers with units of a table, by the units of its keys, into numbers in SI units.
-fn numbers_in_si(table: &mut toml::Table) -> Result<(), OverrideError> {
-    for (key, value) in table {
-        match value {
-            toml::Value::Table(inner) => numbers_in_si(inner)?,
-            toml::Value::Array(list) => {
-                list.iter_mut().filter_map(toml::Value::as_table_mut).try_for_each(numbers_in_si)?;
-            }
-            toml::Value::String(text) => {
-                if let Some(unit) = unit_of(key) {
-                    let number = in_si(text, unit).map_err(|told| refused_quantity(key, told))?;
-                    *value = number.into();
-                }
-            }
-            _ => {}
-        }
-    }
-    Ok(())
 }
 
 /// What is said of a value that should be a number with a unit: the message, then what would be right.

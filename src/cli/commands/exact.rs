@@ -3,10 +3,9 @@
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
-use crate::cli::problems::{self, Problem};
 use crate::cli::stream::{print_data, say};
 use crate::study::asked::Asked;
-use crate::study::overrides::{Assignments, StudyLines, numbers};
+use crate::study::overrides::{Assignments, numbers};
 use clap::ValueEnum;
 use oedometer_exact::ShelfProblem;
 use oedometer_exact::consolidation;
@@ -91,15 +90,11 @@ struct ExactJson<'a> {
 
 /// Evaluates and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    if let Some(problem) = problems::named(&arguments.scene) {
-        return problem_rows(problem, arguments);
-    }
     let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
         let names = ReferenceKind::ALL
             .map(ReferenceKind::name)
             .into_iter()
             .chain(ShelfProblem::ALL.map(ShelfProblem::name));
-        let names = names.chain(problems::NAMES);
         let names = names.collect::<Vec<_>>().join(", ");
         Ended::usage(format!("no exact solution is called `{}`; there are {names}", arguments.scene))
     })?;
@@ -116,36 +111,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         column_rows(kind, &parameters, &time_factors, arguments)?
     };
     print(kind.name(), &rows, &accuracy, arguments.format)?;
-    Ok(Exit::Pass)
-}
-
-/// Prints a problem that no scene solves.
-fn problem_rows(problem: Problem, arguments: &Arguments) -> anyhow::Result<Exit> {
-    if arguments.x.is_some() || arguments.degree.is_some() {
-        let name = &arguments.scene;
-        return Err(Ended::usage(format!(
-            "`{name}` takes `--time-factor` and `--zeta`, neither `--x` nor `--degree`"
-        )));
-    }
-    let mut lines = StudyLines::default();
-    lines.assign(&arguments.set)?;
-    let solution = problem.of(lines.table()?)?;
-    let depths = numbers("--zeta", &arguments.zeta)?;
-    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
-    for time_factor in numbers("--time-factor", &arguments.time_factor)? {
-        for &zeta in &depths {
-            let [pressure, settlement, degree] = solution.ratios(time_factor, zeta)?;
-            rows.push(PrintedRow(vec![
-                ("time_factor", time_factor),
-                ("zeta", zeta),
-                ("pressure_ratio", pressure),
-                ("settlement_ratio", settlement),
-                ("degree_of_consolidation", degree),
-            ]));
-        }
-        accuracy.push(Truncation::of(time_factor, solution.accuracy(time_factor)?));
-    }
-    print(&arguments.scene, &rows, &accuracy, arguments.format)?;
     Ok(Exit::Pass)
 }
 
