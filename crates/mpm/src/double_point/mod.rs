@@ -3,11 +3,10 @@
 //! The skeleton is a [`Body`] whose points carry no water: its grid, shape functions, strains, load and nodal fields.
 //! [`DoublePoint`] puts the water beside it and takes the explicit step of [`Body::kick_and_drift`], each phase on its
 //! own points. `water_points` are the water's state and domains, `water_pressure` its continuity and what its pressure
-//! does to the nodes, `samples` what a snapshot tells, `stepper` the driver's view. Balances of momentum, kicks and the
-//! skeleton's strain are those of a single set of points.
+//! does to the nodes, `samples` what a snapshot tells. Balances of momentum, kicks and the skeleton's strain are those of a
+//! single set of points.
 
 mod samples;
-pub(crate) mod stepper;
 mod water_points;
 mod water_pressure;
 
@@ -58,11 +57,17 @@ pub struct DoublePoint<const D: usize> {
     pub keeps_cell_rates: bool,
     /// Mass of the water at the start, kg.
     pub initial_mass: f64,
+    /// Volume by which the water was compressed at the start, m^D.
+    initial_compression: f64,
+    /// Largest size of the pressure of any water point so far, Pa.
+    largest_pressure: f64,
 }
 
 impl<const D: usize> DoublePoint<D> {
-    /// A body with its water on a lattice of points, both displaced by a uniform gradient at the start.
-    pub fn new(mut body: Body<D>, lattice: &Points<D>, gradient: &Tensor<D>) -> Self {
+    /// A body with its water on a lattice of points, both displaced by a uniform gradient at the start; a `settled` body
+    /// has compressed its water by the displacement of its nodes.
+    pub fn new(mut body: Body<D>, lattice: &Points<D>, gradient: &Tensor<D>, settled: bool) -> Self {
+        let displacement = settled.then(|| body.nodes.displacement.clone());
         let moves = body.configuration.moves_points();
         let water = WaterPoints::of(lattice, &body.material, moves.then_some(gradient));
         let count = water.len();
@@ -94,12 +99,26 @@ impl<const D: usize> DoublePoint<D> {
             presses_by_cells,
             keeps_cell_rates: presses_by_cells && method.recovery != Recovery::Constant,
             initial_mass: water.mass.iter().sum(),
+            initial_compression: 0.0,
+            largest_pressure: 0.0,
             water,
             body,
         };
         double.build_water_operators();
         double.map_water();
+        if let Some(displacement) = displacement {
+            double.compress_by(&displacement);
+        }
+        double.initial_compression = double.water_compression();
         double
+    }
+
+    /// Takes note of the pressures now: a burst may ring down again before the next output.
+    pub(crate) fn note_largest_pressure(&mut self) {
+        self.largest_pressure =
+            self.water.pressure.iter().fold(self.largest_pressure, |largest, pressure| {
+                if largest > pressure.abs() || largest.is_nan() { largest } else { pressure.abs() }
+            });
     }
 
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.

@@ -6,29 +6,15 @@ use crate::state::points::Points;
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
 
-/// The state that a run counts from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DoublePointStart<const D: usize> {
-    points: Points<D>,
-    compression: f64,
-}
-
-impl<const D: usize> DoublePointStart<D> {
-    /// The present state as the start.
-    pub fn of(double: &DoublePoint<D>) -> Self {
-        Self { points: double.body.points.clone(), compression: double.water_compression() }
-    }
-}
-
 impl<const D: usize> DoublePoint<D> {
     /// Samples both sets of points at `time`. Beside the skeleton's stress stands the pressure of the nearest water point; the
     /// pressures themselves, with the initial places of the soil that the water is in, are the water's samples.
-    pub fn snapshot(&self, time: f64, settlement: f64, start: &DoublePointStart<D>) -> Snapshot {
+    pub fn snapshot(&self, time: f64, settlement: f64, start: &Points<D>) -> Snapshot {
         let mut body = self.body.clone();
         for (place, pressure) in self.body.points.position.iter().zip(&mut body.points.pressure) {
             *pressure = self.pressure_near(place);
         }
-        let mut snapshot = body.snapshot(time, settlement, &start.points);
+        let mut snapshot = body.snapshot(time, settlement, start);
         let places: Vec<Vector<D>> = self.water.place.iter().map(|place| self.soil_at(place)).collect();
         let (grid, water) = (&self.body.grid, &self.water);
         let mut of_points = Means::new(water.len());
@@ -54,7 +40,7 @@ impl<const D: usize> DoublePoint<D> {
                 pressure: means.of(&|point| water.pressure[point]),
             });
         }
-        snapshot.totals = self.totals(snapshot.totals, start);
+        snapshot.totals = self.totals(snapshot.totals);
         snapshot
     }
 
@@ -76,16 +62,16 @@ impl<const D: usize> DoublePoint<D> {
     }
 
     /// Volume by which the water in the soil is compressed, `Σ m_w p/(ρ_w0 K_w)`, m^D.
-    fn water_compression(&self) -> f64 {
+    pub(super) fn water_compression(&self) -> f64 {
         let (soil, water) = (&self.body.material, &self.water);
         let compressed = |point: usize| water.mass_inside(point) * water.pressure[point];
         (0..water.len()).map(compressed).sum::<f64>() / (soil.water_density * soil.water_bulk_modulus)
     }
 
-    fn totals(&self, of_body: Totals, start: &DoublePointStart<D>) -> Totals {
+    fn totals(&self, of_body: Totals) -> Totals {
         Totals {
             solid_mass: self.slivers.sum_without(&self.body.nodes.solid_mass),
-            water_expansion: start.compression - self.water_compression(),
+            water_expansion: self.initial_compression - self.water_compression(),
             internal_force_imbalance: self.internal_force_imbalance(),
             unbalanced_force: self.unbalanced_force(),
             double_point: self.body.configuration.moves_points().then(|| self.water_totals()),
@@ -108,7 +94,7 @@ impl<const D: usize> DoublePoint<D> {
             water_volume: (0..water.len()).map(filled).sum(),
             water_left: 1.0 - inside / self.initial_mass,
             water_points: water.len(),
-            largest_pressure: 0.0,
+            largest_pressure: self.largest_pressure,
         }
     }
 

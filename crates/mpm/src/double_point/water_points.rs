@@ -107,6 +107,11 @@ impl<const D: usize> WaterPoints<D> {
     pub fn mass_inside(&self, point: usize) -> f64 {
         self.mass[point] * self.share[point]
     }
+
+    /// Volume of the water below the surface, m^D, and pressure, Pa, of every point.
+    pub fn volumes_and_pressures(&self) -> impl Iterator<Item = (f64, f64)> {
+        (0..self.len()).map(|point| (self.porosity[point] * self.volume_inside(point), self.pressure[point]))
+    }
 }
 
 /// Share of a domain that is too little to stand alone.

@@ -45,7 +45,7 @@ impl<const D: usize> DoublePoint<D> {
     }
 
     /// Compresses the water by a displacement of skeleton and water together, m, `[node][component]`.
-    pub(crate) fn compress_by(&mut self, displacement: &[Vector<D>]) {
+    pub(super) fn compress_by(&mut self, displacement: &[Vector<D>]) {
         let bulk_modulus = self.body.material.water_bulk_modulus;
         self.evaluate_water_sites(|double, place, porosity| {
             -bulk_modulus / porosity * double.divergence_at(place, displacement)

@@ -1,8 +1,10 @@
-//! The explicit step on its way through time: point by point, or assembled where nothing moves.
+//! The explicit step on its way through time: point by point with one set of points or two, or assembled where nothing
+//! moves.
 
 use crate::assembled::step::AssembledStep;
 use crate::body::Body;
 use crate::critical_step::formula;
+use crate::double_point::DoublePoint;
 use crate::explicit::ExplicitSettings;
 use crate::explicit::scheme::Rhythm;
 use crate::method::Configuration;
@@ -15,12 +17,11 @@ use crate::run::watch::lost_point;
 use crate::state::points::Points;
 
 /// Steps between two looks.
-pub(crate) const WATCH_INTERVAL: u64 = 64;
+const WATCH_INTERVAL: u64 = 64;
 
 /// A body that goes by explicit steps.
 pub struct ExplicitStepper<const D: usize> {
-    /// The body; at its start where the step is assembled.
-    body: Body<D>,
+    points: PointSets<D>,
     frozen: Option<AssembledStep<D>>,
     /// Follows a frozen body that goes point by point, for its energy: the criterion does not depend on the kernel.
     account: Option<Box<AssembledStep<D>>>,
@@ -36,29 +37,54 @@ pub struct ExplicitStepper<const D: usize> {
     load: GrowingLoad,
 }
 
+/// What carries skeleton and water.
+pub(crate) enum PointSets<const D: usize> {
+    /// A body; at its start where the step is assembled.
+    One(Box<Body<D>>),
+    /// A skeleton with its water in points of its own.
+    Two(Box<DoublePoint<D>>),
+}
+
+impl<const D: usize> PointSets<D> {
+    /// The body, of two sets that of the skeleton.
+    fn body(&self) -> &Body<D> {
+        match self {
+            Self::One(body) => body,
+            Self::Two(double) => &double.body,
+        }
+    }
+
+    fn body_mut(&mut self) -> &mut Body<D> {
+        match self {
+            Self::One(body) => body,
+            Self::Two(double) => &mut double.body,
+        }
+    }
+}
+
 /// A load that grows linearly to its full value, or acts at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct GrowingLoad {
+struct GrowingLoad {
     /// Whole load, Pa, and the time over which it grows, s.
     load: f64,
     loading_time: f64,
     /// Share of it that acts.
-    pub share: f64,
+    share: f64,
 }
 
 impl GrowingLoad {
     /// The load of a body, which grows over a time, s.
-    pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
+    fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
         Self { load: body.surface.load, loading_time, share: 1.0 }
     }
 
     /// Whether it still grows.
-    pub fn grows(&self) -> bool {
+    fn grows(&self) -> bool {
         self.share < 1.0
     }
 
     /// Puts the load of a time, s, on the surface, where it grows.
-    pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
+    fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
         if self.loading_time > 0.0 {
             self.share = (time / self.loading_time).min(1.0);
             body.surface.load = self.share * self.load;
@@ -69,7 +95,7 @@ impl GrowingLoad {
 
 /// Share of the first step that is stable still: it shrinks as the pores close and waves get faster, and as cells
 /// shrink that go with the points.
-pub(crate) fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> Option<f64> {
+fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> Option<f64> {
     if !body.configuration.deforms() {
         return None;
     }
@@ -88,15 +114,30 @@ pub(crate) fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> O
 
 impl<const D: usize> ExplicitStepper<D> {
     /// A body at its start.
-    pub fn new(body: Body<D>, plan: &Plan<'_>) -> Self {
+    pub fn new(mut points: PointSets<D>, plan: &Plan<'_>) -> Self {
         let schedule = plan.schedule;
-        // A law with a history has no step that is one matrix.
-        let is_linear = body.configuration == Configuration::Frozen && !body.has_history();
-        let is_assembled = is_linear && schedule.kernel == Kernel::Fastest;
-        let assembled = || AssembledStep::new(&body);
+        let (mut frozen, mut account) = (None, None);
+        if let PointSets::One(body) = &mut points {
+            // A law with a history has no step that is one matrix.
+            if body.configuration == Configuration::Frozen && !body.has_history() {
+                let assembled = AssembledStep::new(body);
+                if schedule.kernel == Kernel::Fastest {
+                    frozen = Some(assembled);
+                } else {
+                    account = Some(Box::new(assembled));
+                }
+            }
+            if schedule.settings.affine {
+                body.use_apic();
+            }
+            if schedule.settings.stress_slopes {
+                body.slope_stresses();
+            }
+        }
+        let body = points.body();
         let mut stepper = Self {
-            frozen: is_assembled.then(assembled),
-            account: (is_linear && !is_assembled).then(|| Box::new(assembled())),
+            frozen,
+            account,
             start: body.points.clone(),
             initial_height: plan.initial_height,
             initial_settlement: body.settlement(plan.initial_height),
@@ -104,15 +145,9 @@ impl<const D: usize> ExplicitStepper<D> {
             step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
             rhythm: Rhythm::default(),
             kick: f64::NAN,
-            load: GrowingLoad::of(&body, plan.loading_time),
-            body,
+            load: GrowingLoad::of(body, plan.loading_time),
+            points,
         };
-        if stepper.settings.affine {
-            stepper.body.use_apic();
-        }
-        if stepper.settings.stress_slopes {
-            stepper.body.slope_stresses();
-        }
         if plan.loading_time > 0.0 {
             stepper.set_load_at(0.0);
         }
@@ -121,7 +156,7 @@ impl<const D: usize> ExplicitStepper<D> {
 
     /// Puts the load of a growing time on the surface.
     fn set_load_at(&mut self, time: f64) {
-        self.load.act_at(&mut self.body, time);
+        self.load.act_at(self.points.body_mut(), time);
         for step in self.frozen.iter_mut().chain(self.account.as_deref_mut()) {
             step.set_load_share(self.load.share);
         }
@@ -135,21 +170,25 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
             if self.load.grows() {
                 self.set_load_at(steps.time_after(step));
             }
-            self.body.begin_forced_step(steps.time_after(step));
+            self.points.body_mut().begin_forced_step(steps.time_after(step));
             let kick = self.rhythm.kick(dt, &settings);
-            match &mut self.frozen {
-                Some(frozen) => {
+            match (&mut self.frozen, &mut self.points) {
+                (Some(frozen), _) => {
                     if kick != self.kick {
                         frozen.set_step(kick, &settings);
                         self.kick = kick;
                     }
                     frozen.kick_and_drift(kick, dt, &settings);
                 }
-                None => self.body.kick_and_drift(kick, dt, &settings),
+                (None, PointSets::One(body)) => body.kick_and_drift(kick, dt, &settings),
+                (None, PointSets::Two(double)) => double.kick_and_drift(kick, dt, &settings),
             }
             if let Some(account) = &mut self.account {
-                account.follow(&self.body.nodes, dt);
+                account.follow(&self.points.body().nodes, dt);
             }
+        }
+        if let PointSets::Two(double) = &mut self.points {
+            double.note_largest_pressure();
         }
         Ok(0.0)
     }
@@ -159,52 +198,58 @@ impl<const D: usize> Stepper for ExplicitStepper<D> {
     }
 
     fn step_reduction(&self) -> Option<f64> {
-        step_reduction(&self.body, self.step_follows)
+        step_reduction(self.points.body(), self.step_follows)
     }
 
     fn settlement(&self) -> f64 {
         match &self.frozen {
             Some(frozen) => self.initial_settlement - frozen.surface_displacement(),
-            None => self.body.settlement(self.initial_height),
+            None => self.points.body().settlement(self.initial_height),
         }
     }
 
     fn largest_velocity(&self) -> Option<f64> {
         Some(match &self.frozen {
             Some(frozen) => frozen.largest_velocity(),
-            None => self.body.largest_velocity(),
+            None => self.points.body().largest_velocity(),
         })
     }
 
     fn energy(&mut self, dt: f64) -> Option<(Energy, bool)> {
-        if self.body.weight.is_some() || self.load.grows() {
+        let body = self.points.body();
+        if body.weight.is_some() || self.load.grows() {
             return None;
         }
         if let Some(step) = self.frozen.as_mut().or(self.account.as_deref_mut()) {
             return Some((step.energy(dt, self.settings.mapping_back), false));
         }
         let settlement = self.settlement() - self.initial_settlement;
-        let energy = self.body.energy(settlement, self.body.water_of_points())?;
-        Some((energy, self.body.configuration.deforms()))
+        let energy = match &self.points {
+            PointSets::One(body) => body.energy(settlement, body.water_of_points()),
+            PointSets::Two(double) => body.energy(settlement, double.water.volumes_and_pressures()),
+        };
+        Some((energy?, body.configuration.deforms()))
     }
 
     fn unbalanced_force(&self) -> Option<f64> {
         let largest = || match &self.frozen {
             Some(frozen) => frozen.largest_accelerating_force(),
-            None => self.body.largest_accelerating_force(),
+            None => self.points.body().largest_accelerating_force(),
         };
         (self.settings.flip >= 1.0).then(largest)
     }
 
     fn lost_point(&self) -> Option<StepFailure> {
-        if self.body.configuration.deforms() { lost_point(&self.body) } else { None }
+        let body = self.points.body();
+        if body.configuration.deforms() { lost_point(body) } else { None }
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
         let settlement = self.settlement();
-        match &self.frozen {
-            Some(frozen) => frozen.body_now(&self.body).snapshot(time, settlement, &self.start),
-            None => self.body.snapshot(time, settlement, &self.start),
+        match (&self.frozen, &self.points) {
+            (Some(frozen), points) => frozen.body_now(points.body()).snapshot(time, settlement, &self.start),
+            (None, PointSets::One(body)) => body.snapshot(time, settlement, &self.start),
+            (None, PointSets::Two(double)) => double.snapshot(time, settlement, &self.start),
         }
     }
 }

@@ -20,12 +20,12 @@ pub use schedule::{Kernel, Observer, Schedule, TimeStepRule};
 
 use crate::body::{Body, Problem};
 use crate::direct_solver::Singular;
-use crate::double_point::stepper::DoublePointStepper;
+use crate::double_point::DoublePoint;
 use crate::implicit::linear::LinearStepper;
 use crate::implicit::newton::NewtonStepper;
 use crate::method::Configuration;
 use crate::run::driver::Driver;
-use crate::run::explicit_stepper::ExplicitStepper;
+use crate::run::explicit_stepper::{ExplicitStepper, PointSets};
 use crate::run::integrator::{Formulation, IntegratorKind};
 use crate::run::results::outcome::{Failure, FailureKind, Outcome};
 use crate::run::run_plan::{Plan, UnknownLimit};
@@ -53,7 +53,8 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     match water {
         Some(lattice) => {
             let start_failure = start_failure.or_else(|| no_water_points(schedule.integrator));
-            let mut stepper = DoublePointStepper::new(body, &lattice, &gradient, undrained_start, &plan);
+            let double = DoublePoint::new(body, &lattice, &gradient, undrained_start);
+            let mut stepper = ExplicitStepper::new(PointSets::Two(Box::new(double)), &plan);
             Driver::new(&mut stepper, &plan, observer).solve(start_failure)
         }
         None => Driver::new(stepper_of(body, &plan).as_mut(), &plan, observer).solve(start_failure),
@@ -68,7 +69,7 @@ fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper
         && formulation == Formulation::QuasiStatic
         && !body.has_history();
     match integrator {
-        IntegratorKind::Explicit => Box::new(ExplicitStepper::new(body, plan)),
+        IntegratorKind::Explicit => Box::new(ExplicitStepper::new(PointSets::One(Box::new(body)), plan)),
         _ if is_linear => Box::new(LinearStepper::new(body, plan)),
         IntegratorKind::SemiImplicit | IntegratorKind::Implicit => Box::new(NewtonStepper::new(body, plan)),
     }

@@ -26,7 +26,7 @@ pub(crate) fn moving_column<const D: usize>(
         column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, of_skeleton).expect("a column");
     let lattice = problem.water.take().expect("water points");
     let gradient = problem.initial_gradient;
-    DoublePoint::new(Body::new(problem), &lattice, &gradient)
+    DoublePoint::new(Body::new(problem), &lattice, &gradient, false)
 }
 
 /// A column whose water points all lie somewhat higher than their lattice; so many a cell, four of the skeleton.
