@@ -2,9 +2,9 @@
 //! with other programs.
 
 pub mod cheapest_method;
-pub mod locking;
 pub mod peers;
 pub mod situation;
 pub mod stability_map;
+pub mod stiffness_sweep;
 pub mod twins;
 pub mod work_precision;

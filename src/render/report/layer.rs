@@ -1,21 +1,20 @@
-//! A plane layer: pressure fields beside the exact one, the ranking of the methods, and errors and oscillation against the
-//! stiffness of the water and of the skeleton.
+//! A plane layer: pressure fields beside the exact one, and errors and oscillation against the stiffness of the water and
+//! of the skeleton.
 
-use crate::judge::comparison::locking::{Showing, Standing, StiffnessSweep, SweptStiffness, standings};
+use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
-use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use oedometer_convergence::Class;
+use crate::render::table::{Cell, Table, TableColumn, columns};
 use oedometer_exact::exact_error::ExactError;
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;
 
-/// Fields and ranking of a study of a layer; empty for a column.
+/// Fields and sweeps of a study of a layer; empty for a column.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     if !results.study.scene.has_plane_fields() {
         return Ok(Vec::new());
@@ -37,14 +36,6 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
             }
         }
         blocks.push(Block::Figures(figures));
-    }
-    let standings = standings(results.study, results.records)?;
-    // A ranking needs two methods with an undrained start.
-    if standings.iter().filter(|one| one.displacement.is_some()).count() > 1 {
-        blocks.push(Block::Heading("Which methods cope with incompressible water and soil".to_owned()));
-        blocks.push(Block::List(verdicts(&standings)));
-        blocks.push(Block::Table(accuracy(&standings)));
-        blocks.push(Block::Table(robustness(&standings)));
     }
     blocks.extend(sweep_blocks(results)?);
     Ok(blocks)
@@ -107,119 +98,6 @@ fn figure(
 
 /// Reach of the colours over the largest exact value.
 const REACH: f64 = 1.25;
-
-/// The findings in sentences; none on what was not swept.
-fn verdicts(standings: &[Standing]) -> Vec<String> {
-    let names = |is: &dyn Fn(&Standing) -> bool| -> String {
-        let found: Vec<String> =
-            standings.iter().filter(|one| is(one)).map(|one| one.method.to_string()).collect();
-        if found.is_empty() { "none".to_owned() } else { found.join(", ") }
-    };
-    let is_independent =
-        |one: &Standing| one.spread.is_some_and(|spread| spread < 0.02) && one.class != Some(Class::Locked);
-    let mut sentences = vec![format!(
-        "**Locked under the water's incompressibility** (less than half of the displacement on every mesh): {}.",
-        names(&|one| one.class == Some(Class::Locked))
-    )];
-    if standings.iter().any(|one| one.spread.is_some()) {
-        sentences.push(format!(
-            "**Displacement error independent of the water's stiffness** (within 2 % from K_w/E = 10³ on, and not \
-             locked): {}.",
-            names(&is_independent)
-        ));
-    }
-    if standings.iter().any(|one| one.stiff_skeleton.is_some()) {
-        sentences.push(format!(
-            "**Holds where the skeleton is nearly incompressible too** (of those, no more than twice the errors of \
-             displacement and pressure at ν = 0.25): {}.",
-            names(&|one| is_independent(one) && keeps_errors(one))
-        ));
-    }
-    sentences
-}
-
-/// Whether a method under the stiffest skeleton has at most twice its usual errors of displacement and pressure.
-pub fn keeps_errors(one: &Standing) -> bool {
-    let keeps = |stiff: Option<f64>, plain: Option<f64>| {
-        stiff.zip(plain).is_some_and(|(stiff, plain)| stiff < 2.0 * plain)
-    };
-    keeps(one.stiff_skeleton, one.displacement) && keeps(one.stiff_skeleton_pressure, one.pressure)
-}
-
-/// Errors and orders at the start, the best mean rank first.
-fn accuracy(standings: &[Standing]) -> Table {
-    let rows = standings.iter().map(|one| {
-        let class = match one.class {
-            Some(Class::Locked) => Cell::Verdict(Mood::Fail, Class::Locked.name().to_owned()),
-            Some(class) => Cell::Text(class.name().to_owned()),
-            None => Cell::missing(UNMEASURED),
-        };
-        vec![
-            Cell::Code(one.method.to_string()),
-            rounded(Some(one.rank), 1),
-            class,
-            measured(one.displacement, Cell::Error),
-            measured(one.displacement_order, Cell::Order),
-            measured(one.pressure, Cell::Error),
-            measured(one.pressure_order, Cell::Order),
-            measured(one.consolidated, Cell::Error),
-            rounded(one.oscillation, 3),
-        ]
-    });
-    Table::of(
-        "Methods by their mean rank: accuracy",
-        columns(
-            "method | > mean rank | class | > u at T_v = 0 | > order | > p at T_v = 0 | > order | > p \
-             at the last output | > oscillation",
-        ),
-        rows,
-    )
-    .note(
-        "u: relative L2 error of the nodal displacement; p: of the pressure at the points; both against Biot's exact \
-         solution on the finest mesh that every method ran. Oscillation: total variation of the pressure over that of the \
-         exact one, minus one. The rank is the mean over the columns of both tables.",
-    )
-    .note(
-        "B-bar (Hughes 1980; by cells in the material point method: Coombs et al. 2018) treats the volumetric strain of the \
-         skeleton like that of the water; mean: cell means of the points' divergence (Mast et al. 2012); nodal: averages at \
-         the nodes (Detournay & Dzik 2006); null-space: filter by cells (Gritton & Berzins 2017; Tran & Sołowski 2019); \
-         bspline2, bspline3: quadratic and cubic B-splines (Steffen, Kirby & Berzins 2008).",
-    )
-}
-
-/// Effects of stiffness, and cost, in the order of the mean rank.
-fn robustness(standings: &[Standing]) -> Table {
-    let rows = standings.iter().map(|one| {
-        vec![
-            Cell::Code(one.method.to_string()),
-            measured(one.spread, Cell::Percent),
-            measured(one.stiff_skeleton, Cell::Error),
-            measured(one.stiff_skeleton_pressure, Cell::Error),
-            measured(one.critical_step, Cell::Number),
-            measured(one.seconds, Cell::Seconds),
-        ]
-    });
-    Table::of(
-        "Methods by their mean rank: stiffness and cost",
-        columns(
-            "method | > spread of u over K_w | > u at the largest ν | > p at the largest ν | > \
-                 explicit limit [h/c] | > implicit run",
-        ),
-        rows,
-    )
-    .note("Spread: of the displacement error at T_v = 0 over K_w/E from 10³ on.")
-}
-
-/// Why a cell is empty.
-const UNMEASURED: &str = "not measured, or of no meaning for a locked body";
-
-fn measured(value: Option<f64>, kind: fn(f64) -> Cell) -> Cell {
-    Cell::of(value, kind, UNMEASURED)
-}
-
-fn rounded(value: Option<f64>, decimals: usize) -> Cell {
-    value.map_or_else(|| Cell::missing(UNMEASURED), |value| Cell::Text(number::fixed(value, decimals)))
-}
 
 /// Figures of the last output and, behind a click, every number.
 fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {

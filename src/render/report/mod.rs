@@ -2,7 +2,6 @@
 
 mod checks;
 pub(crate) mod cost;
-mod findings;
 pub(crate) mod labels;
 pub(crate) mod layer;
 mod maps;
@@ -10,6 +9,7 @@ pub mod pages;
 mod race;
 pub(crate) mod refinement;
 pub mod study_page;
+mod survival;
 pub(crate) mod theory_lines;
 
 use crate::case::tier::Tier;

@@ -4,7 +4,7 @@ use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
-    StudyResults, checks, cost, findings, layer, maps, race, refinement, theory_lines,
+    StudyResults, checks, cost, layer, maps, race, refinement, survival, theory_lines,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{runs, uncertainties};
@@ -25,8 +25,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
-        blocks.extend(findings::survival(results));
-        blocks.extend(findings::findings(results));
+        blocks.extend(survival::survival(results).map(Block::Table));
         blocks.extend(maps::cheapest_methods(results));
         blocks.extend(layer::blocks(results)?);
         blocks.extend(theory_lines::blocks(results)?);

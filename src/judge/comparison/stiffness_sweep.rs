@@ -1,0 +1,158 @@
+//! Errors and oscillation of the methods over the stiffness of the water and of the skeleton, through consolidation.
+
+use crate::case::solver::Solver;
+use crate::case::{Case, Quantity, Sample};
+use crate::judge::paths::{first_error, grouped};
+use crate::measure::fields::PlaneField;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+use oedometer_exact::ExactError;
+use oedometer_soil::material::Material;
+
+/// The methods of records, each once, in their order.
+fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Solver> {
+    let groups = grouped(records, |record| record.case.method.to_string());
+    groups.into_iter().map(|(_, records)| records[0].case.method).collect()
+}
+
+/// Fewest values of a sweep.
+const LEAST_VALUES: usize = 3;
+
+/// What makes a soil hard to compress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweptStiffness {
+    /// The water, by `K_w/E`.
+    Water,
+    /// The skeleton, by Poisson's ratio.
+    Skeleton,
+}
+
+impl SweptStiffness {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Water, Self::Skeleton];
+
+    /// Its number in a case.
+    fn of(self, case: &Case) -> f64 {
+        match self {
+            Self::Water => case.material.water_bulk_modulus / case.material.youngs_modulus,
+            Self::Skeleton => case.material.poissons_ratio,
+        }
+    }
+
+    /// Whether a case differs from the seed's soil in this stiffness alone.
+    fn is_alone_in(self, case: &Case) -> bool {
+        let seed = Material::default();
+        match self {
+            Self::Water => case.material.poissons_ratio == seed.poissons_ratio,
+            Self::Skeleton => case.material.water_bulk_modulus == seed.water_bulk_modulus,
+        }
+    }
+}
+
+/// What is measured of each run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Showing {
+    /// Relative L2 error of the nodal displacement.
+    Displacement,
+    /// Relative L2 error of the pressure at the points.
+    Pressure,
+    /// Oscillation index of the pressure.
+    Oscillation,
+}
+
+impl Showing {
+    /// Everything measured.
+    pub const ALL: [Self; 3] = [Self::Displacement, Self::Pressure, Self::Oscillation];
+}
+
+/// One method at one time over all values of a stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The method.
+    pub method: Solver,
+    /// Time factor of the output.
+    pub time_factor: f64,
+    /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
+    pub found: Vec<[Option<f64>; Showing::ALL.len()]>,
+}
+
+/// Every method over one stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSweep {
+    /// What varies.
+    pub stiffness: SweptStiffness,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Values, ascending.
+    pub values: Vec<f64>,
+    /// Time factors of the outputs, ascending.
+    pub time_factors: Vec<f64>,
+    /// One row for each method and time.
+    pub rows: Vec<SweepRow>,
+}
+
+impl StiffnessSweep {
+    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none beyond
+    /// the start. Step sizes may differ: a stiffer skeleton consolidates faster.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn of(
+        study: &Study,
+        records: &[Record],
+        stiffness: SweptStiffness,
+    ) -> Result<Option<Self>, ExactError> {
+        let is_swept = |record: &&Record| {
+            let case = &record.case;
+            record.status == Status::Ok
+                && !case.is_explicit()
+                && case.time_factors.last().is_some_and(|last| *last > 0.0)
+                && stiffness.is_alone_in(case)
+        };
+        let swept = records.iter().filter(is_swept);
+        // The mesh of the runs with the least compressible soil.
+        let hardest = swept.clone().max_by(|a, b| {
+            stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
+        });
+        let Some(hardest) = hardest else { return Ok(None) };
+        let mesh = |record: &Record| (record.case.cells, record.case.points_per_cell);
+        let alike: Vec<&Record> = swept.filter(|record| mesh(record) == mesh(hardest)).collect();
+        let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if values.len() < LEAST_VALUES {
+            return Ok(None);
+        }
+        let methods = methods_of(alike.iter().copied());
+        let time_factors = hardest.case.time_factors.to_vec();
+        let reference = study.references[0].name();
+        let found = |method: Solver, time_factor: f64, value: f64| {
+            let record = alike
+                .iter()
+                .find(|record| record.case.method == method && stiffness.of(&record.case) == value);
+            record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
+        };
+        let mut rows = Vec::new();
+        for time_factor in time_factors.iter().copied() {
+            for method in methods.iter().copied() {
+                let found = values.iter().map(|value| found(method, time_factor, *value));
+                rows.push(SweepRow { method, time_factor, found: found.collect::<Result<_, _>>()? });
+            }
+        }
+        Ok(Some(Self { stiffness, cells: hardest.case.cells, values, time_factors, rows }))
+    }
+
+    /// The rows of one output.
+    pub fn at(&self, time_factor: f64) -> impl Iterator<Item = &SweepRow> {
+        self.rows.iter().filter(move |row| row.time_factor == time_factor)
+    }
+}
+
+fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f64>; 3], ExactError> {
+    let error = |quantity, sample| first_error(record, quantity, sample, reference, time_factor);
+    Ok([
+        error(Quantity::Displacement, Sample::Nodes),
+        error(Quantity::Pressure, Sample::Points),
+        PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
+    ])
+}
