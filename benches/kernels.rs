@@ -3,8 +3,7 @@
 //! `cargo bench --bench kernels` ends with a table of nanoseconds per point and step, the unit in
 //! which the bar is set: at most 3.5 for `GC-SRI-patch` in one dimension with frozen weights, 25 with
 //! moving points, 100 in two dimensions, on a core of 3.5 GHz; the least of rounds in which the kernels take
-//! turns. Beside the frozen step stands its bound: as many multiply-adds and loads, with nothing to wait for.
-//! Beside the moving step stand its passes one by one, and what bounds the one to the nodes.
+//! turns. Beside the moving step stand its passes one by one, and what bounds the one to the nodes.
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 use divan::counter::ItemsCount;
@@ -41,7 +40,6 @@ fn main() {
     divan::main();
     if std::env::args().all(|argument| argument != "--test" && argument != "--list") {
         print_table();
-        print_bound();
         print_moving_table();
         print_plane_table();
     }
@@ -169,46 +167,24 @@ fn print_table() {
     }
 }
 
-/// The same for the seed layer: the point-wise and the assembled step in two dimensions, and what
-/// bounds the latter.
-///
-/// The assembled step is a product of sparse maps with grid arrays: it reads every coefficient once and
-/// multiplies it once. `reading` is the time to sum as many bytes from memory in order, measured in turn with
-/// the steps; `share` is how much of the step that bound explains. What is left of the step are its
-/// multiply-adds (`products`, two a cycle without wider registers) and the gathers of nodal values.
+/// Prints the point-wise and the assembled step of the seed layer, in two dimensions.
 fn print_plane_table() {
     println!(
         "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points a cell, \
          least of {PLANE_ROUNDS} rounds"
     );
-    println!(
-        "{:<16}{:>6}{:>12}{:>12}{:>12}{:>8}{:>12}{:>12}",
-        "method", "cells", "point-wise", "assembled", "reading", "share", "bytes/pt", "products/pt"
-    );
+    println!("{:<16}{:>6}{:>12}{:>12}", "method", "cells", "point-wise", "assembled");
     for method in ["GIMP", "GIMP-SRI-patch", "GC-SRI-patch", "GC-Bbar-patch"] {
         for cells in PLANE_CELLS {
-            let cost = plane_cost(method, cells);
-            let [point_wise, assembled, reading] = cost.nanoseconds;
-            println!(
-                "{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}{reading:>12.1}{:>7.0}%{:>12.0}{:>12.0}",
-                100.0 * reading / assembled,
-                cost.bytes,
-                cost.products
-            );
+            let [point_wise, assembled] = plane_cost(method, cells);
+            println!("{method:<16}{cells:>6}{point_wise:>12.1}{assembled:>12.1}");
         }
     }
 }
 
-/// Cost of a step per point.
-struct PlaneCost {
-    /// Point-wise step, assembled step, reading alone.
-    nanoseconds: [f64; 3],
-    bytes: f64,
-    products: f64,
-}
-
-/// The steps and the reading take turns; the least of the rounds is what the machine can do undisturbed.
-fn plane_cost(name: &str, cells: usize) -> PlaneCost {
+/// Nanoseconds of the point-wise and of the assembled step per point. The steps take turns; the least of the rounds is
+/// what the machine can do undisturbed.
+fn plane_cost(name: &str, cells: usize) -> [f64; 2] {
     let method = Method::named(name).expect("a known method");
     let (column, soil) = (Column::layer(), Material::default());
     let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, cells, POINTS_PER_CELL)
@@ -218,23 +194,14 @@ fn plane_cost(name: &str, cells: usize) -> PlaneCost {
     let mut body = Body::new(problem);
     let mut plane = AssembledStep::new(&body);
     plane.set_step(dt, &settings);
-    let [bytes, products] = plane.bytes_and_products().expect("sparse rows");
-    let coefficients = vec![1.0_f64; bytes / size_of::<f64>()];
     let points = body.points.len() as f64;
-    let mut least = [f64::INFINITY; 3];
+    let mut least = [f64::INFINITY; 2];
     for _ in 0..PLANE_ROUNDS {
         let mut time = |kind: usize, one: &mut dyn FnMut()| keep_least(&mut least[kind], PLANE_STEPS, one);
         time(0, &mut || body.explicit_step(black_box(dt), &settings));
         time(1, &mut || plane.step(black_box(dt), &settings));
-        time(2, &mut || {
-            black_box(sum(black_box(&coefficients)));
-        });
     }
-    PlaneCost {
-        nanoseconds: least.map(|seconds| 1e9 * seconds / (PLANE_STEPS as f64 * points)),
-        bytes: bytes as f64 / points,
-        products: products as f64 / points,
-    }
+    least.map(|seconds| 1e9 * seconds / (PLANE_STEPS as f64 * points))
 }
 
 /// Times so many repeats of a work, and keeps the seconds where they are the least so far.
@@ -242,17 +209,6 @@ fn keep_least(least: &mut f64, repeats: usize, work: &mut dyn FnMut()) {
     let start = Instant::now();
     (0..repeats).for_each(|_| work());
     *least = least.min(start.elapsed().as_secs_f64());
-}
-
-/// A sum in eight chains, so that loads and not the latency of additions are timed.
-fn sum(numbers: &[f64]) -> f64 {
-    let mut chains = [0.0; 8];
-    for some in numbers.chunks_exact(8) {
-        for (chain, number) in chains.iter_mut().zip(some) {
-            *chain += number;
-        }
-    }
-    chains.iter().sum()
 }
 
 /// The kernels take turns, so that what drifts on the machine meets each alike.
@@ -277,39 +233,6 @@ fn least_of_rounds<const N: usize>(works: &mut [Box<dyn FnMut()>; N]) -> [f64; N
 const LANES: usize = 4;
 /// Sums that do not wait for each other in the bound.
 const CHAINS: usize = 4;
-/// Multiply-adds of a node beside those of its bands: projections of two accelerations over three
-/// nodes, and what follows from forces.
-const OTHER_TERMS: usize = 6 + 14;
-
-/// The frozen step beside a loop with as many multiply-adds, each with a coefficient and a value from
-/// the cache, on sums that wait for nothing and neighbours that are not needed. What is left is the
-/// price of the stencil: windows that straddle what was just stored, and two passes that wait for each
-/// other.
-fn print_bound() {
-    println!("\nfrozen step and its bound, ns per point and step, least of {ROUNDS} rounds");
-    println!(
-        "{:<16}{:>6}{:>8}{:>16}{:>10}{:>10}{:>8}",
-        "method", "cells", "reach", "multiply-adds", "step", "bound", "ratio"
-    );
-    for method in METHODS {
-        for cells in CELLS {
-            let reach = force_reach(method, cells);
-            let terms = 2 * (2 * reach + 1) + OTHER_TERMS;
-            let mut works = [stepper(method, cells, Kernel::Assembled), streaming(cells, terms)];
-            let [step, bound] = least_of_rounds(&mut works)
-                .map(|seconds| 1e9 * seconds / (STEPS * cells * POINTS_PER_CELL) as f64);
-            let ratio = step / bound;
-            println!("{method:<16}{cells:>6}{reach:>8}{terms:>16}{step:>10.2}{bound:>10.2}{ratio:>8.1}");
-        }
-    }
-}
-
-fn force_reach(method: &str, cells: usize) -> usize {
-    let problem = problem(method, cells, Configuration::Frozen);
-    let column = AssembledStep::new(&Body::new(problem));
-    column.force_reach().expect("bands")
-}
-
 /// `STEPS` passes over the nodes with so many multiply-adds each.
 fn streaming(cells: usize, terms: usize) -> Box<dyn FnMut()> {
     let blocks = cells.div_ceil(LANES);

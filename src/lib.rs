@@ -213,8 +213,6 @@ pub use oedometer_mpm::run::{
     run_plan::Plan,
     stepper::{EqualSteps, Stepper},
 };
-#[doc(hidden)]
-pub use oedometer_mpm::scene::stepped_column::SteppedColumn;
 
 #[cfg(test)]
 mod tests;

@@ -110,11 +110,6 @@ impl LayeredColumn {
         Ok(column)
     }
 
-    /// Height `H`, m.
-    pub fn height(&self) -> f64 {
-        self.height
-    }
-
     /// Settlement long after, `q Σ t/E_oed`, m.
     pub fn final_settlement(&self) -> f64 {
         self.load * self.layers.iter().map(|layer| layer.thickness / layer.modulus).sum::<f64>()

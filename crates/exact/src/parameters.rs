@@ -35,13 +35,6 @@ pub struct MotionParameters {
     pub frequency: f64,
 }
 
-impl MotionParameters {
-    /// Whether nothing is made to move: records of such cases say nothing of it.
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.
 ///
 /// The default is the seed column of Zheng et al. (2021, doi 10.1007/978-3-030-64514-4_88)
@@ -159,11 +152,6 @@ impl ColumnParameters {
     pub fn oedometric_modulus(&self) -> f64 {
         let nu = self.poissons_ratio;
         self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    }
-
-    /// Coefficient of volume compressibility `m_v = 1/E_oed`, 1/Pa.
-    pub fn compressibility(&self) -> f64 {
-        1.0 / self.oedometric_modulus()
     }
 
     /// Coupling modulus `Q = K_w/n` of incompressible grains, Pa (Biot 1941).

@@ -37,15 +37,6 @@ impl SingleMode {
         Ok(Self { parameters: *parameters, storage_ratio: parameters.storage_ratio() })
     }
 
-    /// The mode with incompressible water.
-    ///
-    /// # Errors
-    /// When the parameters are impossible.
-    pub fn incompressible(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        parameters.validate()?;
-        Ok(Self { parameters: *parameters, storage_ratio: 1.0 })
-    }
-
     /// Exponent `M_0² B T_v` of the decay.
     fn decay_exponent(&self, time_factor: f64) -> f64 {
         FRAC_PI_2 * FRAC_PI_2 * self.storage_ratio * time_factor

@@ -339,12 +339,6 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Gradient of a nodal field at a point, from which the effective stress takes its strain.
-    #[inline]
-    pub fn strain_gradient(&self, point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        self.strain.gradient(&self.basis, self.grid.node_stride(), point, field)
-    }
-
     /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
     /// mean of its domain's ends where those are what its strain is taken between.
     #[inline]

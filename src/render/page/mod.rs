@@ -68,8 +68,6 @@ pub enum Block {
     Figure(Figure),
     /// Figures side by side, where there is room.
     Figures(Vec<Figure>),
-    /// A highlighted sentence, lightly marked.
-    Callout(Mood, String),
     /// Blocks of which one is shown at a time, the first one first, each with the word that shows it.
     Switch(Vec<(String, Vec<Block>)>),
     /// Blocks that the reader opens.

@@ -14,6 +14,7 @@ fn page() -> Page {
     Page {
         title: format!("Report {hostile}"),
         lead: "First **line**.\n\nSecond, T_v = 0.1.".into(),
+        callout: Some((Mood::Fail, format!("Not so. {hostile}\n\nTwo."))),
         sections: vec![
             Section {
                 heading: format!("Mesh {hostile}"),
@@ -24,7 +25,6 @@ fn page() -> Page {
                     Block::Heading("Tables".into()),
                     Block::Table(table),
                     Block::Figure(Figure::new("mesh", chart(), "Errors of *p*.")),
-                    Block::Callout(Mood::Fail, format!("Not so. {hostile}")),
                 ],
             },
             Section {
@@ -40,7 +40,6 @@ fn page() -> Page {
                             Figure::new("right", chart(), "Right."),
                         ])],
                     },
-                    Block::Callout(Mood::Note, "One.\n\nTwo.".into()),
                 ],
             },
             Section { heading: "End".into(), id: "end".into(), mood: Some(Mood::Fail), blocks: vec![] },

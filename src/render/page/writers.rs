@@ -136,7 +136,6 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
             }
             out.push_str("</div>\n");
         }
-        Block::Callout(mood, text) => out.push_str(&html_callout(*mood, text)),
         Block::Switch(views) => {
             written.switches += 1;
             out.push_str("<div class=\"switch\">\n");
@@ -270,7 +269,6 @@ fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, Re
         }
         Block::Figure(figure) => markdown_figure(figure),
         Block::Figures(figures) => figures.iter().map(markdown_figure).collect::<Vec<_>>().join("\n\n"),
-        Block::Callout(mood, text) => markdown_callout(*mood, text),
         Block::Switch(views) => {
             let details = |(word, blocks): &(String, Vec<Block>)| {
                 markdown_block(&Block::Details { summary: word.clone(), blocks: blocks.clone() }, written)

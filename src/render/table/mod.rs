@@ -108,15 +108,6 @@ pub enum Cell {
         /// Its target: a path or an address.
         target: String,
     },
-    /// A judgement with a link to the page that shows it.
-    Evidence {
-        /// The judgement.
-        mood: Mood,
-        /// Its text.
-        words: String,
-        /// The target of the link: a path or an address.
-        target: String,
-    },
     /// One of many small cells on a background that says how good it is, with a link to what it comes from.
     Shaded {
         /// The background.
@@ -263,9 +254,7 @@ impl Cell {
             Self::Percent(v) => number::percent(*v),
             Self::Seconds(v) => number::seconds(*v),
             Self::Number(v) => number::number(*v),
-            Self::Verdict(mood, text) | Self::Evidence { mood, words: text, .. } => {
-                format!("{} {text}", mood.mark())
-            }
+            Self::Verdict(mood, text) => format!("{} {text}", mood.mark()),
             Self::Missing(_) => "–".to_owned(),
         }
     }

@@ -209,7 +209,6 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
         }
         (Cell::Verdict(mood, text), _) => format!("{} {}", mood.mark(), markdown(text)),
         (Cell::Link { words, target }, _) => link(words, target),
-        (Cell::Evidence { mood, words, target }, _) => format!("{} {}", mood.mark(), link(words, target)),
         (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
         // Only words are escaped: a number may start with a minus.
         (Cell::Text(_) | Cell::Shaded { .. }, (text, None)) => markdown(&text),
@@ -226,10 +225,6 @@ fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
         }
         (Cell::Verdict(mood, text), _) => {
             format!("<span class=\"{}\">{} {}</span>", mood.class(), mood.mark(), html(text))
-        }
-        (Cell::Evidence { mood, words, target }, _) => {
-            let (class, target, mark) = (mood.class(), plain_html(target), mood.mark());
-            format!("<a class=\"{class}\" href=\"{target}\">{mark} {}</a>", html(words))
         }
         (Cell::Shaded { words, title, target, .. }, _) => {
             let [target, title] = [target, title].map(|text| plain_html(text));
@@ -249,7 +244,7 @@ fn in_latex(cell: &Cell, footnotes: &[&str]) -> String {
     let (text, mark) = marked(cell, footnotes);
     match cell {
         Cell::Code(name) => format!("\\texttt{{{}}}", latex(name)),
-        Cell::Verdict(_, text) | Cell::Evidence { words: text, .. } => latex_text(text),
+        Cell::Verdict(_, text) => latex_text(text),
         Cell::Error(value) | Cell::Number(value) if value.is_finite() => match text.split_once('e') {
             Some((digits, exponent)) => format!("${digits}\\cdot10^{{{exponent}}}$"),
             None => format!("${text}$"),
@@ -268,8 +263,7 @@ fn in_csv(cell: &Cell, words: impl Fn(&str) -> String) -> (String, String) {
         | Cell::Code(text)
         | Cell::Verdict(_, text)
         | Cell::Link { words: text, .. }
-        | Cell::Shaded { value: None, words: text, .. }
-        | Cell::Evidence { words: text, .. } => words(text),
+        | Cell::Shaded { value: None, words: text, .. } => words(text),
         Cell::OrderWithin(value, half) => return (number::exact(*value), number::exact(*half)),
         Cell::Count(count) => count.to_string(),
         other => other.value().map_or(String::new(), number::exact),

@@ -46,7 +46,6 @@ const LOAD_SHARES: u32 = 4;
 #[derive(Clone, Debug)]
 pub struct LargeStrain {
     parameters: ColumnParameters,
-    model: LargeStrainModel,
     diffusion: Diffusion,
     loading: Loading,
     /// The first front; none where the load grows.
@@ -127,7 +126,6 @@ impl LargeStrain {
         match before {
             Some(attempt) if difference < TOO_MUCH => Ok(Self {
                 parameters: *parameters,
-                model,
                 diffusion,
                 loading,
                 front: attempt.front,
@@ -138,11 +136,6 @@ impl LargeStrain {
             }),
             _ => Err(ExactError::NotConverged { difference }),
         }
-    }
-
-    /// What is solved.
-    pub fn model(&self) -> LargeStrainModel {
-        self.model
     }
 
     /// Profile at a time factor after the front: a prepared one, or marched to from the last before.

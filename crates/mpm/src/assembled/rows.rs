@@ -252,21 +252,6 @@ impl<const D: usize> SparseStorage<D> {
             dilation.iter_mut().zip(&*coupling).for_each(|(dilation, coupling)| *dilation /= coupling);
         }
     }
-
-    /// Size of the rows, bytes.
-    pub fn bytes(&self) -> usize {
-        self.divergence.bytes()
-            + self.pressure_force.bytes()
-            + self.skeleton_force.bytes()
-            + self.projection.bytes()
-    }
-
-    /// Multiply-adds of a step by the rows, with FLIP.
-    pub fn products(&self) -> usize {
-        D * (self.divergence.entry_count() + self.pressure_force.entry_count())
-            + D * D * self.skeleton_force.entry_count()
-            + 2 * D * self.projection.entry_count()
-    }
 }
 
 impl<const D: usize> Rows<D> for SparseStorage<D> {

@@ -223,26 +223,6 @@ impl<const D: usize> AssembledStep<D> {
         body.surface_flux += body.outflow_of(&flux);
         body
     }
-
-    /// Rows to either side that the forces on a node come from, where rows are banded: what a step
-    /// multiplies, for benches.
-    pub fn force_reach(&self) -> Option<usize> {
-        match &self.rows {
-            RowStorage::Banded(bands) => Some(bands.force_reach),
-            RowStorage::Sparse(_) => None,
-        }
-    }
-
-    /// Coefficients that a step by sparse rows reads once, bytes, and its multiply-adds with FLIP: what
-    /// bounds its speed once they no longer fit into the nearest cache; for benches.
-    pub fn bytes_and_products(&self) -> Option<[usize; 2]> {
-        match &self.rows {
-            RowStorage::Banded(_) => None,
-            RowStorage::Sparse(rows) => {
-                Some([rows.bytes() + std::mem::size_of_val(&self.constants[..]), rows.products()])
-            }
-        }
-    }
 }
 
 impl<const D: usize> BlockConstants<D> {

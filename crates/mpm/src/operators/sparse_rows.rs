@@ -19,16 +19,6 @@ impl<T: Copy> SparseRows<T> {
         Self { starts, entries }
     }
 
-    /// Entries of all rows.
-    pub fn entry_count(&self) -> usize {
-        self.entries.len()
-    }
-
-    /// Size, bytes.
-    pub fn bytes(&self) -> usize {
-        std::mem::size_of_val(&self.entries[..]) + std::mem::size_of_val(&self.starts[..])
-    }
-
     /// The entries of a row.
     #[inline]
     pub fn row(&self, row: usize) -> &[(u32, T)] {

@@ -11,7 +11,7 @@ use crate::operators::stencil::{PointStencils, Stencils};
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, cell_below};
 use crate::wide::wide;
-use oedometer_soil::tensor::{Tensor, Vector};
+use oedometer_soil::tensor::Vector;
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
 pub const ENDS_WIDTH: usize = 5;
@@ -93,22 +93,6 @@ impl<const D: usize> StrainOperator<D> {
         match self {
             Self::BetweenEnds(stencils) => Some(stencils),
             Self::Basis | Self::Composite(_) => None,
-        }
-    }
-
-    /// Gradient of a nodal field at a point, `[component][direction]`.
-    #[inline]
-    pub fn gradient(
-        &self,
-        basis: &PointStencils<D>,
-        stride: &[usize; D],
-        point: usize,
-        field: &[Vector<D>],
-    ) -> Tensor<D> {
-        match self {
-            Self::Basis => basis.gradient(stride, point, field),
-            Self::Composite(stencils) => stencils.gradient(stride, point, field),
-            Self::BetweenEnds(stencils) => stencils.gradient(stride, point, field),
         }
     }
 

@@ -16,7 +16,6 @@ pub mod problem;
 mod sealed_element;
 mod single_mode;
 mod standing_wave;
-pub mod stepped_column;
 mod terzaghi;
 mod xie_leo;
 mod yield_front;

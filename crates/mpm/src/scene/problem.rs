@@ -3,7 +3,7 @@
 
 use crate::body::Problem;
 use crate::critical_step::observed::{CriticalStep, Stopped, critical_step};
-use crate::critical_step::predicted::{predict_for_run, predicted_critical_step, whole_growth};
+use crate::critical_step::predicted::{predict_for_run, whole_growth};
 use crate::explicit::ExplicitSettings;
 use crate::method::Method;
 use crate::operators::surface_load::LoadShape;
@@ -73,15 +73,7 @@ impl SceneProblem {
         }
     }
 
-    /// Its predicted critical step, s.
-    pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
-        match self {
-            Self::Column(problem) => predicted_critical_step(problem, settings),
-            Self::Plane(problem) => predicted_critical_step(problem, settings),
-        }
-    }
-
-    /// The same, where a limit is known.
+    /// Its predicted critical step, s, where a limit is known.
     pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
         let (step, growing) = match self {
             Self::Column(problem) => predict_for_run(problem, settings),
