@@ -13,6 +13,7 @@ use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::xie_leo::{Drainage, XieLeo};
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 use std::collections::BTreeMap;
 
 /// Name under which their golden values are kept.
@@ -64,7 +65,7 @@ pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
 pub fn perturbed_reference_values() -> Result<Vec<BTreeMap<String, f64>>, ExactError> {
     let perturbed = LastDigit::ALL.map(|digit| {
         let mut column = ColumnParameters::default();
-        digit.change(&mut column.youngs_modulus, &mut column.hydraulic_conductivity);
+        digit.change(&mut column.soil.youngs_modulus, &mut column.soil.hydraulic_conductivity);
         values_of_column(&column)
     });
     perturbed.into_iter().collect()
@@ -181,7 +182,11 @@ impl Values {
 
 fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, ExactError> {
     let mut values = Values::default();
-    let soft = ColumnParameters { load: LARGE_LOAD, water_bulk_modulus: SOFT_WATER, ..*seed };
+    let soft = ColumnParameters {
+        soil: Material { water_bulk_modulus: SOFT_WATER, ..seed.soil },
+        load: LARGE_LOAD,
+        ..*seed
+    };
     let growing = ColumnParameters { loading_time: seed.time(LOADED_AT), ..soft };
     // Motions that were chosen have no column; their balances are tested. Soils of several kinds and soils that yield are
     // compared with values computed by other ways.

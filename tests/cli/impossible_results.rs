@@ -7,6 +7,7 @@ use oedometer::{
     Tier, balance_checks, measures, render_markdown, run_case, run_study, soundness, start_checks,
     study_page,
 };
+use oedometer_soil::material::Material;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -185,7 +186,10 @@ fn beyond_the_bound_of_inertia_theory_is_off_by_thousandths() {
     use oedometer::exact::ColumnParameters;
     use oedometer::exact::reference::{Reference, ReferenceKind};
     let gap = |conductivity: f64| {
-        let column = ColumnParameters { hydraulic_conductivity: conductivity, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity: conductivity, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let settlement = |kind| {
             let reference = Reference::new(kind, &column, &[0.05]).expect("the seed column");
             reference.settlement(0.05).expect("a settlement")

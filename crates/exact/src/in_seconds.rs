@@ -49,11 +49,11 @@ impl ColumnInSeconds {
         if let Some(sum) = parameters.soils.misses(height) {
             return Err(ExactError::LayersDoNotFill { sum, height });
         }
-        let soil = parameters.material();
+        let soil = parameters.soil;
         let mut layers = Vec::with_capacity(parameters.soils.len().max(1));
         for layer in parameters.soils.iter() {
             let soil = layer.soil(&soil);
-            ColumnParameters::of_soil(height, parameters.load, &soil).validate()?;
+            ColumnParameters { soil, ..*parameters }.validate()?;
             layers.push((layer.thickness, soil));
         }
         if layers.is_empty() {
@@ -72,12 +72,12 @@ impl ColumnInSeconds {
             height: parameters.height,
             load: parameters.load,
             initial_stress: parameters.uniform_stress,
-            preconsolidation: parameters.preconsolidation,
-            virgin_modulus: parameters.oedometric_modulus(),
-            reload_modulus: parameters.reload_modulus,
-            porosity: parameters.porosity,
-            water_bulk_modulus: parameters.water_bulk_modulus,
-            mobility: parameters.hydraulic_conductivity / parameters.unit_weight_of_water(),
+            preconsolidation: parameters.soil.preconsolidation,
+            virgin_modulus: parameters.soil.oedometric_modulus(),
+            reload_modulus: parameters.soil.reload_modulus,
+            porosity: parameters.soil.porosity,
+            water_bulk_modulus: parameters.soil.water_bulk_modulus,
+            mobility: parameters.soil.hydraulic_conductivity / parameters.soil.unit_weight_of_water(),
         })?;
         Ok(Self::of(parameters, Column::YieldFront(front)))
     }
@@ -92,7 +92,7 @@ impl ColumnInSeconds {
         let column = Column::Sealed {
             pressure: parameters.load * parameters.storage_ratio(),
             effective_stress: -parameters.load * share,
-            strain: parameters.load * share / parameters.oedometric_modulus(),
+            strain: parameters.load * share / parameters.soil.oedometric_modulus(),
         };
         Ok(Self::of(parameters, column))
     }

@@ -70,11 +70,11 @@ impl SingleMode {
         let column = &self.parameters;
         let profile = from_base(zeta) * elementary::exp(-self.decay_exponent(time_factor));
         // M_0 k p_0/(γ_w H), the specific discharge through the drained surface.
-        let discharge = FRAC_PI_2 * column.hydraulic_conductivity * column.load
-            / (column.unit_weight_of_water() * column.height)
+        let discharge = FRAC_PI_2 * column.soil.hydraulic_conductivity * column.load
+            / (column.soil.unit_weight_of_water() * column.height)
             * profile;
         let solid = -self.storage_ratio * discharge;
-        Ok(PhaseVelocities { solid, water: solid + discharge / column.porosity })
+        Ok(PhaseVelocities { solid, water: solid + discharge / column.soil.porosity })
     }
 
     /// Degree of consolidation by settlement, `1 − exp(−M_0² B T_v)`.
@@ -112,6 +112,7 @@ fn from_base(zeta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oedometer_soil::material::Material;
 
     /// Central difference over a step that balances truncation and round-off.
     fn slope(f: impl Fn(f64) -> f64, at: f64, step: f64) -> f64 {
@@ -121,27 +122,28 @@ mod tests {
     #[test]
     fn balances_hold_in_the_mode() {
         let column = ColumnParameters {
+            soil: Material { water_bulk_modulus: 4.0e6, ..Material::default() },
             height: 2.0,
             load: 3.0e3,
-            water_bulk_modulus: 4.0e6,
             ..ColumnParameters::default()
         };
         let mode = SingleMode::compressible(&column).unwrap();
         let (time_factor, zeta) = (0.3, 0.4);
         let velocities = |zeta| mode.velocities(time_factor, zeta).unwrap();
-        let discharge = |zeta| column.porosity * (velocities(zeta).water - velocities(zeta).solid);
+        let discharge = |zeta| column.soil.porosity * (velocities(zeta).water - velocities(zeta).solid);
         let per_height = -1.0 / column.height;
         let strain_rate = slope(|z| velocities(z).solid, zeta, 1e-5) * per_height;
         let outflow = slope(discharge, zeta, 1e-5) * per_height;
         let rate = |f: &dyn Fn(f64) -> f64| slope(f, time_factor, 1e-5) / column.time(1.0);
         let pressure_rate = rate(&|t| mode.fields(t, zeta).unwrap().pressure);
         let displacement_rate = rate(&|t| mode.fields(t, zeta).unwrap().displacement);
-        let storage = -column.coupling_modulus() * (strain_rate + outflow);
+        let storage = -column.soil.coupling_modulus() * (strain_rate + outflow);
         assert!((pressure_rate / storage - 1.0).abs() < 1e-8);
-        assert!((pressure_rate / column.oedometric_modulus() / strain_rate - 1.0).abs() < 1e-8);
+        assert!((pressure_rate / column.soil.oedometric_modulus() / strain_rate - 1.0).abs() < 1e-8);
         assert!((displacement_rate / velocities(zeta).solid - 1.0).abs() < 1e-8);
         let gradient = slope(|z| mode.fields(time_factor, z).unwrap().pressure, zeta, 1e-5);
-        let darcy = -column.hydraulic_conductivity / column.unit_weight_of_water() * gradient * per_height;
+        let darcy =
+            -column.soil.hydraulic_conductivity / column.soil.unit_weight_of_water() * gradient * per_height;
         assert!((darcy / discharge(zeta) - 1.0).abs() < 1e-8);
     }
 

@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(column.fields(0.0, 0.0).unwrap().pressure, 0.0);
         // Effective stress that the undrained skeleton carries is its strain times its modulus.
         let strain = column.settlement(0.0).unwrap() / seed.height;
-        assert!((strain * seed.oedometric_modulus() + start.effective_stress).abs() < 1e-15);
+        assert!((strain * seed.soil.oedometric_modulus() + start.effective_stress).abs() < 1e-15);
     }
 
     #[test]

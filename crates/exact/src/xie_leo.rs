@@ -52,11 +52,17 @@ impl XieLeo {
     /// `n = 1 − (1 − n_0)/J` would end below zero.
     pub fn drained(parameters: &ColumnParameters, drainage: Drainage) -> Result<Self, ExactError> {
         parameters.validate()?;
-        let strain =
-            positive("load over the oedometric modulus", parameters.load / parameters.oedometric_modulus())?;
-        let limit = -elementary::ln_1p(-parameters.porosity);
+        let strain = positive(
+            "load over the oedometric modulus",
+            parameters.load / parameters.soil.oedometric_modulus(),
+        )?;
+        let limit = -elementary::ln_1p(-parameters.soil.porosity);
         if strain >= limit {
-            return Err(ExactError::LoadClosesPores { load: strain, limit, porosity: parameters.porosity });
+            return Err(ExactError::LoadClosesPores {
+                load: strain,
+                limit,
+                porosity: parameters.soil.porosity,
+            });
         }
         if parameters.loading_time > 0.0 {
             return Err(ExactError::LoadGrows { loading_time: parameters.loading_time });

@@ -6,6 +6,7 @@ use oedometer_exact::field_values::FieldValues;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::single_mode::SingleMode;
 use oedometer_exact::terzaghi::Terzaghi;
+use oedometer_soil::material::Material;
 
 /// time factor, height, `u_solid/q`, `u_water/q`, p/q of the seed column.
 fn published() -> impl Iterator<Item = [f64; 5]> {
@@ -74,7 +75,10 @@ fn seed_column_departs_from_terzaghi_as_measured() {
 fn sluggish_columns_become_terzaghis() {
     // k from 1e-6 down: inertia leaves the picture, overdamped slow roots and fast drag roots stay.
     for (hydraulic_conductivity, allowed) in [(1e-6, 1e-9), (1e-8, 1e-13), (1e-10, 5e-15)] {
-        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let dynamic = DynamicColumn::new(&column, Start::Step, &[0.05, 0.5]).unwrap();
         let storage = Terzaghi::compressible(&column).unwrap();
         // Before T_v ≈ 0.03 undrained waves still run: their attenuation is as slow as the drainage.
@@ -94,7 +98,10 @@ fn sluggish_columns_become_terzaghis() {
 #[test]
 fn waves_run_in_permeable_columns() {
     // k = 1e-2 at T_v = 0.05: fronts are still sharp, and the reference says so.
-    let column = ColumnParameters { hydraulic_conductivity: 1e-2, ..ColumnParameters::default() };
+    let column = ColumnParameters {
+        soil: Material { hydraulic_conductivity: 1e-2, ..Material::default() },
+        ..ColumnParameters::default()
+    };
     let dynamic = DynamicColumn::new(&column, Start::Step, &[0.05, 5.0]).unwrap();
     assert!(dynamic.accuracy(0.05).unwrap().tail_bound > 1e-6);
     assert!(dynamic.accuracy(5.0).unwrap().tail_bound < 1e-16);
@@ -211,14 +218,18 @@ fn released_mode_starts_like_the_single_mode() {
 #[test]
 fn a_standing_wave_starts_at_rest_and_swings_with_the_undrained_period() {
     // Hardly any water moves against the grains: k = 1e-9, and the period is 4H/√((E_oed + Q)/ρ).
-    let column = ColumnParameters { hydraulic_conductivity: 1e-9, load: 7.0, ..ColumnParameters::default() };
+    let column = ColumnParameters {
+        soil: Material { hydraulic_conductivity: 1e-9, ..Material::default() },
+        load: 7.0,
+        ..ColumnParameters::default()
+    };
     let wave = DynamicColumn::new(&column, Start::StandingWave, &[]).unwrap();
     let start = wave.dynamic_fields(0.0, 0.4).unwrap();
     assert!((start.solid.pressure / (7.0 * (0.4 * core::f64::consts::FRAC_PI_2).sin()) - 1.0).abs() < 1e-12);
     assert!(start.solid.displacement.abs() < 1e-12 * wave.fields(1.0, 0.4).unwrap().displacement.abs());
     assert!(start.velocities.solid.abs() + start.velocities.water.abs() < 1e-14);
     let density = 0.7 * 2650.0 + 0.3 * 1000.0;
-    let speed = ((column.oedometric_modulus() + column.coupling_modulus()) / density).sqrt();
+    let speed = ((column.soil.oedometric_modulus() + column.soil.coupling_modulus()) / density).sqrt();
     let period = column.time_factor(4.0 * column.height / speed);
     let at = |periods: f64| wave.fields(periods * period, 1.0).unwrap().pressure / 7.0;
     for (periods, pressure) in [(0.25, 0.0), (0.5, -1.0), (1.0, 1.0), (3.0, 1.0)] {
@@ -232,7 +243,10 @@ fn critically_damped_modes_are_no_exception() {
     let mut last: Option<f64> = None;
     for i in 0..=400 {
         let hydraulic_conductivity = 10.0_f64.powf(-2.2 + 1.2 * f64::from(i) / 400.0);
-        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let mode = DynamicColumn::new(&column, Start::Mode, &[]).unwrap();
         let time_factor = column.time_factor(2.0e-3);
         let pressure = mode.fields(time_factor, 0.7).unwrap().pressure;
@@ -254,7 +268,10 @@ fn a_growing_load_matches_high_precision_values() {
         let [conductivity, duration, time, height, solid, water, pressure] = cells[..] else {
             panic!("{line}")
         };
-        let column = ColumnParameters { hydraulic_conductivity: conductivity, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity: conductivity, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let ramp = DynamicColumn::new(&column, Start::Ramp { duration }, &[]).unwrap();
         let time_factor = column.time_factor(time);
         let fields = ramp.dynamic_fields(time_factor, 1.0 - height).unwrap();
@@ -277,7 +294,10 @@ fn a_growing_load_matches_high_precision_values() {
 fn a_kink_that_is_sharp_is_bounded() {
     // Before the fastest wave arrives nothing has: what is left at the base is the error.
     for hydraulic_conductivity in [1e-4, 1e-2] {
-        let column = ColumnParameters { hydraulic_conductivity, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         for duration in [1e-6, 1e-5, 1e-4, 1e-3] {
             let ramp = DynamicColumn::new(&column, Start::Ramp { duration }, &[]).unwrap();
             for share in [0.3, 0.8] {
@@ -303,16 +323,19 @@ fn released() -> impl Iterator<Item = (Start, ColumnParameters, [f64; 2], [f64; 
         };
         let start = if start == "standing-wave" { Start::StandingWave } else { Start::Mode };
         let column = ColumnParameters {
+            soil: Material {
+                youngs_modulus: 2.5e6,
+                poissons_ratio: 0.2,
+                porosity: 0.35,
+                grain_density: 2700.0,
+                water_density: 1020.0,
+                gravity: 9.7,
+                water_bulk_modulus,
+                hydraulic_conductivity,
+                ..Material::default()
+            },
             height: 0.7,
             load: 3.0,
-            youngs_modulus: 2.5e6,
-            poissons_ratio: 0.2,
-            porosity: 0.35,
-            grain_density: 2700.0,
-            water_density: 1020.0,
-            gravity: 9.7,
-            water_bulk_modulus,
-            hydraulic_conductivity,
             ..ColumnParameters::default()
         };
         (start, column, [time_factor, zeta], [pressure, moved])
@@ -327,9 +350,9 @@ fn phases_of_waves_that_ran_long_are_within_their_stated_bound() {
         let fields = column.fields(time_factor, zeta).unwrap();
         let wave_number = std::f64::consts::FRAC_PI_2 / parameters.height;
         let start_modulus = if start == Start::Mode {
-            parameters.oedometric_modulus()
+            parameters.soil.oedometric_modulus()
         } else {
-            -parameters.coupling_modulus()
+            -parameters.soil.coupling_modulus()
         };
         let at_start = parameters.load / (start_modulus * wave_number);
         let bound = column.accuracy(time_factor).unwrap().bound();

@@ -7,6 +7,7 @@ use oedometer_exact::terzaghi::Terzaghi;
 use oedometer_exact::xie_leo::XieLeo;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
 
 const TIMES: [f64; 8] = [1e-6, 0.001, 0.01, 0.05, 0.2, 0.5, 1.0, 3.0];
 
@@ -51,7 +52,8 @@ fn incompressible_limit_is_xie_leo() {
 #[test]
 fn a_line_to_draw_is_what_it_says_and_takes_fewer_points() {
     // At seven tenths of strain the first two resolutions differ by 3e-6 of the load: too much for a line too.
-    let steep = ColumnParameters { porosity: 0.8, ..column(1.444_8e6) };
+    let steep =
+        ColumnParameters { soil: Material { porosity: 0.8, ..column(1.444_8e6).soil }, ..column(1.444_8e6) };
     for column in [column(1e3), column(2e5), column(4e5), steep] {
         let drawn = LargeStrain::for_lines(&column, INCOMPRESSIBLE, &TIMES).unwrap();
         let closed = XieLeo::new(&column).unwrap();
@@ -70,7 +72,8 @@ fn a_line_to_draw_is_what_it_says_and_takes_fewer_points() {
 #[test]
 fn linear_law_is_terzaghi_with_storage() {
     for water_bulk_modulus in [2.2e9, 1.0e6] {
-        let column = ColumnParameters { water_bulk_modulus, ..column(3.0e3) };
+        let column =
+            ColumnParameters { soil: Material { water_bulk_modulus, ..column(3.0e3).soil }, ..column(3.0e3) };
         let linear = model(Law::Linear, Continuity::ConstantPorosityGradient, Water::Compressible);
         let general = LargeStrain::new(&column, linear, &TIMES).unwrap();
         let closed = Terzaghi::compressible(&column).unwrap();
@@ -92,7 +95,10 @@ fn linear_law_is_terzaghi_with_storage() {
 #[test]
 fn governing_equations_hold() {
     // Finite differences of the published fields, put into the equations as they are printed.
-    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(2.0e5) };
+    let column = ColumnParameters {
+        soil: Material { water_bulk_modulus: 1.0e7, ..column(2.0e5).soil },
+        ..column(2.0e5)
+    };
     let (time_factor, zeta) = (0.15, 0.3);
     let (dt, dz) = (1e-4, 1e-3);
     let times = [time_factor - dt, time_factor, time_factor + dt];
@@ -102,15 +108,15 @@ fn governing_equations_hold() {
                 LargeStrain::new(&column, model(law, continuity, Water::Compressible), &times).unwrap();
             let volume = |t: f64, z: f64| general.volume_ratio(t, z).unwrap();
             let pressure = |t: f64, z: f64| general.fields(t, z).unwrap().pressure;
-            let solids = 1.0 - column.porosity;
+            let solids = 1.0 - column.soil.porosity;
             let porosity = |z: f64| 1.0 - solids / volume(time_factor, z);
             let discharge = |z: f64| {
                 // ∂/∂Y = −(1/H) ∂/∂ζ.
                 let gradient = -(pressure(time_factor, z + dz) - pressure(time_factor, z - dz))
                     / (2.0 * dz * column.height);
                 let ratio = volume(time_factor, z);
-                let conductivity = column.hydraulic_conductivity * ratio * ratio;
-                -conductivity / (column.unit_weight_of_water() * ratio) * gradient
+                let conductivity = column.soil.hydraulic_conductivity * ratio * ratio;
+                -conductivity / (column.soil.unit_weight_of_water() * ratio) * gradient
             };
             let along = |f: &dyn Fn(f64) -> f64| -(f(zeta + dz) - f(zeta - dz)) / (2.0 * dz * column.height);
             let outflow = match continuity {
@@ -123,11 +129,12 @@ fn governing_equations_hold() {
                 (f(times[2], zeta) - f(times[0], zeta)) / column.time(times[2] - times[0])
             };
             let ratio = volume(time_factor, zeta);
-            let stored = rate(&volume) + porosity(zeta) * ratio / column.water_bulk_modulus * rate(&pressure);
+            let stored =
+                rate(&volume) + porosity(zeta) * ratio / column.soil.water_bulk_modulus * rate(&pressure);
             let misfit = (stored + outflow) / outflow;
             assert!(misfit.abs() < 2e-5, "{misfit:e} for {law:?} {continuity:?}");
             // The stress that the law gives at this volume is the published one.
-            let modulus = column.oedometric_modulus();
+            let modulus = column.soil.oedometric_modulus();
             let stress = match law {
                 Law::LogLinear | Law::Engineering => modulus * ratio.ln(),
                 Law::PorosityDependent => modulus * (1.0 - 1.0 / ratio),
@@ -231,7 +238,10 @@ fn loads_near_the_limit_still_converge() {
 /// A linear ramp of Terzaghi's column by superposition: the mean of the step's answers so far.
 #[test]
 fn a_growing_load_at_small_strain_is_terzaghi_s_mean() {
-    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(3.0e3) };
+    let column = ColumnParameters {
+        soil: Material { water_bulk_modulus: 1.0e7, ..column(3.0e3).soil },
+        ..column(3.0e3)
+    };
     let duration = 0.08;
     let growing = ColumnParameters { loading_time: column.time(duration), ..column };
     let linear = model(Law::Linear, Continuity::Conservative, Water::Compressible);
@@ -258,7 +268,12 @@ fn a_growing_load_at_small_strain_is_terzaghi_s_mean() {
 
 #[test]
 fn a_load_that_grows_ends_where_one_at_once_does_and_is_refined_to_its_bound() {
-    let sudden = ColumnParameters { porosity: 0.7, load: 8.4e5, height: 1.0, ..ColumnParameters::default() };
+    let sudden = ColumnParameters {
+        soil: Material { porosity: 0.7, ..Material::default() },
+        load: 8.4e5,
+        height: 1.0,
+        ..ColumnParameters::default()
+    };
     let growing = ColumnParameters { loading_time: sudden.time(0.05), ..sudden };
     let times = [0.01, 0.05, 0.2, 1.0, 8.0];
     for continuity in Continuity::ALL {
@@ -280,7 +295,10 @@ fn a_load_that_grows_ends_where_one_at_once_does_and_is_refined_to_its_bound() {
 
 #[test]
 fn governing_equation_holds_while_the_load_grows() {
-    let column = ColumnParameters { water_bulk_modulus: 1.0e7, ..column(2.0e5) };
+    let column = ColumnParameters {
+        soil: Material { water_bulk_modulus: 1.0e7, ..column(2.0e5).soil },
+        ..column(2.0e5)
+    };
     let growing = ColumnParameters { loading_time: column.time(0.3), ..column };
     let (time_factor, zeta, dt, dz) = (0.15, 0.3, 1e-4, 1e-3);
     let general = LargeStrain::new(
@@ -294,14 +312,14 @@ fn governing_equation_holds_while_the_load_grows() {
     let discharge = |z: f64| {
         let gradient =
             -(pressure(time_factor, z + dz) - pressure(time_factor, z - dz)) / (2.0 * dz * column.height);
-        let conductivity = column.hydraulic_conductivity * volume(time_factor, z);
-        -conductivity / column.unit_weight_of_water() * gradient
+        let conductivity = column.soil.hydraulic_conductivity * volume(time_factor, z);
+        -conductivity / column.soil.unit_weight_of_water() * gradient
     };
     let outflow = -(discharge(zeta + dz) - discharge(zeta - dz)) / (2.0 * dz * column.height);
     let rate = |f: &dyn Fn(f64, f64) -> f64| {
         (f(time_factor + dt, zeta) - f(time_factor - dt, zeta)) / column.time(2.0 * dt)
     };
-    let pores = volume(time_factor, zeta) - (1.0 - column.porosity);
-    let stored = rate(&volume) + pores / column.water_bulk_modulus * rate(&pressure);
+    let pores = volume(time_factor, zeta) - (1.0 - column.soil.porosity);
+    let stored = rate(&volume) + pores / column.soil.water_bulk_modulus * rate(&pressure);
     assert!(((stored + outflow) / outflow).abs() < 2e-5, "{}", (stored + outflow) / outflow);
 }

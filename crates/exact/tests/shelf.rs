@@ -3,6 +3,7 @@
 use oedometer_exact::{
     ColumnParameters, ExactError, Reference, ReferenceKind, ShelfParameters, ShelfProblem,
 };
+use oedometer_soil::material::Material;
 
 /// The cases of `crates/exact/tests/reference/make_shelf.py`.
 fn column(case: &str) -> ColumnParameters {
@@ -17,7 +18,7 @@ fn column(case: &str) -> ColumnParameters {
         "small-load" => (2.2e9, ShelfParameters { initial_stress: Some(50.0), ..shelf }),
         _ => (2.2e9, shelf),
     };
-    ColumnParameters { water_bulk_modulus, shelf, ..seed }
+    ColumnParameters { soil: Material { water_bulk_modulus, ..seed.soil }, shelf, ..seed }
 }
 
 fn reference(problem: ShelfProblem, column: &ColumnParameters) -> Reference {
@@ -98,8 +99,13 @@ fn the_round_off_of_a_sphere_without_bulk_modulus_is_within_what_is_stated() {
     for (poissons_ratio, exact) in
         [(-0.9, 1.636_874_514_567_765), (-0.99, 1.850_658_404_803_831_8), (-0.999, 1.872_527_904_672_868_7)]
     {
-        let sphere =
-            reference(ShelfProblem::Cryer, &ColumnParameters { poissons_ratio, ..column("default") });
+        let sphere = reference(
+            ShelfProblem::Cryer,
+            &ColumnParameters {
+                soil: Material { poissons_ratio, ..column("default").soil },
+                ..column("default")
+            },
+        );
         let off = (sphere.fields(0.5, 0.5).expect("inside").pressure - exact).abs();
         let bound = sphere.accuracy(0.5).expect("a time").bound();
         assert!(off < bound && bound < 1e-6, "{poissons_ratio}: {off:e} {bound:e}");
@@ -109,7 +115,10 @@ fn the_round_off_of_a_sphere_without_bulk_modulus_is_within_what_is_stated() {
 #[test]
 fn a_biot_coefficient_of_one_is_terzaghis_column() {
     for water_bulk_modulus in [6e5, 2.2e9] {
-        let seed = ColumnParameters { water_bulk_modulus, ..ColumnParameters::default() };
+        let seed = ColumnParameters {
+            soil: Material { water_bulk_modulus, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         assert!(apart((ShelfProblem::BiotColumn, &seed), (ReferenceKind::Terzaghi, &seed)) < 1e-14);
     }
     // Grains a million times stiffer than the skeleton nearly so.
@@ -125,7 +134,10 @@ fn a_biot_coefficient_of_one_is_terzaghis_column() {
 fn a_load_far_below_the_stress_of_the_start_is_terzaghis_column() {
     let mut before = f64::NAN;
     for initial_stress in [1e3, 1e4, 1e5] {
-        let seed = ColumnParameters { water_bulk_modulus: 1e30, ..ColumnParameters::default() };
+        let seed = ColumnParameters {
+            soil: Material { water_bulk_modulus: 1e30, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let shelf = ShelfParameters { initial_stress: Some(initial_stress), ..ShelfParameters::default() };
         let small = ColumnParameters { shelf, ..seed };
         let (ours, theirs) = (
@@ -147,7 +159,10 @@ fn a_load_far_below_the_stress_of_the_start_is_terzaghis_column() {
 
 #[test]
 fn a_thin_ring_around_a_wide_drain_is_one_dimensional() {
-    let seed = ColumnParameters { water_bulk_modulus: 1e30, ..ColumnParameters::default() };
+    let seed = ColumnParameters {
+        soil: Material { water_bulk_modulus: 1e30, ..Material::default() },
+        ..ColumnParameters::default()
+    };
     let drain_radius = 1e4;
     let thin = ColumnParameters { shelf: ShelfParameters { drain_radius, ..seed.shelf }, ..seed };
     for zeta in [0.2, 0.6, 1.0] {
@@ -191,7 +206,10 @@ fn a_sphere_rises_above_its_start_as_cryers_does() {
     // Cryer (1963), figure 2, and Verruijt (2013): for ν = 0 the middle rises above its start by 50 to 60 %; a body that
     // keeps its shape, ν → ½, does not rise.
     let middle = |poissons_ratio: f64| {
-        let seed = ColumnParameters { poissons_ratio, ..ColumnParameters::default() };
+        let seed = ColumnParameters {
+            soil: Material { poissons_ratio, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         let sphere = reference(ShelfProblem::Cryer, &seed);
         let start = sphere.fields(0.0, 1.0).expect("inside").pressure;
         (1..200)
@@ -208,7 +226,10 @@ fn a_slow_wave_is_drained_and_a_fast_one_undrained_below_its_skin() {
     let seed = column("default");
     let bed = |wave_period: f64| {
         let shelf = ShelfParameters { wave_period, ..seed.shelf };
-        reference(ShelfProblem::Seabed, &ColumnParameters { water_bulk_modulus: 6e5, shelf, ..seed })
+        reference(
+            ShelfProblem::Seabed,
+            &ColumnParameters { soil: Material { water_bulk_modulus: 6e5, ..seed.soil }, shelf, ..seed },
+        )
     };
     let slow = bed(1e9).fields(0.0, 1.0).expect("inside");
     assert!((slow.pressure - 1.0).abs() < 1e-6 && slow.effective_stress.abs() < 1e-6);

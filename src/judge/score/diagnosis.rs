@@ -445,7 +445,7 @@ impl Trials<'_> {
         let slope = (sums[0] * offsets[1] - sums[1] * offsets[0]) / determinant;
         let constant = (offsets[0] - slope * sums[1]) / sums[0];
         let gradient = slope / height;
-        let weight = self.given.parameters.unit_weight_of_water();
+        let weight = self.given.parameters.soil.unit_weight_of_water();
         // A water level above or below the surface adds the constant.
         let corrected = |value: f64, y: f64| value - constant - slope * depth(y);
         let left = self.error_of(self.samples(self.exact), corrected);

@@ -150,8 +150,9 @@ impl Checker<'_> {
         let list: Vec<SoilLayer> = typed.iter().map(|layer| **layer).collect();
         let height = base.column.height;
         for (number, layer) in typed.iter().enumerate() {
-            let soil = ColumnParameters::of_soil(layer.thickness, 1.0, &layer.soil(&base.material));
-            if let Err(error) = soil.validate() {
+            let soil = layer.soil(&base.material);
+            let column = ColumnParameters { height: layer.thickness, soil, ..ColumnParameters::default() };
+            if let Err(error) = column.validate() {
                 let message = error.to_string().replace("the height", "the thickness");
                 let layer_number = number + 1;
                 let help =

@@ -78,15 +78,15 @@ impl CosineLayer {
     ) -> Result<Self, ExactError> {
         parameters.validate()?;
         let wave_number = PI / positive("length of the layer", length)?;
-        let (modulus, ratio) = (parameters.youngs_modulus, parameters.poissons_ratio);
+        let (modulus, ratio) = (parameters.soil.youngs_modulus, parameters.soil.poissons_ratio);
         let constants = Constants {
             lame: modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio)),
             shear: modulus / (2.0 * (1.0 + ratio)),
             storage: match water {
-                Water::Compressible => 1.0 / parameters.coupling_modulus(),
+                Water::Compressible => 1.0 / parameters.soil.coupling_modulus(),
                 Water::Incompressible => 0.0,
             },
-            mobility: parameters.hydraulic_conductivity / parameters.unit_weight_of_water(),
+            mobility: parameters.soil.hydraulic_conductivity / parameters.soil.unit_weight_of_water(),
             wave_number: positive("wave number of the load", wave_number)?,
             height: parameters.height,
             base,

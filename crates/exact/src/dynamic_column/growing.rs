@@ -64,7 +64,8 @@ impl DynamicColumn {
         let sign = if mode.is_multiple_of(2) { 1.0 } else { -1.0 };
         let steady = sign * 2.0 / (m * m * m) * self.steady_pressure(duration) / self.wave_number(mode);
         let rate = m * m * self.diffused(1.0) * decay;
-        let (solid, mixture) = (steady / column.oedometric_modulus(), -steady / column.coupling_modulus());
+        let (solid, mixture) =
+            (steady / column.soil.oedometric_modulus(), -steady / column.soil.coupling_modulus());
         amplitude.solid -= solid * grown;
         amplitude.mixture -= mixture * grown;
         amplitude.solid_rate -= solid * rate;
@@ -91,7 +92,7 @@ impl DynamicColumn {
     /// When the time or the depth is impossible.
     pub(super) fn diffusion(&self, duration: f64, time: f64, zeta: f64) -> Result<Steady, ExactError> {
         let column = &self.parameters;
-        let strain = -column.load / column.oedometric_modulus();
+        let strain = -column.load / column.soil.oedometric_modulus();
         let y = column.height * (1.0 - zeta);
         let mut state = Steady { solid: strain * y, solid_strain: strain, ..Steady::default() };
         if is_past(duration, time) {
@@ -118,11 +119,11 @@ impl DynamicColumn {
         }
         let (impulse, impulse_rate) =
             (impulse * column.height, impulse_rate * column.height * self.diffused(1.0));
-        state.solid += impulse / column.oedometric_modulus();
-        state.mixture -= impulse / column.coupling_modulus();
-        state.solid_rate += impulse_rate / column.oedometric_modulus();
-        state.mixture_rate -= impulse_rate / column.coupling_modulus();
-        state.solid_strain += state.pressure / column.oedometric_modulus();
+        state.solid += impulse / column.soil.oedometric_modulus();
+        state.mixture -= impulse / column.soil.coupling_modulus();
+        state.solid_rate += impulse_rate / column.soil.oedometric_modulus();
+        state.mixture_rate -= impulse_rate / column.soil.coupling_modulus();
+        state.solid_strain += state.pressure / column.soil.oedometric_modulus();
         Ok(state)
     }
 }

@@ -121,7 +121,7 @@ impl DynamicColumn {
         let column = &self.parameters;
         let snapshot = self.modes_at(time_factor);
         let mut state = self.departed_from(column.time(time_factor), zeta)?;
-        let coupling = column.coupling_modulus();
+        let coupling = column.soil.coupling_modulus();
         let waves = Waves::at(zeta);
         for (block, amplitudes) in snapshot.amplitudes.chunks(BLOCK).enumerate().rev() {
             let first = block * BLOCK;
@@ -160,11 +160,13 @@ impl DynamicColumn {
     /// Fields of both phases from those of the solid and the mixture.
     fn assemble(&self, state: &Steady) -> DynamicFields {
         let column = &self.parameters;
-        let water = |mixture: f64, solid: f64| (mixture - (1.0 - column.porosity) * solid) / column.porosity;
+        let water = |mixture: f64, solid: f64| {
+            (mixture - (1.0 - column.soil.porosity) * solid) / column.soil.porosity
+        };
         DynamicFields {
             solid: FieldValues {
                 pressure: state.pressure,
-                effective_stress: column.oedometric_modulus() * state.solid_strain,
+                effective_stress: column.soil.oedometric_modulus() * state.solid_strain,
                 displacement: state.solid,
             },
             water_displacement: water(state.mixture, state.solid),
@@ -216,7 +218,7 @@ impl DynamicColumn {
         let phases: f64 = snapshot.amplitudes.iter().map(|amplitude| amplitude.phase_error).sum();
         let terms = snapshot.amplitudes.len();
         // Pressures are the water's stiffness times differences of displacements of the size of the skeleton's.
-        let stiffness = self.parameters.coupling_modulus() / self.parameters.oedometric_modulus();
+        let stiffness = self.parameters.soil.coupling_modulus() / self.parameters.soil.oedometric_modulus();
         let phase_bound = phases / load + f64::EPSILON * stiffness;
         Ok(Accuracy { terms, tail_bound: snapshot.tail / load, phase_bound })
     }

@@ -122,11 +122,12 @@ pub struct Mode {
 impl Mode {
     /// The mode of a wave number, 1/m.
     pub fn new(column: &ColumnParameters, wave_number: f64) -> Self {
-        let porosity = column.porosity;
-        let solid_mass = (1.0 - porosity) * column.grain_density;
-        let water_mass = porosity * column.water_density;
-        let drag = porosity * porosity * column.unit_weight_of_water() / column.hydraulic_conductivity;
-        let (modulus, coupling) = (column.oedometric_modulus(), column.coupling_modulus());
+        let porosity = column.soil.porosity;
+        let solid_mass = (1.0 - porosity) * column.soil.grain_density;
+        let water_mass = porosity * column.soil.water_density;
+        let drag =
+            porosity * porosity * column.soil.unit_weight_of_water() / column.soil.hydraulic_conductivity;
+        let (modulus, coupling) = (column.soil.oedometric_modulus(), column.soil.coupling_modulus());
         let squared = wave_number * wave_number;
         let (skeleton, water) = (squared * modulus, squared * coupling);
         let dry = 1.0 - porosity;

@@ -35,17 +35,17 @@ impl DynamicColumn {
         let column = &self.parameters;
         let wave_number = self.wave_number(0);
         if self.start == Start::StandingWave {
-            let together = -column.load / (column.coupling_modulus() * wave_number);
+            let together = -column.load / (column.soil.coupling_modulus() * wave_number);
             return InitialState { displacement: [together; 2], velocity: [0.0; 2] };
         }
-        let solid = column.load / (column.oedometric_modulus() * wave_number);
-        let mixture = -column.load / (column.coupling_modulus() * wave_number);
-        let discharge =
-            wave_number * column.hydraulic_conductivity * column.load / column.unit_weight_of_water();
+        let solid = column.load / (column.soil.oedometric_modulus() * wave_number);
+        let mixture = -column.load / (column.soil.coupling_modulus() * wave_number);
+        let discharge = wave_number * column.soil.hydraulic_conductivity * column.load
+            / column.soil.unit_weight_of_water();
         let solid_velocity = -column.storage_ratio() * discharge;
         InitialState {
-            displacement: [solid, (mixture - (1.0 - column.porosity) * solid) / column.porosity],
-            velocity: [solid_velocity, solid_velocity + discharge / column.porosity],
+            displacement: [solid, (mixture - (1.0 - column.soil.porosity) * solid) / column.soil.porosity],
+            velocity: [solid_velocity, solid_velocity + discharge / column.soil.porosity],
         }
     }
 

@@ -66,16 +66,18 @@ impl Diffusion {
         if !Law::OF_COLUMNS.contains(&model.law) {
             return Err(ExactError::LawOfColumn { law: model.law.name() });
         }
-        let load =
-            positive("load over the oedometric modulus", share * column.load / column.oedometric_modulus())?;
+        let load = positive(
+            "load over the oedometric modulus",
+            share * column.load / column.soil.oedometric_modulus(),
+        )?;
         let compliance = match model.water {
-            Water::Compressible => column.oedometric_modulus() / column.water_bulk_modulus,
+            Water::Compressible => column.soil.oedometric_modulus() / column.soil.water_bulk_modulus,
             Water::Incompressible => 0.0,
         };
-        let diffusion = Self { model, load, porosity: column.porosity, compliance };
+        let diffusion = Self { model, load, porosity: column.soil.porosity, compliance };
         let shrinkage = diffusion.shrinkage(0.0);
-        if model.law != Law::Linear && shrinkage >= column.porosity {
-            return Err(ExactError::PoresClose { shrinkage, porosity: column.porosity });
+        if model.law != Law::Linear && shrinkage >= column.soil.porosity {
+            return Err(ExactError::PoresClose { shrinkage, porosity: column.soil.porosity });
         }
         Ok(diffusion)
     }

@@ -62,7 +62,7 @@ impl Mandel {
 
     /// Shear modulus `G`, Pa.
     fn shear_modulus(&self) -> f64 {
-        self.parameters.youngs_modulus / (2.0 * (1.0 + self.parameters.poissons_ratio))
+        self.parameters.soil.youngs_modulus / (2.0 * (1.0 + self.parameters.soil.poissons_ratio))
     }
 
     /// Pressure, effective stress and displacement towards the drained side at the depth `zeta` below it:

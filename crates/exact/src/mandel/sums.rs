@@ -44,7 +44,7 @@ pub struct Sums {
 impl Groups {
     /// Written so that nothing cancels: with `m = (1 − 2ν) B_1`, `κ = m/(1 + m)`.
     pub fn of(parameters: &ColumnParameters) -> Self {
-        let (nu, storage_ratio) = (parameters.poissons_ratio, parameters.storage_ratio());
+        let (nu, storage_ratio) = (parameters.soil.poissons_ratio, parameters.storage_ratio());
         let carried = (1.0 - 2.0 * nu) * storage_ratio;
         Self {
             poissons_ratio: nu,

@@ -5,12 +5,14 @@ use crate::cosine_layer::{NODES, talbot_contour};
 use core::f64::consts::PI;
 use nalgebra::Complex;
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 
 /// The two materials of `crates/exact/tests/reference/make_mandel.py`.
 fn slab(case: &str) -> Mandel {
     let seed = ColumnParameters::default();
-    let water_bulk_modulus = if case == "seed" { seed.water_bulk_modulus } else { 6e5 };
-    Mandel::new(&ColumnParameters { water_bulk_modulus, ..seed }).expect("a possible slab")
+    let water_bulk_modulus = if case == "seed" { seed.soil.water_bulk_modulus } else { 6e5 };
+    Mandel::new(&ColumnParameters { soil: Material { water_bulk_modulus, ..seed.soil }, ..seed })
+        .expect("a possible slab")
 }
 
 fn fields_of(ratios: MandelRatios) -> [f64; 4] {
@@ -24,7 +26,10 @@ fn extremes() -> Vec<Mandel> {
         for water_bulk_modulus in [1e3, 6e5, 2.2e9, 1e13] {
             for porosity in [0.01, 0.3, 0.99] {
                 let seed = ColumnParameters::default();
-                let parameters = ColumnParameters { poissons_ratio, porosity, water_bulk_modulus, ..seed };
+                let parameters = ColumnParameters {
+                    soil: Material { poissons_ratio, porosity, water_bulk_modulus, ..seed.soil },
+                    ..seed
+                };
                 slabs.push(Mandel::new(&parameters).expect("a possible slab"));
             }
         }
@@ -64,7 +69,8 @@ fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
         }
     }
     let seed = ColumnParameters::default();
-    let keeps_its_volume = ColumnParameters { water_bulk_modulus: 1e-3, ..seed };
+    let keeps_its_volume =
+        ColumnParameters { soil: Material { water_bulk_modulus: 1e-3, ..seed.soil }, ..seed };
     assert_eq!(Mandel::new(&keeps_its_volume).expect("possible").middle_peak(), None);
 }
 
@@ -75,21 +81,24 @@ fn the_published_case_of_porepy_is_one_of_ours() {
     // permeability of 9.869e-14 m² and a viscosity of 1e-3 Pa s: E = 5.94e9 Pa, ν = 0.2, B = 1/(1 + S K) = 5/6,
     // ν_u = 0.44, c = 0.46525 m²/s.
     let seed = ColumnParameters::default();
-    let unit_weight = seed.unit_weight_of_water();
+    let unit_weight = seed.soil.unit_weight_of_water();
     let (width, force) = (100.0, 6e8);
     let parameters = ColumnParameters {
+        soil: Material {
+            youngs_modulus: 5.94e9,
+            poissons_ratio: 0.2,
+            water_bulk_modulus: seed.soil.porosity / 6.0606e-11,
+            hydraulic_conductivity: 9.869e-14 / 1e-3 * unit_weight,
+            ..seed.soil
+        },
         height: width,
         load: force / width,
-        youngs_modulus: 5.94e9,
-        poissons_ratio: 0.2,
-        water_bulk_modulus: seed.porosity / 6.0606e-11,
-        hydraulic_conductivity: 9.869e-14 / 1e-3 * unit_weight,
         ..seed
     };
     let slab = Mandel::new(&parameters).expect("a possible slab");
     let undrained = 0.2 + slab.groups.kappa * 0.8;
     assert!((undrained - 0.44).abs() < 1e-5, "{undrained}");
-    let diffusivity = parameters.coefficient_of_consolidation() * slab.groups.storage_ratio;
+    let diffusivity = parameters.soil.coefficient_of_consolidation() * slab.groups.storage_ratio;
     assert!((diffusivity - 0.46525).abs() < 5e-6, "{diffusivity}");
     // F B (1 + ν_u)/(3a): 2.4 MPa.
     let start = slab.fields(0.0, 1.0).expect("inside").pressure;
@@ -243,7 +252,7 @@ fn every_root_is_one_and_in_its_place() {
 #[test]
 fn it_starts_undrained_and_ends_drained() {
     for slab in extremes() {
-        let nu = slab.parameters.poissons_ratio;
+        let nu = slab.parameters.soil.poissons_ratio;
         let start = slab.ratios(0.0, 0.3).expect("the start");
         // An undrained element under a plane load: every water is in place.
         assert!((start.stress - 1.0).abs() < 1e-14);

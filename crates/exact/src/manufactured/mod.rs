@@ -50,11 +50,11 @@ impl Manufactured {
         let solution = Self { model, parameters: *parameters, soil };
         let least = solution.least_volume_ratio();
         // What is no number is refused too.
-        let stays_open = least > 1.0 - parameters.porosity;
+        let stays_open = least > 1.0 - parameters.soil.porosity;
         if stays_open {
             Ok(solution)
         } else {
-            Err(ExactError::MotionClosesPores { least, grains: 1.0 - parameters.porosity })
+            Err(ExactError::MotionClosesPores { least, grains: 1.0 - parameters.soil.porosity })
         }
     }
 

@@ -29,15 +29,15 @@ pub struct Soil {
 impl Soil {
     /// Of parameters.
     pub fn of(parameters: &ColumnParameters) -> Self {
-        let shear = parameters.youngs_modulus / (2.0 * (1.0 + parameters.poissons_ratio));
+        let shear = parameters.soil.youngs_modulus / (2.0 * (1.0 + parameters.soil.poissons_ratio));
         Self {
-            lame: parameters.oedometric_modulus() - 2.0 * shear,
+            lame: parameters.soil.oedometric_modulus() - 2.0 * shear,
             shear,
-            grains: 1.0 - parameters.porosity,
-            grain_density: parameters.grain_density,
-            water_density: parameters.water_density,
-            water_bulk_modulus: parameters.water_bulk_modulus,
-            mobility: parameters.hydraulic_conductivity / parameters.unit_weight_of_water(),
+            grains: 1.0 - parameters.soil.porosity,
+            grain_density: parameters.soil.grain_density,
+            water_density: parameters.soil.water_density,
+            water_bulk_modulus: parameters.soil.water_bulk_modulus,
+            mobility: parameters.soil.hydraulic_conductivity / parameters.soil.unit_weight_of_water(),
         }
     }
 }

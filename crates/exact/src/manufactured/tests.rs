@@ -7,6 +7,7 @@ use crate::manufactured::motion::Motion;
 use crate::manufactured::motion_state::Inertia;
 use crate::parameters::MotionParameters;
 use oedometer_soil::law::Law;
+use oedometer_soil::material::Material;
 
 /// Step of the differences, m and s: of the eighth order, truncation and round-off are both below 1e-11.
 const STEP: f64 = 2.5e-3;
@@ -18,15 +19,18 @@ const RESIDUAL: f64 = 1e-11;
 fn parameters(amplitudes: [f64; 3]) -> ColumnParameters {
     let [amplitude_x, amplitude_y, amplitude] = amplitudes;
     ColumnParameters {
+        soil: Material {
+            youngs_modulus: 1.0,
+            poissons_ratio: 0.25,
+            porosity: 0.6,
+            grain_density: 1.0,
+            water_density: 0.5,
+            water_bulk_modulus: 20.0,
+            hydraulic_conductivity: 0.5,
+            gravity: 10.0,
+            ..Material::default()
+        },
         load: 0.2,
-        youngs_modulus: 1.0,
-        poissons_ratio: 0.25,
-        porosity: 0.6,
-        grain_density: 1.0,
-        water_density: 0.5,
-        water_bulk_modulus: 20.0,
-        hydraulic_conductivity: 0.5,
-        gravity: 10.0,
         motion: MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: 0.5 * PI },
         ..ColumnParameters::default()
     }
@@ -125,13 +129,14 @@ fn the_momentum_of_mixture_and_water_is_balanced() {
         let n = now.porosity();
         let [mixture, water] = now.body_forces(Inertia::Both);
         for i in 0..2 {
-            let solid = soil.grain_density * here.rate(&|state| state.solid_velocity()[i]);
-            let of_water = soil.water_density * here.rate(&|state| state.water_velocity()[i]);
+            let solid = soil.soil.grain_density * here.rate(&|state| state.solid_velocity()[i]);
+            let of_water = soil.soil.water_density * here.rate(&|state| state.water_velocity()[i]);
             let stress = here.divergence(&|state| state.effective_stress()[i]);
             let pressure = here.along(i, &State::pressure);
             vanishes((1.0 - n) * solid + n * of_water - stress + pressure - mixture[i], "mixture", here);
             let ratio = now.volume_ratio();
-            let drag = n * soil.unit_weight_of_water() / (soil.hydraulic_conductivity * ratio * ratio);
+            let drag =
+                n * soil.soil.unit_weight_of_water() / (soil.soil.hydraulic_conductivity * ratio * ratio);
             let relative = now.water_velocity()[i] - now.solid_velocity()[i];
             vanishes(of_water + pressure + drag * relative - water[i], "water", here);
         }
@@ -150,10 +155,10 @@ fn balances_without_all_accelerations_have_their_own_forces() {
             vanishes(still - mixture[i], "mixture at rest", here);
             assert_eq!(water[i], 0.0);
             let acceleration = here.rate(&|state| state.solid_velocity()[i]);
-            let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
+            let density = (1.0 - n) * soil.soil.grain_density + n * soil.soil.water_density;
             let [mixture, water] = now.body_forces(Inertia::Skeleton);
             vanishes(density * acceleration + still - mixture[i], "mixture as one", here);
-            vanishes(soil.water_density * acceleration - water[i], "water with the skeleton", here);
+            vanishes(soil.soil.water_density * acceleration - water[i], "water with the skeleton", here);
         }
     });
 }
@@ -166,7 +171,7 @@ fn water_and_grains_are_conserved() {
             let (solid, water) = (state.solid_velocity(), state.water_velocity());
             std::array::from_fn(|d| solid[d] + state.porosity() * (water[d] - solid[d]))
         };
-        let stored = now.porosity() / soil.water_bulk_modulus * here.rate(&State::pressure);
+        let stored = now.porosity() / soil.soil.water_bulk_modulus * here.rate(&State::pressure);
         vanishes(stored + here.divergence(&flux) - now.source(), "water's volume", here);
         // Grains, at a place that stays: ∂(1 − n)/∂t + div((1 − n) v_s) = 0.
         let position = now.position();

@@ -32,7 +32,7 @@ impl DavisRaymond {
         let start =
             positive("effective stress of the start", parameters.shelf.initial_stress.unwrap_or(load))?;
         let logarithm = normal("logarithm of the stress ratio", elementary::ln_1p(load / start))?;
-        let final_settlement = parameters.height * start / parameters.oedometric_modulus() * logarithm;
+        let final_settlement = parameters.height * start / parameters.soil.oedometric_modulus() * logarithm;
         Ok(Self { end: start + load, load, logarithm, final_settlement })
     }
 

@@ -2,6 +2,7 @@
 
 use crate::exact_error::{ExactError, normal, positive};
 use crate::parameters::ColumnParameters;
+use oedometer_soil::material::Material;
 
 /// What Biot's equations take of a soil (Biot 1941; Detournay & Cheng 1993, section 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +27,8 @@ impl PorousSoil {
     /// # Errors
     /// When `α` lies outside `[n, 1]` or `K_s` is not positive.
     pub fn of(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let ColumnParameters { youngs_modulus, poissons_ratio, porosity, shelf, .. } = *parameters;
+        let ColumnParameters { soil, shelf, .. } = *parameters;
+        let Material { youngs_modulus, poissons_ratio, porosity, .. } = soil;
         let shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
         let bulk = youngs_modulus / (3.0 * (1.0 - 2.0 * poissons_ratio));
         let (alpha, compliance) = match (shelf.biot_coefficient, shelf.grain_bulk_modulus) {
@@ -38,8 +40,8 @@ impl PorousSoil {
         if !(porosity..=1.0).contains(&alpha) {
             return Err(ExactError::BiotCoefficient { alpha, porosity });
         }
-        let modulus = parameters.oedometric_modulus();
-        let fixed_storage = porosity / parameters.water_bulk_modulus + (alpha - porosity) * compliance;
+        let modulus = parameters.soil.oedometric_modulus();
+        let fixed_storage = porosity / parameters.soil.water_bulk_modulus + (alpha - porosity) * compliance;
         let storage = normal("storage", fixed_storage + alpha * alpha / modulus)?;
         Ok(Self { modulus, shear, bulk, alpha, fixed_storage, storage })
     }

@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::terzaghi::Terzaghi;
+use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
 fn column(strain: f64, porosity: f64) -> ColumnParameters {
     ColumnParameters {
-        load: strain * ColumnParameters::default().oedometric_modulus(),
-        porosity,
+        soil: Material { porosity, ..Material::default() },
+        load: strain * ColumnParameters::default().soil.oedometric_modulus(),
         ..ColumnParameters::default()
     }
 }
@@ -104,7 +105,7 @@ proptest! {
         let fields = large.fields(time_factor, zeta).unwrap();
         let ratio = large.volume_ratio(time_factor, zeta).unwrap();
         // σ' = E_oed ln J.
-        let stress = parameters.oedometric_modulus() * ratio.ln();
+        let stress = parameters.soil.oedometric_modulus() * ratio.ln();
         prop_assert!((fields.effective_stress - stress).abs() < 1e-9);
         prop_assert!((0.0..=parameters.load * (1.0 + 1e-14)).contains(&fields.pressure));
     }

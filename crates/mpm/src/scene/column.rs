@@ -183,6 +183,9 @@ impl Column {
 /// The column as the exact solutions take it.
 pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
     ColumnParameters {
+        height: column.height,
+        load: column.pressure_scale(),
+        soil: *soil,
         length: column.extent(),
         base: column.base().unwrap_or_default(),
         loading_time: column.loading_time,
@@ -193,6 +196,6 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         },
         soils: column.soils,
         uniform_stress: column.initial_stress,
-        ..ColumnParameters::of_soil(column.height, column.pressure_scale(), soil)
+        ..ColumnParameters::default()
     }
 }

@@ -230,7 +230,7 @@ pub fn column_problem<const D: usize>(
 
 /// Gives points the stress of the soil's own weight, that to the sides as an oedometer at rest has it.
 fn add_initial_stress<const D: usize>(points: &mut Points<D>, parameters: &ColumnParameters) {
-    let lateral = parameters.poissons_ratio / (1.0 - parameters.poissons_ratio);
+    let lateral = parameters.soil.poissons_ratio / (1.0 - parameters.soil.poissons_ratio);
     for point in 0..points.len() {
         let depth = 1.0 - points.initial_position[point][D - 1] / parameters.height;
         let vertical = parameters.initial_stress(depth);

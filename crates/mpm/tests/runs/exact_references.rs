@@ -2,6 +2,7 @@
 
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
 proptest! {
@@ -15,13 +16,8 @@ proptest! {
         exponent in -5.0..1.0_f64,
         zeta in 0.0..=1.0_f64,
     ) {
-        let mut column = ColumnParameters {
-            porosity,
-            water_bulk_modulus: 1e6 * 10.0_f64.powf(stiffness),
-            hydraulic_conductivity: 10.0_f64.powf(conductivity),
-            ..ColumnParameters::default()
-        };
-        column.load = strain * column.oedometric_modulus();
+        let mut column = ColumnParameters { soil: Material { porosity, water_bulk_modulus: 1e6 * 10.0_f64.powf(stiffness), hydraulic_conductivity: 10.0_f64.powf(conductivity), ..Material::default() }, ..ColumnParameters::default() };
+        column.load = strain * column.soil.oedometric_modulus();
         let time_factor = 10.0_f64.powf(exponent);
         // A yield front wants a soil that yields.
         let is_plain = |kind: &ReferenceKind| !kind.is_manufactured() && *kind != ReferenceKind::YieldFront;

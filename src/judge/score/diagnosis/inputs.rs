@@ -85,7 +85,7 @@ impl Trials<'_> {
     /// The exact field of a permeability that is divided by the viscosity or by the unit weight of water once too often,
     /// or not at all.
     fn other_conductivity(&self) -> Vec<Mistake> {
-        let weight = self.given.parameters.unit_weight_of_water();
+        let weight = self.given.parameters.soil.unit_weight_of_water();
         let named = [
             (1.0 / VISCOSITY, "is k/μ taken for the hydraulic conductivity k?"),
             (VISCOSITY, "is k divided by μ where it should not be?"),
@@ -101,7 +101,7 @@ impl Trials<'_> {
 
     /// Young's modulus over the oedometric one.
     fn modulus_ratio(&self) -> f64 {
-        self.given.parameters.youngs_modulus / self.given.parameters.oedometric_modulus()
+        self.given.parameters.soil.youngs_modulus / self.given.parameters.soil.oedometric_modulus()
     }
 
     /// The exact field with Young's modulus in place of the oedometric one: slower, and softer.
@@ -169,15 +169,15 @@ impl Trials<'_> {
     fn off_by(&self, factor: f64) -> String {
         let given = self.given.parameters;
         let [k, modulus, height] = [
-            given.hydraulic_conductivity * factor,
-            given.oedometric_modulus() * factor,
+            given.soil.hydraulic_conductivity * factor,
+            given.soil.oedometric_modulus() * factor,
             given.height / factor.sqrt(),
         ]
         .map(|number| short(rounded(number)));
         format!(
             "is k {k} m/s for {}, or E_oed {modulus} Pa for {}, or H {height} m for {} (H² counts), or are the times off?",
-            short(given.hydraulic_conductivity),
-            short(given.oedometric_modulus()),
+            short(given.soil.hydraulic_conductivity),
+            short(given.soil.oedometric_modulus()),
             short(given.height)
         )
     }

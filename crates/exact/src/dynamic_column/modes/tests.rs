@@ -2,6 +2,7 @@
 
 use super::*;
 use nalgebra::{Matrix4, Vector4};
+use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
 /// `exp(A)`, by Taylor's series of `A/2^k` and `k` squarings.
@@ -44,12 +45,7 @@ proptest! {
         u in -1.0..1.0_f64, w in -1.0..1.0_f64, v in -1.0..1.0_f64, vw in -1.0..1.0_f64,
     ) {
         // Around the passage from over- to underdamped slow waves.
-        let column = ColumnParameters {
-            porosity,
-            water_bulk_modulus: stiffness * 1e6,
-            hydraulic_conductivity: 10.0_f64.powf(exponent),
-            ..ColumnParameters::default()
-        };
+        let column = ColumnParameters { soil: Material { porosity, water_bulk_modulus: stiffness * 1e6, hydraulic_conductivity: 10.0_f64.powf(exponent), ..Material::default() }, ..ColumnParameters::default() };
         let mode = Mode::new(&column, 1.5);
         let frequency = mode.roots.iter().map(|s| s.im).fold(1.0, f64::max);
         let start = InitialState {
@@ -70,7 +66,10 @@ proptest! {
 fn confluent_roots_are_no_exception() {
     // Bisect the conductivity onto the double root of the slow waves.
     let mode = |k: f64| {
-        let column = ColumnParameters { hydraulic_conductivity: k, ..ColumnParameters::default() };
+        let column = ColumnParameters {
+            soil: Material { hydraulic_conductivity: k, ..Material::default() },
+            ..ColumnParameters::default()
+        };
         Mode::new(&column, 1.5)
     };
     let waves = |k: f64| mode(k).roots.iter().filter(|s| s.im > 1e-6 * modulus(**s)).count();
