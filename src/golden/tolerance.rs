@@ -68,8 +68,8 @@ impl GoldenFile {
         (absolute + relative * size).max(ROOM * seen)
     }
 
-    /// The same values with tolerances that measured spreads widen and nothing narrows: what somebody has widened by
-    /// hand stays wide. Spreads within the absolute tolerance are left out, for they widen nothing.
+    /// Widens the tolerances by measured spreads and narrows none: what somebody has widened by hand stays wide. Spreads
+    /// within the absolute tolerance are left out, for they widen nothing.
     #[must_use]
     pub fn widened_by(mut self, spread: BTreeMap<String, f64>) -> Self {
         self.relative_tolerance = self.relative_tolerance.max(RELATIVE_FLOOR);

@@ -24,7 +24,7 @@ pub(crate) struct Step {
     pub values: usize,
     /// Geometric mean of the errors over those of the first file, chained over the values that neighbours share.
     pub error_index: f64,
-    /// The same of the work counters.
+    /// Geometric mean of the work counters over those of the first file, chained likewise.
     pub work_index: f64,
     /// Values that moved beyond the tolerance of the file before.
     pub moved: usize,

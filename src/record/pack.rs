@@ -66,13 +66,10 @@ pub enum CaseEnd {
     Failed,
     /// Ran out of its time, or its attached solver failed.
     Late,
-    /// Not told: wall times that an older program kept without their record. They are left out.
-    WallTimesAlone,
 }
 
 impl CaseEnd {
-    const LETTERS: [(Self, u8); 4] =
-        [(Self::Ok, b'R'), (Self::Failed, b'F'), (Self::Late, b'L'), (Self::WallTimesAlone, b'W')];
+    const LETTERS: [(Self, u8); 3] = [(Self::Ok, b'R'), (Self::Failed, b'F'), (Self::Late, b'L')];
 }
 
 impl Entry {
@@ -237,12 +234,10 @@ impl Index {
 
     /// Takes note of a member; the newer of two of a case counts, and of two of one run the last.
     fn note(&mut self, place: Place) {
-        let Entry { case, end, generation, length, .. } = place.entry;
-        if end != CaseEnd::WallTimesAlone {
-            let known = self.records.entry(case).or_insert(place);
-            if generation >= known.entry.generation {
-                *known = place;
-            }
+        let Entry { case, generation, length, .. } = place.entry;
+        let known = self.records.entry(case).or_insert(place);
+        if generation >= known.entry.generation {
+            *known = place;
         }
         self.newest = self.newest.max(generation);
         let end = &mut self.packs[place.pack].1;
@@ -626,17 +621,5 @@ mod tests {
         assert!(index.damages.is_empty() && index.packs.len() == 2);
         let newest = index.member(1).expect("a record");
         assert_eq!(unpacked(&newest).as_deref(), Some("newer"));
-    }
-
-    #[test]
-    fn wall_times_that_an_older_program_kept_alone_are_left_out_and_no_damage() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let alone = Entry { end: CaseEnd::WallTimesAlone, ..entry(1, 2) };
-        let bytes = [member(1, 1, "one"), packed(alone, "wall\n").expect("packed"), member(2, 2, "two")];
-        fs::write(folder.path().join(format!("older{ENDING}")), bytes.concat()).expect("a pack");
-        let index = read(folder.path());
-        assert!(index.damages.is_empty() && index.newest == 2);
-        let text = |case| unpacked(&index.member(case).expect("a member"));
-        assert_eq!([text(1).as_deref(), text(2).as_deref()], [Some("one"), Some("two")]);
     }
 }

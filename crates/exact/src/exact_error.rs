@@ -56,7 +56,7 @@ pub enum ExactError {
         /// Time over which the load grows, s.
         loading_time: f64,
     },
-    /// The same for another soil law.
+    /// A load under which another soil law would end with a negative porosity.
     #[error(
         "the load would press out more water than the pores hold: the volume would shrink by \
          {shrinkage}, which must stay below the porosity {porosity}"

@@ -43,7 +43,7 @@ pub enum ReferenceKind {
     LargeStrain(LargeStrainModel),
     /// Plane-strain layer under a cosine load, with compressible water.
     CosineLayer,
-    /// The same with incompressible water.
+    /// Plane-strain layer under a cosine load, with incompressible water.
     CosineLayerIncompressible,
     /// Mandel's slab between rigid plates, with compressible water.
     Mandel,
@@ -255,7 +255,7 @@ impl Reference {
         Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
 
-    /// The same as good as a line in a figure needs it: where that costs much less, to a millionth of the load.
+    /// The reference as accurate as a line in a figure needs it: to a millionth of the load where that costs much less.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -360,19 +360,7 @@ impl Reference {
     /// Time factor and height, over the load, of the highest pressure at the impermeable end, where it rises before it
     /// falls.
     pub fn pressure_peak(&self) -> Option<(f64, f64)> {
-        match &self.solution {
-            Solution::Mandel(slab) => slab.middle_peak(),
-            Solution::Terzaghi(_)
-            | Solution::SingleMode(_)
-            | Solution::XieLeo(_)
-            | Solution::Dynamic(_)
-            | Solution::LargeStrain(_)
-            | Solution::CosineLayer(_)
-            | Solution::AtRest(_)
-            | Solution::InSeconds(_)
-            | Solution::Manufactured(_)
-            | Solution::Shelf(_) => None,
-        }
+        if let Solution::Mandel(slab) = &self.solution { slab.middle_peak() } else { None }
     }
 
     /// Terms used at a time factor and the bound on what they leave out.

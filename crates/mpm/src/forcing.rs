@@ -57,7 +57,7 @@ pub struct Forced<const D: usize> {
     pub time: f64,
     /// Point of the skeleton at each cell's centre when it was last looked for, m, `[cell][component]`.
     pub at_centre: Vec<Vector<D>>,
-    /// The same when it was looked for before, and before that.
+    /// Points of the skeleton at the centres at the two searches before the last, m.
     before: [Vec<Vector<D>>; 2],
     /// Forces at the points, `[point]`.
     forces: Vec<BodyForces<D>>,
@@ -65,7 +65,7 @@ pub struct Forced<const D: usize> {
     sources: [Vec<f64>; 2],
     /// Volume ratios of the points at the start of the step, and in its middle; `[point]`.
     volume_ratio: [Vec<f64>; 2],
-    /// The same of the inverse deformation gradients.
+    /// Inverse deformation gradients of the points at the start of the step, and in its middle; `[point]`.
     inverse_deformation: [Vec<Tensor<D>>; 2],
 }
 
@@ -112,7 +112,7 @@ impl<const D: usize> Forced<D> {
         self.acting.sources(&self.at_centre, &mut cells, time, &mut self.sources[0]);
     }
 
-    /// The same at the points.
+    /// Takes the sources of a time, s, at the points.
     pub fn take_sources_at_points(&mut self, points: &Points<D>, time: f64) {
         let (places, sources) = (&points.initial_position, &mut self.sources[1]);
         self.acting.sources(places, &mut (0..places.len()), time, sources);

@@ -35,7 +35,7 @@ pub struct RaceCell {
     pub name: &'static str,
     /// Largest errors over the outputs on the common mesh: of pressure, effective stress, and settlement or displacement.
     pub errors: [Option<f64>; 3],
-    /// The same on every mesh, with the cell size, m, from coarse to fine.
+    /// Largest errors on every mesh, with the cell size, m, from coarse to fine.
     pub levels: Vec<(f64, [Option<f64>; 3])>,
     /// Order of the pressure at the output of its largest error, with its class.
     pub order: Option<f64>,
@@ -96,7 +96,7 @@ impl<'a> RaceRow<'a> {
         self.study.title.strip_prefix("Race: ").unwrap_or(&self.study.title)
     }
 
-    /// The situation of a study and its records; `None` where it is none of the race or nothing has run.
+    /// The situation of a study and its records; `None` where the study is not of the race or nothing has run.
     pub fn of(study: &'a Study, records: &[Record]) -> Option<Self> {
         if !study.is_race || records.is_empty() {
             return None;

@@ -79,7 +79,7 @@ fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {
     let status = match end {
         CaseEnd::Ok => Status::Ok,
         CaseEnd::Failed => failed(FailureKind::Unstable),
-        CaseEnd::Late | CaseEnd::WallTimesAlone => failed(FailureKind::TimedOut),
+        CaseEnd::Late => failed(FailureKind::TimedOut),
     };
     // Texts of unlike lengths, so that members are too.
     let about = AttachedRun {

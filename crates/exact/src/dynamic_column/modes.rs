@@ -72,7 +72,7 @@ pub enum Growth {
         /// `T`, s.
         duration: f64,
     },
-    /// The same as a departure from steady growth, when the slowest root has died: `exp(s t)/(s T)`.
+    /// While the load grows, as the departure from steady growth once the slowest root has died: `exp(s t)/(s T)`.
     ToSteady {
         /// `T`, s.
         duration: f64,

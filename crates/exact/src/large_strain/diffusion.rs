@@ -102,7 +102,7 @@ impl Diffusion {
             }
             Law::LogLinear | Law::Engineering => (volume.recip(), volume, volume.recip()),
             Law::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
-            // Refused before: nothing follows from what is no number.
+            // Refused before: nothing follows from NaN.
             Law::NeoHookean | Law::Preconsolidated => (f64::NAN, f64::NAN, f64::NAN),
         };
         let pores = volume - (1.0 - self.porosity);

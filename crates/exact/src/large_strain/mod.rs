@@ -19,7 +19,7 @@ use crate::parameters::ColumnParameters;
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];
 /// Two resolutions that differ by less than this in `p/q` are enough.
 const ENOUGH: f64 = 1e-9;
-/// The same where a line is drawn: a hundredth of what is seen of a figure.
+/// Difference in `p/q` that is enough for a line in a figure: a hundredth of what a reader sees.
 const ENOUGH_TO_DRAW: f64 = 1e-6;
 /// A last difference above this is no reference.
 const TOO_MUCH: f64 = 1e-6;
@@ -79,7 +79,7 @@ impl LargeStrain {
         Self::within(ENOUGH, parameters, model, time_factors)
     }
 
-    /// The same with fewer points and steps, for lines in figures: its own accuracy says how good it is.
+    /// Solves with fewer points and steps, for lines in figures; [`accuracy`](Self::accuracy) says how good they are.
     ///
     /// # Errors
     /// As [`new`](Self::new).

@@ -93,7 +93,7 @@ pub mod early {
         elementary::exp(kappa * (kappa * time - way)) * elementary::erfc(0.5 * way / root - kappa * root)
     }
 
-    /// The same for `e^{−k r}/r²`, without the plates.
+    /// Inverse of `e^{−k r}/r²`, without the plates.
     fn diffused(time: f64, way: f64) -> f64 {
         if time == 0.0 {
             return if way > 0.0 { 0.0 } else { 1.0 };

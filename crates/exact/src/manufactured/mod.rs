@@ -49,7 +49,7 @@ impl Manufactured {
         let soil = Soil::of(parameters);
         let solution = Self { model, parameters: *parameters, soil };
         let least = solution.least_volume_ratio();
-        // What is no number is refused too.
+        // NaN is refused too.
         let stays_open = least > 1.0 - parameters.soil.porosity;
         if stays_open {
             Ok(solution)
@@ -106,7 +106,7 @@ impl Manufactured {
     /// The fields at the point `X` of the skeleton, m, at a time factor.
     ///
     /// # Errors
-    /// When `time_factor` is negative or not finite, or the point is no number.
+    /// When `time_factor` is negative or not finite, or the point is not finite.
     pub fn plane_fields(&self, time_factor: f64, place: [f64; 2]) -> Result<PlaneValues, ExactError> {
         let time = self.time(checked_time_factor(time_factor)?);
         for (quantity, value) in [("place x", place[0]), ("place y", place[1])] {

@@ -38,7 +38,7 @@ impl<const D: usize> NodeBlocks<D> {
     }
 }
 
-/// The same where the last look may have ended just before: `place` is that of the last entry, and then of this.
+/// [`entry_of`] that first tries the place after the last entry; `place` is that of the last entry, and then of this.
 fn entry_after<'a, T>(
     row: &'a mut Vec<(usize, T)>,
     place: &mut usize,

@@ -27,7 +27,7 @@ pub enum StrainOperator<const D: usize> {
     Basis,
     /// That of the composite MPM.
     Composite(Stencils<D, 4>),
-    /// The same between the ends of the domains, and what carries the points then.
+    /// The composite MPM's interpolant between the ends of the domains, which also carries the points.
     BetweenEnds(Stencils<D, ENDS_WIDTH>),
 }
 

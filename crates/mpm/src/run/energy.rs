@@ -18,7 +18,7 @@ use oedometer_soil::tensor::Tensor;
 /// The largest rise of the explicit cases of the shipped studies is a fifth of it; a mode that grows has made pressures
 /// wrong by a fifth of the load where its energy is a twentieth of that of the load's own.
 const MOST_RISE: f64 = 0.05;
-/// The same where points move: stresses of points that cross cells jump.
+/// [`MOST_RISE`] where points move: stresses of points that cross cells jump.
 const MOST_RISE_MOVING: f64 = 0.1;
 
 /// Energy of round-off, as a share of the work of the load: the square of what rounding leaves of velocities and stresses.

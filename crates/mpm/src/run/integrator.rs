@@ -90,7 +90,7 @@ impl IntegratorKind {
         }
     }
 
-    /// Why a formulation is none for this integrator, where it is not.
+    /// Says why the integrator refuses a formulation, where it does.
     pub fn refuses_formulation(self, formulation: Formulation) -> Option<&'static str> {
         match (self, formulation) {
             (Self::Explicit | Self::SemiImplicit, Formulation::QuasiStatic) => {
@@ -104,7 +104,7 @@ impl IntegratorKind {
         }
     }
 
-    /// Why a step rule is none for this integrator, where it is not.
+    /// Says why the integrator refuses a step rule, where it does.
     pub fn refuses_rule(self, rule: TimeStepRule) -> Option<&'static str> {
         match (self, rule) {
             (Self::Explicit, TimeStepRule::Growth(_)) => {

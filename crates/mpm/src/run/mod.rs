@@ -81,7 +81,7 @@ fn no_start(singular: Singular) -> Failure {
     Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
 }
 
-/// The end of a run whose steps are shares of a limit that nobody knows.
+/// The end of a run whose steps are shares of an unknown limit.
 fn no_limit(unknown: UnknownLimit) -> Failure {
     let growth = match unknown {
         UnknownLimit::Growing(growing) => Some(growing.growth),

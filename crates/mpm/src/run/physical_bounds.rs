@@ -22,7 +22,7 @@ const MOST_PRESSURE: f64 = 5.0;
 /// share of the load over the whole height is out of balance by that share of it over one cell. Sound runs leave a
 /// hundredth of it once their first waves are gone.
 const MOST_FORCE: f64 = 0.2;
-/// The same over that of the load alone where points move: stresses jump as points cross cells.
+/// Force over that of the load where points move: stresses jump as points cross cells.
 const MOST_FORCE_MOVING: f64 = 1.0;
 /// Force over that of the load at the time that a wave takes through the body and drag takes to join the phases: as water
 /// begins to leave, it falls with time from there on.
@@ -102,7 +102,7 @@ impl PhysicalBounds {
         }
     }
 
-    /// Why a force, N, that accelerates a node at a time, s, is none of the scene's, where it is not.
+    /// Says why a force, N, that accelerates a node at a time, s, is outside the bounds of the scene.
     pub fn left_by_force(&self, force: f64, time: f64) -> Option<String> {
         let most = self.force + self.release / time;
         let is_within = force <= most;
@@ -114,7 +114,7 @@ impl PhysicalBounds {
         })
     }
 
-    /// Why a settlement, m, is none of the scene's, where it is not.
+    /// Says why a settlement, m, is outside the bounds of the scene.
     pub fn left_by_settlement(&self, settlement: f64) -> Option<String> {
         let [least, most] = self.settlement;
         // NaN is in no range.

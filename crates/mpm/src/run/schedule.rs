@@ -125,7 +125,7 @@ const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
 /// How large a step may be at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepLimit {
-    /// The same at all times, s.
+    /// One step size at all times, s.
     Constant(f64),
     /// `max(Δt₀, α t)`: consolidation slows down as the square root of time, and so may the steps.
     Growing {

@@ -180,7 +180,7 @@ impl SceneKind {
         self.definition().body == SceneBody::Square
     }
 
-    /// Why an input of a motion is none of this scene's, where it is not.
+    /// Says why the scene has no such input of a motion, where it has not.
     pub fn refuses_input_of_motion(self, name: &str) -> Option<&'static str> {
         match (self.model()?.motion, name) {
             (Motion::Vortex, "amplitude_x" | "amplitude_y") => {
