@@ -1,6 +1,6 @@
 //! Runs one case: from its inputs to its record.
 
-use crate::campaign::clock::{Deadline, process_seconds, thread_seconds};
+use crate::campaign::clock::{process_seconds, thread_seconds};
 use crate::case::solver::Solver;
 use crate::case::work_estimate::MOST_PROBE_STEPS;
 use crate::case::{Case, Task};
@@ -59,8 +59,8 @@ pub fn run_case_within(
     cores: Cores,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let (deadline, time_limit) = (Deadline::after(seconds), TimeLimit::after(seconds));
-    let in_time = |done: u64, expected: u64| observe(done, expected) && !deadline.is_over();
+    let time_limit = TimeLimit::after(seconds);
+    let in_time = |done: u64, expected: u64| observe(done, expected) && !time_limit.is_over();
     let course = Course { cores, kernel, time_limit };
     Ok(named_if_late(run_case_on(course, case, references, &in_time)?, seconds))
 }
