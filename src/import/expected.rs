@@ -18,8 +18,8 @@ pub struct Expected {
 /// A quantity that states lack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Absent {
-    /// Its key in a mapping.
-    pub name: &'static str,
+    /// Its column; a settlement curve has none.
+    pub column: Option<Column>,
     /// Places of the states that lack it.
     pub states: Vec<usize>,
     /// Whether all of them do.
@@ -48,12 +48,7 @@ impl Expected {
 
     /// Takes a quantity out.
     pub fn leave_out(&mut self, quantity: Quantity) {
-        let is_left = |column: &Column| match column {
-            Column::Pressure => quantity != Quantity::Pressure,
-            Column::EffectiveStress => quantity != Quantity::EffectiveStress,
-            _ => quantity != Quantity::Displacement,
-        };
-        self.columns.retain(is_left);
+        self.columns.retain(|column| column.quantity() != Some(quantity));
         self.settlement &= quantity != Quantity::Settlement;
     }
 
@@ -68,14 +63,13 @@ impl Expected {
 
     /// What states lack, one entry per quantity.
     pub fn absent(&self, states: &[SampledState]) -> Vec<Absent> {
-        let absent = |name: &'static str, has: &dyn Fn(&SampledState) -> bool| {
+        let absent = |column: Option<Column>, has: &dyn Fn(&SampledState) -> bool| {
             let lacking: Vec<usize> = (0..states.len()).filter(|place| !has(&states[*place])).collect();
             let is_in_none = lacking.len() == states.len();
-            (!lacking.is_empty()).then_some(Absent { name, states: lacking, is_in_none })
+            (!lacking.is_empty()).then_some(Absent { column, states: lacking, is_in_none })
         };
-        let columns = self.columns.iter().map(|column| absent(column.name(), &|state| has(state, *column)));
-        let curve =
-            self.settlement.then(|| absent("settlement", &|state| state.surface_displacement.is_some()));
+        let columns = self.columns.iter().map(|column| absent(Some(*column), &|state| has(state, *column)));
+        let curve = self.settlement.then(|| absent(None, &|state| state.surface_displacement.is_some()));
         columns.chain(curve).flatten().collect()
     }
 }
@@ -93,31 +87,31 @@ fn has(state: &SampledState, column: Column) -> bool {
 impl Absent {
     /// A sentence about it; `when` writes the time of a state.
     pub fn sentence(&self, when: impl Fn(usize) -> String) -> String {
-        let name = self.name;
         let first = self.states.first().map_or(String::new(), |place| when(*place));
         let more = match self.states.len() {
             0 | 1 => String::new(),
             count => format!(" (and {} more)", count - 1),
         };
-        if name == "settlement" {
+        let Some((column, quantity)) = self.column.and_then(|column| Some((column, column.quantity()?)))
+        else {
             return format!("the settlement curve has no {first}{more}, and it has other times");
-        }
+        };
         let place = if self.is_in_none {
             "any time".to_owned()
         } else {
             format!("{first}{more}, and other states have it")
         };
-        let quantity = match name {
-            "p" => Quantity::Pressure,
-            "effective_stress" => Quantity::EffectiveStress,
-            _ => Quantity::Displacement,
-        }
-        .name();
-        format!(
-            "there is no `{name}` at {place}; `score --without {quantity}`, or `{name} = \"\"` in [columns] of a mapping, \
-             takes it out on purpose"
-        )
+        format!("there is no `{}` at {place}; to leave it out, {}", column.name(), left_out(column, quantity))
     }
+}
+
+/// How a user leaves the quantity of a column out, after "to leave it out, ".
+pub fn left_out(column: Column, quantity: Quantity) -> String {
+    format!(
+        "call `score --without {}`, or write `{} = \"\"` to [columns] of a mapping",
+        quantity.name(),
+        column.name()
+    )
 }
 
 #[cfg(test)]
@@ -142,7 +136,10 @@ mod tests {
         for (lacking, pressures) in [(0, [0, 1, 1]), (1, [1, 0, 1]), (2, [1, 1, 0])] {
             let states = states(pressures);
             let absent = Expected::of_states(&states).absent(&states);
-            assert_eq!(absent, [Absent { name: "p", states: vec![lacking], is_in_none: false }]);
+            assert_eq!(
+                absent,
+                [Absent { column: Some(Column::Pressure), states: vec![lacking], is_in_none: false }]
+            );
             let told = absent[0].sentence(when);
             assert!(told.starts_with(&format!("there is no `p` at state {lacking}, and other")), "{told}");
         }
@@ -177,7 +174,7 @@ mod tests {
         states[0].surface_displacement = Some(-1.0);
         let expected = Expected { settlement: true, ..Expected::of_states(&states) };
         let absent = expected.absent(&states);
-        assert_eq!(absent, [Absent { name: "settlement", states: vec![1, 2], is_in_none: false }]);
+        assert_eq!(absent, [Absent { column: None, states: vec![1, 2], is_in_none: false }]);
         assert!(absent[0].sentence(|_| "T_v = 1".to_owned()).contains("has no T_v = 1 (and 1 more)"));
     }
 }

@@ -279,9 +279,10 @@ impl<'a> FrameRows<'a> {
     /// The rows that the mapping selects.
     fn selected(&self) -> Result<Vec<usize>, ImportError> {
         let rows = &self.mapping.rows;
+        let is_preset = matches!(self.mapping.declared_by, DeclaredBy::Preset(_));
         let are_corners = match &self.frame.cells {
             Some(cells) if rows.corners && self.on == Association::Points => cells.are_corners(self.count),
-            None if rows.corners && self.on == Association::Points && self.mapping.optional.is_empty() => {
+            None if rows.corners && self.on == Association::Points && !is_preset => {
                 return Err(self.refused("it has no cells: take `corners` out of [rows]".to_owned()));
             }
             // A preset asks for corners in case there are cells.

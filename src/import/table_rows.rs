@@ -1,5 +1,6 @@
 //! Tables of text: a file is opened by its declared layout, and its lines become rows in SI.
 
+use crate::import::expected::left_out;
 use crate::import::mapping::mapping_parts::SettlementSeries;
 use crate::import::mapping::units::VerticalSense;
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
@@ -98,13 +99,16 @@ impl Places {
             if mapping.optional.iter().any(|optional| optional == column.name()) {
                 return Ok(table.place(name));
             }
-            let what = if column == Column::X && mapping.declared_by == DeclaredBy::Convention {
-                ", and a layer's fields depend on it: write the distance of each sample from the crest of the load, m, \
-                 to a column `x`, or name another one with --mapping"
-            } else {
-                ""
+            let what = match (column, column.quantity()) {
+                (Column::X, _) if mapping.declared_by == DeclaredBy::Convention => {
+                    ", and a layer's fields depend on it: write the distance of each sample from the crest of the load, \
+                     m, to a column `x`, or name another one with --mapping"
+                        .to_owned()
+                }
+                (_, Some(quantity)) => format!(" (to leave it out, {})", left_out(column, quantity)),
+                _ => String::new(),
             };
-            table.find(name, what).map(Some)
+            table.find(name, &what).map(Some)
         };
         let mut columns = [None; Column::ALL.len()];
         for column in Column::ALL {

@@ -103,6 +103,47 @@ fn the_exact_layer_has_no_error_wherever_it_is_sampled() {
 }
 
 #[test]
+fn a_table_without_mapping_may_lack_what_is_left_out_by_name() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let (times, depths) = ([0.05, 0.1], [0.1, 0.3, 0.5, 0.7, 0.9]);
+    let fields = oedometer::api::exact::exact("terzaghi", &times, &depths, &[], &[]).expect("inside");
+    let header = ["t,y,p\n".to_owned(), "t,y,u_y\n".to_owned()];
+    let [mut pressures, mut displacements] = header;
+    for place in 0..times.len() * depths.len() {
+        let [time, height] = [times[place / depths.len()] * SECONDS, 1.0 - depths[place % depths.len()]];
+        writeln!(pressures, "{time},{height},{}", fields.pressure[place]).expect("a line");
+        writeln!(displacements, "{time},{height},{}", fields.displacement[place]).expect("a line");
+    }
+    fs::write(at.join("pressures.csv"), pressures).expect("a file");
+    fs::write(at.join("displacements.csv"), displacements).expect("a file");
+    for (file, lacks, has, column) in [
+        ("pressures.csv", "displacement", "pressure", "u_y"),
+        ("displacements.csv", "pressure", "displacement", "p"),
+    ] {
+        let gate = ["score", file, "--scene", "terzaghi", "--reference", "terzaghi", "--below", "1e-9"];
+        let told = call(at, &gate);
+        let asked = format!("there is no column `{column}` (to leave it out, call `score --without {lacks}`");
+        assert!(told.code == 2 && told.err.contains(&asked), "{}", told.err);
+        let told = call(at, &[&gate[..], &["--without", lacks]].concat());
+        assert!(told.code == 0 && told.out.contains(has) && !told.out.contains(lacks), "{}", told.err);
+        let told = call(at, &[&gate[..], &["--without", has]].concat());
+        assert!(told.code == 2 && told.err.contains(&asked), "the other one is not excused: {}", told.err);
+        // What another column is derived from may not be lacking.
+        let current = "[columns]\nt = \"t\"\np = \"p\"\nu_y = \"u_y\"\n[position]\ny = \"current\"\n";
+        fs::write(at.join("current.toml"), current).expect("a file");
+        let told = call(at, &[&gate[..], &["--without", lacks, "--mapping", "current.toml"]].concat());
+        let is_told = told.err.contains("there is no column `u_y`");
+        assert_eq!(
+            (told.code == 2, is_told),
+            (lacks == "displacement", lacks == "displacement"),
+            "{}",
+            told.err
+        );
+    }
+}
+
+#[test]
 fn samples_of_another_layer_are_wrong_or_beyond_its_end() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();

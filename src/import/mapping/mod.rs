@@ -4,7 +4,7 @@ pub mod mapping_parts;
 pub mod preset;
 pub mod units;
 
-use crate::case::quantity::Sample;
+use crate::case::quantity::{Quantity, Sample};
 use crate::import::mapping::mapping_parts::{
     DisplacementSource, Hydrostatic, RowFilter, SettlementSeries, StressKind, StressMeaning, Time,
 };
@@ -112,6 +112,18 @@ pub enum Column {
     Volume,
 }
 words!(Column: Time "t", X "x", Y "y", Pressure "p", Along "u_x", Up "u_y", EffectiveStress "effective_stress", Volume "volume");
+
+impl Column {
+    /// The quantity that it gives, if any.
+    pub fn quantity(self) -> Option<Quantity> {
+        match self {
+            Self::Pressure => Some(Quantity::Pressure),
+            Self::EffectiveStress => Some(Quantity::EffectiveStress),
+            Self::Along | Self::Up => Some(Quantity::Displacement),
+            Self::Time | Self::X | Self::Y | Self::Volume => None,
+        }
+    }
+}
 
 fn points() -> Sample {
     Sample::Points
@@ -314,6 +326,22 @@ impl Mapping {
         .filter_map(|(is_taken, words)| is_taken.then_some(words))
         .collect();
         (!taken.is_empty()).then(|| taken.join("; "))
+    }
+
+    /// Lets files lack quantities that are left out on purpose, except where another quantity is derived from them: an
+    /// effective stress from the pressure, an initial place from the displacement.
+    pub fn let_lack(&mut self, quantities: &[Quantity]) {
+        let is_current = self.position.y == StatedPlace::Current;
+        let is_needed = |quantity: Quantity| match quantity {
+            Quantity::Pressure => self.stress.is == StressKind::Total,
+            Quantity::Displacement => is_current,
+            Quantity::EffectiveStress | Quantity::Settlement => false,
+        };
+        let may_lack = |quantity: &Quantity| quantities.contains(quantity) && !is_needed(*quantity);
+        let columns =
+            Column::ALL.into_iter().filter(|column| column.quantity().as_ref().is_some_and(may_lack));
+        self.optional.extend(columns.map(|column| column.name().to_owned()));
+        self.settlement.take_if(|_| quantities.contains(&Quantity::Settlement));
     }
 
     /// The values that no file can have, and what would be right.

@@ -95,8 +95,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let asked = Asked::of_scene(&arguments.scene, &arguments.outputs)?;
     tell_warnings(&asked.study);
     let case = asked.case();
-    let (mapping, mut runs) = scored_files::read(arguments, case)?;
     let without = quantities_of(&arguments.without)?;
+    let (mapping, mut runs) = scored_files::read(arguments, &without, case)?;
     for run in &mut runs {
         run.leave_out(&without);
     }

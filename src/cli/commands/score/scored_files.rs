@@ -1,6 +1,6 @@
 //! The files that are scored: their meaning, and their runs with numbers of cells.
 
-use crate::case::Case;
+use crate::case::{Case, Quantity};
 use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::stream::say;
@@ -13,12 +13,13 @@ use clap::ValueEnum;
 use oedometer_formats::input_file;
 use std::path::Path;
 
-/// Reads the files of the command line: their mapping, and their runs.
-pub fn read(arguments: &Arguments, case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
+/// Reads the files of the command line, which may lack some quantities: their mapping, and their runs.
+pub fn read(arguments: &Arguments, without: &[Quantity], case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let body = SolvedBody::of(case);
     let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
     let mut mapping = mapping_of(arguments, case.scene.has_plane_fields(), is_tables)?;
+    mapping.let_lack(without);
     if let Some(step) = arguments.set_time_step {
         if !(step.is_finite() && step > 0.0) {
             return Err(Ended::usage(format!("`--set-time-step {step}` is invalid: give seconds above 0")));
