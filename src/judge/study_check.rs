@@ -7,6 +7,7 @@ use crate::golden::compare::{
 };
 use crate::golden::references::{REFERENCES, reference_values};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
+use crate::judge::attached_diagnosis::diagnoses;
 use crate::judge::explanation::place_of_attached;
 use crate::judge::judgement::{Absent, Judgement, differing_repeats, judge_study};
 use crate::judge::soundness;
@@ -98,7 +99,11 @@ impl StudyCheck {
                 _ => Vec::new(),
             }),
             judgements: judge_study(study, records, tier),
-            warnings: slow.into_iter().chain(absent.warnings()).chain(differing_repeats(records)).collect(),
+            warnings: (slow.into_iter())
+                .chain(absent.warnings())
+                .chain(differing_repeats(records))
+                .chain(diagnoses(study, records))
+                .collect(),
             ..Self::of_values(&study.name, &values, golden).with_places(records)
         }
     }

@@ -100,8 +100,8 @@ fn accept(sound: &Path) -> GoldenFile {
     GoldenFile::of("kratos", &report.records, "as the files are")
 }
 
-fn check(at: &Path, options: &[&str]) -> Told {
-    call(at, &[&["check", "kratos.toml"], options].concat())
+fn check(at: &Path, study: &str, options: &[&str]) -> Told {
+    call(at, &[&["check", study], options].concat())
 }
 
 #[test]
@@ -111,10 +111,10 @@ fn a_permeability_that_is_off_by_one_per_cent_is_caught_with_quantity_time_and_p
     for at in [&sound, &faulty] {
         golden.write(&at.path().join("golden")).expect("written");
     }
-    let told = check(sound.path(), &[]);
+    let told = check(sound.path(), "kratos.toml", &[]);
     assert_eq!(told.code, 0, "{}{}", told.out, told.err);
     assert!(told.words().contains("2 of 2 expectations met"), "{}", told.out);
-    let told = check(faulty.path(), &["--junit", "j.xml", "--summary", "s.md", "--annotate"]);
+    let told = check(faulty.path(), "kratos.toml", &["--junit", "j.xml", "--summary", "s.md", "--annotate"]);
     assert_eq!(told.code, 1, "{}{}", told.out, told.err);
     let of_file = |name: &str| fs::read_to_string(faulty.path().join(name)).expect("written");
     let (junit, summary) = (of_file("j.xml"), of_file("s.md"));
@@ -133,7 +133,7 @@ fn a_permeability_that_is_off_by_one_per_cent_is_caught_with_quantity_time_and_p
     // A tenth of that is caught by the golden values alone.
     let slight = folder(0.001);
     golden.write(&slight.path().join("golden")).expect("written");
-    let told = check(slight.path(), &[]);
+    let told = check(slight.path(), "kratos.toml", &[]);
     assert!(told.code == 1 && told.words().contains("values moved"), "{}", told.out);
     let shown = printed("a tenth of a per cent");
     assert!(told.words().contains(shown.trim_end_matches('…')), "{shown}: {}", told.out);
@@ -145,12 +145,12 @@ fn a_result_that_is_not_there_or_lacks_a_time_fails_its_case_and_says_what_to_do
     let at = folder.path();
     accept(at).write(&at.join("golden")).expect("written");
     fs::remove_file(at.join("run-10").join(file_of(200))).expect("it was there");
-    let told = check(at, &[]);
+    let told = check(at, "kratos.toml", &[]);
     assert!(told.code == 1 && told.words().contains("there is no state at T_v = 0.2"), "{}", told.out);
     for (step, _) in STEPS.into_iter().filter(|(step, _)| *step != 200) {
         fs::remove_file(at.join("run-10").join(file_of(step))).expect("it was there");
     }
-    let told = check(at, &[]);
+    let told = check(at, "kratos.toml", &[]);
     assert!(
         told.words().contains("there is no file run-{cells}/*.vtk: the solver did not run"),
         "{}",
@@ -161,7 +161,7 @@ fn a_result_that_is_not_there_or_lacks_a_time_fails_its_case_and_says_what_to_do
     fs::rename(other.path().join("run-10"), other.path().join("run-20")).expect("moved");
     fs::write(other.path().join("kratos.toml"), STUDY.replace("cells = [10]", "cells = [20]"))
         .expect("a file");
-    let told = check(other.path(), &[]);
+    let told = check(other.path(), "kratos.toml", &[]);
     assert!(told.words().contains("10 cells over the height, and the case asks for 20"), "{}", told.out);
     assert!(!told.words().contains(&*other.path().to_string_lossy()), "no absolute path: {}", told.out);
 }
@@ -188,7 +188,7 @@ fn a_given_result_is_explained_reported_and_planned_like_a_case() {
         .expect("a file");
     fs::write(at.join("kratos.toml"), STUDY.replace("preset = \"kratos\"", "mapping = \"map.toml\""))
         .expect("a file");
-    let told = check(at, &[]);
+    let told = check(at, "kratos.toml", &[]);
     assert!(told.code == 2 && told.err.contains("does not declare the unit of stresses"), "{}", told.err);
 }
 
@@ -243,5 +243,72 @@ fn the_recipes_for_two_forges_run_as_they_stand() {
                 assert!(at.join("oedometer.xml").is_file(), "{said}");
             }
         }
+    }
+}
+
+/// The exact column of another soil, as a result on 20 and 40 cells and as what a solver leaves.
+const OTHER_SOIL: &str = r#"title = "Another soil"
+scene = "terzaghi"
+output = { time_factors = [0.05, 0.2, 0.5], references = ["terzaghi"] }
+
+[[result]]
+name = "theirs"
+files = ["column-{cells}.csv"]
+cells = [20, 40]
+mapping = "map.toml"
+
+[[solver]]
+name = "mine"
+command = ["cp", "column-40.csv", "{out}"]
+result = "{out}/column-40.csv"
+mapping = "map.toml"
+
+[[sweep]]
+method = ["mine"]
+cells = [40]
+"#;
+
+#[test]
+fn what_seems_to_be_wrong_with_a_result_stands_in_the_check_and_in_the_report() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let mapping =
+        "sample = \"points\"\n[units]\nstress = \"Pa\"\n[sign]\np = \"compression-positive\"\nu_y = \"up\"\n";
+    fs::write(at.join("map.toml"), mapping).expect("a file");
+    fs::write(at.join("soil.toml"), OTHER_SOIL).expect("a file");
+    // The factor on the permeability is the factor of the time; mm of a displacement have none.
+    for (permeability, factor, expected) in [
+        (1.0, 1.0, None),
+        (1.02, 1.0, Some("at 1.02 × the time: is k 1.02e-4 m/s for 1e-4, or E_oed")),
+        (1.0, 1e3, Some("your u_y is 1000 × the exact one: is it in mm where m is declared?")),
+    ] {
+        let mut text = "t,y,p,u_y\n".to_owned();
+        let depths: Vec<f64> = (0..40).map(|point| (f64::from(point) + 0.5) / 40.0).collect();
+        for time_factor in [0.05, 0.2, 0.5] {
+            let fields = exact("terzaghi", &[permeability * time_factor], &depths, &[], &[]).expect("inside");
+            let seconds = time_factor * 9810.0 / (1e-4 * 1.2e6);
+            for (place, depth) in depths.iter().enumerate() {
+                let (p, u) = (fields.pressure[place], factor * fields.displacement[place]);
+                writeln!(text, "{seconds},{},{p},{u}", 1.0 - depth).expect("a line");
+            }
+        }
+        for cells in [20, 40] {
+            fs::write(at.join(format!("column-{cells}.csv")), &text).expect("a file");
+        }
+        let told = check(at, "soil.toml", &[]);
+        let said = told.words();
+        let Some(expected) = expected else {
+            assert!(!said.contains("your "), "{said}");
+            continue;
+        };
+        for case in ["theirs cells=40: your ", "mine cells=40: your "] {
+            assert!(said.contains(case) && said.contains(expected), "{case}{expected}: {said}");
+        }
+        assert!(!said.contains("theirs cells=20"), "the finest mesh says it: {said}");
+        assert_eq!(call(at, &["report", "soil.toml", "--out", "pages"]).code, 0);
+        let page = fs::read_to_string(at.join("pages/studies/soil.html")).expect("a page");
+        let part =
+            if factor == 1.0 { "is k 1.02e-4 m/s for 1e-4" } else { "is it in mm where m is declared?" };
+        assert!(page.contains(part), "{part}");
     }
 }

@@ -1,5 +1,6 @@
 //! The page of one study: its question, expectations, figures, tables and checks.
 
+use crate::judge::attached_diagnosis::diagnoses;
 use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
@@ -38,7 +39,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     blocks.extend(maps::critical_steps(results));
     if let Some(table) = runs::attached_table(results.records) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));
-        blocks.push(Block::Table(table));
+        blocks.push(Block::Table(table.notes(diagnoses(study, results.records))));
     }
     if results.records.iter().any(|record| record.stability.is_none()) {
         blocks.extend(cost::work_blocks(results));
