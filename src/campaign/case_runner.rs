@@ -3,7 +3,6 @@
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
 use crate::campaign::run_report::{Progress, RunError};
 use crate::campaign::stop;
-use crate::case::solver::Solver;
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task};
 use crate::foreign::attachment::{Attachment, Wish};
@@ -57,6 +56,15 @@ impl<'a> CaseRunner<'a> {
         run_case_within(seconds, case, references, Kernel::Fastest, Cores::one(alone), observe)
     }
 
+    /// Whether a finished record of this program is what the case would give now. One of an attached solver is, where
+    /// that solver is the same too.
+    pub fn would_make(&self, record: &Record) -> bool {
+        match self.attachments.iter().find(|one| one.is_of(&record.case)) {
+            Some(attachment) => attachment.would_make(record, !self.study.holds_back(&record.case)),
+            None => true,
+        }
+    }
+
     /// Runs a case alone, to be timed or looked at.
     ///
     /// # Errors
@@ -106,8 +114,7 @@ impl<'a> CaseRunner<'a> {
             alone,
             is_wanted: &is_wanted,
         };
-        let of_case = |one: &&Attachment<'_>| Solver::Attached(one.solver().attached) == case.method;
-        match self.attachments.iter().find(of_case) {
+        match self.attachments.iter().find(|one| one.is_of(case)) {
             Some(attachment) if self.study.holds_back(case) => attachment.held_back(case, &wish),
             Some(attachment) => attachment.run(case, &wish),
             None => run_case(case, wish.references, Kernel::Fastest, alone, observe),

@@ -45,8 +45,10 @@ impl RunOptions {
 pub struct Selected<'a> {
     /// The study.
     pub study: &'a Study,
-    /// Its store; without one nothing is kept.
+    /// Its store, whose finished records are taken up where the options say so.
     pub store: Option<&'a RecordStore>,
+    /// Whether new records are kept there.
+    pub is_kept: bool,
 }
 
 /// Runs the cases of a study and keeps each record as soon as it is there.
@@ -56,7 +58,7 @@ pub fn run_study(
     store: Option<&RecordStore>,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> RunReport {
-    run_studies(&[Selected { study, store }], options, tell).pop().unwrap_or_default()
+    run_studies(&[Selected { study, store, is_kept: true }], options, tell).pop().unwrap_or_default()
 }
 
 /// Runs the cases of several studies side by side, so that the cores stay busy to the end of the
@@ -78,9 +80,10 @@ pub fn run_studies_thinned(
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
     let selected = cases_of(studies, options);
-    let mut begun: Vec<Begun<'_>> =
-        studies.iter().zip(selected).map(|(study, cases)| begun(study, cases, options)).collect();
     let runners: Vec<CaseRunner<'_>> = studies.iter().map(|one| CaseRunner::of(one.study)).collect();
+    let of_studies = studies.iter().zip(&runners).zip(selected);
+    let mut begun: Vec<Begun<'_>> =
+        of_studies.map(|((study, runner), cases)| begun(study, runner, cases, options)).collect();
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for (study, begun) in begun.iter().enumerate() {
         let missing = begun.cases.iter().enumerate().filter(|(_, (_, outcome))| outcome.is_none());
@@ -109,7 +112,8 @@ pub fn run_studies_thinned(
             let send = send.clone();
             scope.spawn(move || {
                 while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let (runner, store) = (&runners[job.study], studies[job.study].store);
+                    let (runner, selected) = (&runners[job.study], &studies[job.study]);
+                    let store = selected.store.filter(|_| selected.is_kept);
                     let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
                     let mut outcome = if is_over {
                         None
@@ -180,7 +184,12 @@ struct Begun<'a> {
 }
 
 /// Takes up the records there are; those that are only to be on disk are counted and left out.
-fn begun<'a>(selected: &Selected<'a>, cases: Vec<&'a Case>, options: &RunOptions) -> Begun<'a> {
+fn begun<'a>(
+    selected: &Selected<'a>,
+    runner: &CaseRunner<'_>,
+    cases: Vec<&'a Case>,
+    options: &RunOptions,
+) -> Begun<'a> {
     let mut report = RunReport::default();
     let Some(store) = selected.store.filter(|_| options.resume) else {
         return Begun { cases: cases.into_iter().map(|case| (case, None)).collect(), report };
@@ -193,7 +202,8 @@ fn begun<'a>(selected: &Selected<'a>, cases: Vec<&'a Case>, options: &RunOptions
             continue;
         }
         match store.found(case) {
-            Found::Finished(record) => {
+            // Whoever keeps nothing judges: a gate asks more of an attached solver's record than a run that goes on.
+            Found::Finished(record) if selected.is_kept || runner.would_make(&record) => {
                 report.tally.add(selected.study, &record);
                 taken_up.push(case);
                 if !options.only_on_disk {
@@ -201,7 +211,7 @@ fn begun<'a>(selected: &Selected<'a>, cases: Vec<&'a Case>, options: &RunOptions
                 }
                 continue;
             }
-            Found::OfAnotherProgram => report.of_another_program += 1,
+            Found::OfAnotherProgram | Found::Finished(_) => report.of_another_program += 1,
             Found::Nothing => {}
         }
         open.push((case, None));

@@ -2,8 +2,10 @@
 
 use crate::case::Case;
 use crate::case::quantity::Sample;
+use crate::case::solver::Solver;
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::process::{Ending, Finished, Order};
+use crate::foreign::program_digest::program_digest;
 use crate::foreign::reading::{ReadResult, Unread, mapping_of, read};
 use crate::foreign::staging::{Filling, Staged, words_of};
 use crate::foreign::wholeness::{difference, states_at_outputs};
@@ -45,6 +47,8 @@ pub struct Attachment<'a> {
     /// What its result means, or why that cannot be told.
     mapping: Result<Mapping, String>,
     version: OnceLock<Version>,
+    /// Digest of its program as it is when first asked.
+    program: OnceLock<Option<String>>,
     gate: Gate,
 }
 
@@ -71,12 +75,29 @@ impl<'a> Attachment<'a> {
     /// A solver of a study about a column, or about a plane.
     pub fn new(solver: &'a ExternalSolver, is_plane: bool) -> Self {
         let mapping = mapping_of(solver, is_plane).map_err(|error| error.to_string());
-        Self { solver, mapping, version: OnceLock::new(), gate: Gate::of(solver.at_once) }
+        Self {
+            solver,
+            mapping,
+            version: OnceLock::new(),
+            program: OnceLock::new(),
+            gate: Gate::of(solver.at_once),
+        }
     }
 
-    /// The solver.
-    pub fn solver(&self) -> &ExternalSolver {
-        self.solver
+    /// Whether the solver runs a case.
+    pub fn is_of(&self, case: &Case) -> bool {
+        Solver::Attached(self.solver.attached) == case.method
+    }
+
+    /// Whether a record is what the solver would give now: its program is the same, and its version where the study asks
+    /// for one, which only a solver that may be started tells. A result that is there already is read again.
+    pub fn would_make(&self, record: &Record, may_start: bool) -> bool {
+        let Some(about) = record.attached.as_ref().filter(|_| !self.solver.is_given()) else { return false };
+        let is_version = || {
+            self.solver.version.is_empty()
+                || may_start && self.version(&|| true).as_ref().is_ok_and(|told| *told == about.version)
+        };
+        about.program_digest.is_some() && about.program_digest == *self.program() && is_version()
     }
 
     /// Runs a case, or takes the result that is there already.
@@ -105,7 +126,8 @@ impl<'a> Attachment<'a> {
         let _passed = self.gate.pass();
         about.command.clone_from(&self.solver.command);
         about.warmed_up = self.solver.warm_up;
-        match self.version.get_or_init(|| self.told_version(wish)) {
+        about.program_digest.clone_from(self.program());
+        match self.version(wish.is_wanted) {
             Ok(version) => about.version.clone_from(version),
             Err(trouble) => about.notes.push(trouble.clone()),
         }
@@ -240,8 +262,17 @@ impl<'a> Attachment<'a> {
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
+    fn program(&self) -> &Option<String> {
+        self.program.get_or_init(|| program_digest(self.solver))
+    }
+
+    /// What the solver says of its version, asked once.
+    fn version(&self, is_wanted: &dyn Fn() -> bool) -> &Version {
+        self.version.get_or_init(|| self.told_version(is_wanted))
+    }
+
     /// What the solver says of its version, within the time of a run.
-    fn told_version(&self, wish: &Wish<'_>) -> Version {
+    fn told_version(&self, is_wanted: &dyn Fn() -> bool) -> Version {
         if self.solver.version.is_empty() {
             return Ok(None);
         }
@@ -249,7 +280,7 @@ impl<'a> Attachment<'a> {
         let seconds = self.solver.timeout.min(VERSION_SECONDS);
         let timeout = Duration::from_secs_f64(seconds);
         let order = Order { words: &words, environment: &[], folder: &self.solver.folder, timeout };
-        let found = process::run(&order, wish.is_wanted);
+        let found = process::run(&order, is_wanted);
         if matches!(found.ending, Ending::TimedOut) {
             let limit = typed(seconds);
             return Err(format!("its version is not known: that command did not end within {limit} s"));

@@ -253,6 +253,10 @@ pub struct AttachedRun {
     /// What it says of its version, where it was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
+    /// Digest of the program that the command starts and of the files in the adapter's folders; none where that is not
+    /// known, and the record is then taken for no later run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program_digest: Option<String>,
     /// Whether it was run once before it was timed.
     #[serde(default)]
     pub warmed_up: bool,

@@ -514,7 +514,7 @@ fn a_study_with_a_refused_case_fails_by_its_name_and_keeps_the_others() {
     refusing.references = vec![ReferenceKind::XieLeo];
     refusing.planned[3].case.column.loading_time = 1.0;
     let (refusing, sound) = (refusing, study());
-    let selected = [&refusing, &sound].map(|study| Selected { study, store: None });
+    let selected = [&refusing, &sound].map(|study| Selected { study, store: None, is_kept: false });
     let reports = run_studies(&selected, &RunOptions::whole(Tier::Full, 2), &|_| {});
     assert_eq!((reports[0].records.len(), reports[0].errors.len()), (7, 1));
     assert_eq!((reports[1].records.len(), reports[1].errors.len()), (8, 0));

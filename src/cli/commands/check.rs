@@ -3,7 +3,7 @@
 use crate::campaign::run_report::{RunReport, Tally};
 use crate::campaign::runner::{RunOptions, Selected, run_studies_thinned};
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{jobs_of, load_or_shipped};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{TableFormat, json_of, print_coloured};
@@ -18,6 +18,7 @@ use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::record::Record;
+use crate::record::store::RecordStore;
 use crate::render::checks::{annotations_of, junit, verdicts};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
+    /// Run every case anew; the results of `run` in out/ are taken for attached solvers where nothing changed since
+    #[arg(long)]
+    fresh: bool,
     /// Compare the exact solutions with their golden values too; done by itself where no study is named
     #[arg(long)]
     references: bool,
@@ -107,7 +111,8 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<(Vec<St
             thin(study, record);
         }
     };
-    let reports = run_all(studies, jobs_of(arguments.jobs), &thin_alone)?;
+    let results = (!arguments.fresh).then_some(Path::new(DEFAULT_RESULTS));
+    let reports = run_all(studies, jobs_of(arguments.jobs), results, &thin_alone)?;
     let mut tally = Tally::default();
     for ((study, golden), report) in studies.iter().zip(golden).zip(&reports) {
         tally.join(report.tally);
@@ -140,13 +145,15 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
         Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
         None => Ok(report.records),
     };
-    studies.iter().zip(run_all(studies, jobs, &|_, _| {})?).map(of_study).collect()
+    studies.iter().zip(run_all(studies, jobs, None, &|_, _| {})?).map(of_study).collect()
 }
 
-/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports.
+/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. Studies with attached solvers take
+/// what `run` left in a folder of results.
 fn run_all(
     studies: &[Study],
     jobs: usize,
+    results: Option<&Path>,
     thin: &(dyn Fn(&Study, &mut Record) + Sync),
 ) -> anyhow::Result<Vec<RunReport>> {
     let name = match studies {
@@ -154,10 +161,26 @@ fn run_all(
         _ => "check",
     };
     let bar = StudyBar::new(name);
-    let selected: Vec<Selected<'_>> = studies.iter().map(|study| Selected { study, store: None }).collect();
-    let options = RunOptions::whole(Tier::Ci, jobs);
+    let store_of = |study: &Study| {
+        let results = results.filter(|_| !study.solvers.is_empty())?;
+        Some(RecordStore::for_cases(results, &study.name, study.planned.len()))
+    };
+    let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
+    let selected: Vec<Selected<'_>> = (studies.iter().zip(&stores))
+        .map(|(study, store)| Selected { study, store: store.as_ref(), is_kept: false })
+        .collect();
+    let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Ci, jobs) };
     let reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
     bar.finish();
+    for (study, report) in studies.iter().zip(&reports).filter(|(_, report)| report.resumed > 0) {
+        say!(
+            "{}: {} of {} were taken from {}, for nothing changed since `run`; `--fresh` runs them anew",
+            study.name,
+            report.resumed,
+            count_of(report.tally.recorded, "case", "cases"),
+            Path::new(DEFAULT_RESULTS).join(&study.name).display()
+        );
+    }
     refuse_unfinished(&reports)?;
     Ok(reports)
 }

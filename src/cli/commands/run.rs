@@ -166,7 +166,11 @@ pub fn run_and_store(
     };
     let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
     let options = RunOptions { only_on_disk, ..options.clone() };
-    let kept = selected.iter().zip(&stores).map(|(study, store)| Selected { study, store: Some(store) });
+    let kept = selected.iter().zip(&stores).map(|(study, store)| Selected {
+        study,
+        store: Some(store),
+        is_kept: true,
+    });
     let name = match studies {
         [study] => study.name.clone(),
         _ => count_of(studies.len(), "study", "studies"),
