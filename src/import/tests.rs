@@ -70,7 +70,8 @@ fn what_is_no_number_or_outside_is_told_with_its_line() {
         assert!(error.contains(told), "{row}: {error}");
     }
     let error = states(STRANGE, "day; depth; pwp; settled\n").expect_err("a column is missing");
-    assert!(error.contains("no column `sig`; the header has `day`, `depth`"), "{error}");
+    assert!(error.contains("no column `sig` (to leave it out, call"), "{error}");
+    assert!(error.contains("; the header has `day`, `depth`"), "{error}");
     let error = states(STRANGE, "day; depth; pwp; settled; sig\n").expect_err("no rows");
     assert!(error.contains("there are no rows"), "{error}");
 }
