@@ -15,6 +15,7 @@ mod impossible_results;
 mod manufactured;
 mod mapping;
 mod over_time;
+mod over_time_attached;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;

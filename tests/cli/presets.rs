@@ -28,11 +28,6 @@ struct Point {
 }
 
 impl Point {
-    /// Its initial place.
-    fn initial(&self) -> [f64; 2] {
-        self.place
-    }
-
     /// Its present place.
     fn now(&self) -> [f64; 2] {
         [self.place[0], self.place[1] + self.fields.displacement]
