@@ -51,7 +51,7 @@ impl Unit {
                 let (symbol, exponent) = power.split_at(end.unwrap_or(power.len()));
                 let exponent: i32 =
                     if exponent.is_empty() { 1 } else { exponent.trim_start_matches('^').parse().ok()? };
-                if exponent.abs() > 9 {
+                if !(-9..=9).contains(&exponent) {
                     return None;
                 }
                 unit.multiply(symbol, if number == 0 { exponent } else { -exponent })?;
@@ -177,6 +177,7 @@ mod tests {
             ("5", "s", "`5` is not a number with a unit", "\"10 s\""),
             ("1e400 kPa", "Pa", "is not a finite number", ""),
             ("5 m^99999999999", "m", "is not known", ""),
+            ("5 m^-2147483648", "m", "is not known", ""),
         ] {
             let (told, right) = in_si(text, si).expect_err(text);
             assert!(told.contains(message) && right.contains(help), "{text}: {told}; {right}");

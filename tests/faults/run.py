@@ -28,15 +28,10 @@ ROOT = HERE.parent.parent
 # Seconds after which a study or a test that hangs counts as objecting.
 LONGEST = 300
 
-SWITCH = """
-/// Whether a planted fault is on; see tests/faults.
-#[inline]
-fn planted_fault_is_on(name: &str) -> bool {
-    static ON: std::sync::LazyLock<String> =
-        std::sync::LazyLock::new(|| std::env::var("OEDOMETER_FAULT").unwrap_or_default());
-    *ON == name
-}
-"""
+def switch(name):
+    """Whether a planted fault is on: one expression that needs nothing else, so that it compiles in any function."""
+    asked = f'::std::env::var_os("OEDOMETER_FAULT").is_some_and(|on| on == "{name}")'
+    return f"{{ static ON: ::std::sync::LazyLock<bool> = ::std::sync::LazyLock::new(|| {asked}); *ON }}"
 
 
 def end_of_block(text, start):
@@ -91,7 +86,7 @@ def plant(text, fault):
     """The text with a fault behind its switch."""
     brace, end, returned = function(text, fault["function"])
     body = text[brace + 1 : end - 1]
-    on = f'planted_fault_is_on("{fault["name"]}")'
+    on = switch(fault["name"])
     if "before" in fault:
         # `let x = ...` must last beyond the switch: both ways assign the same name.
         shadow = re.fullmatch(r"let (mut )?(\w+)(: [^=]+)? = (.*);", fault["before"], re.S)
@@ -117,7 +112,7 @@ def copied_tree(folder, faults):
     for fault in faults:
         file = fault["file"]
         try:
-            planted[file] = plant(planted.get(file) or (ROOT / file).read_text() + SWITCH, fault)
+            planted[file] = plant(planted.get(file) or (ROOT / file).read_text(), fault)
         except (ValueError, FileNotFoundError) as error:
             refused.append(f"{fault['name']}: {file}: {error}")
     if refused:

@@ -170,9 +170,9 @@ impl Store {
             if is_wanted(&array.name) {
                 let from =
                     usize::try_from(member.byte_offset).map_err(|_| "a field lies outside its record")?;
-                for record in bytes.chunks_exact(size as usize) {
-                    let field =
-                        record.get(from..from + scalar.size()).ok_or("a field lies outside its record")?;
+                for record in bytes.chunks_exact((size as usize).max(1)) {
+                    let field = record.get(from..).and_then(|rest| rest.get(..scalar.size()));
+                    let field = field.ok_or("a field lies outside its record")?;
                     array.values.extend(scalar.decode(field, is_little));
                 }
             }

@@ -448,6 +448,21 @@ fn a_state_without_a_mesh_has_that_of_the_state_before_and_not_of_the_first() {
 }
 
 #[test]
+fn a_document_that_declares_more_numbers_than_memory_has_is_refused() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.xdmf");
+    let names = all_names();
+    // Eight bytes each: 2^64 of them, and one less than may be counted.
+    for declared in [1_u64 << 61, u64::MAX] {
+        let item = format!("<DataItem Dimensions=\"{declared}\">1</DataItem>");
+        std::fs::write(&path, xdmf_of(std::iter::once(pressure_of(&item)))).expect("a file");
+        let steps = steps_of(&path, &mut Vec::new()).expect("one state");
+        let refused = first_frame(&steps, Wanted(&names)).map(|_| ()).map_err(|error| error.to_string());
+        assert!(refused.as_ref().is_err_and(|why| why.contains("it claims")), "{declared}: {refused:?}");
+    }
+}
+
+#[test]
 fn thousands_of_states_of_one_document_are_read() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("a.xdmf");

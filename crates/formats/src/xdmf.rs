@@ -160,7 +160,7 @@ impl<'a> Reader<'a> {
         }
         match attribute(item, "Format").to_ascii_uppercase().as_str() {
             "XML" | "" => {
-                self.budget.take(8 * expected as u64)?;
+                self.budget.take((expected as u64).saturating_mul(8))?;
                 let numbers = numbers_of_text(text, expected)?;
                 if numbers.len() != expected {
                     return Err(format!("it holds {} numbers, and {expected} are declared", numbers.len()));
