@@ -293,26 +293,6 @@ fn refinement_tables_have_the_errors_and_orders_of_their_time_and_reference() {
 }
 
 #[test]
-fn orders_at_a_glance_are_those_of_the_middle_time_and_errors_those_of_ten_cells() {
-    let reported = &*REPORTED;
-    let (header, rows) = tables(reported, "distinct").remove(0);
-    assert_eq!(header[..2], ["method", "against"]);
-    assert_eq!(rows.len(), 2);
-    for row in rows {
-        for (label, cell) in header[2..].iter().zip(&row[2..]) {
-            let errors = reported.errors(&row[0], &CELLS, label, &row[1], MIDDLE);
-            let order = slope(&CELLS[1..], &errors[1..]).0;
-            let (told, error) = cell.split_once(", ").map_or((&**cell, None), |(a, b)| (a, Some(b)));
-            let told = number(told.split(' ').next().expect("an order"));
-            assert!((told - order).abs() <= 0.0051, "{} {label}: {told} for {order}", row[0]);
-            let error = error.unwrap_or_else(|| panic!("{} {label}: no error on ten cells", row[0]));
-            // Shown with a hyphen that breaks no line.
-            assert_near(number(&error.replace('\u{2011}', "-")), errors[2], 0.0051, label);
-        }
-    }
-}
-
-#[test]
 fn figures_over_the_mesh_and_over_work_have_the_points_of_their_cases() {
     let reported = &*REPORTED;
     let mut seen = 0;

@@ -4,7 +4,7 @@ use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::field_values::{Accuracy, FieldValues};
 use crate::layered::LayeredColumn;
 use crate::parameters::ColumnParameters;
-use crate::yield_front::{YieldFront, YieldingColumn};
+use crate::yield_front::YieldFront;
 
 /// A column by time factor and depth; time factors are those of the soil of the column.
 #[derive(Clone, Debug)]
@@ -67,19 +67,7 @@ impl ColumnInSeconds {
     /// # Errors
     /// When a parameter is impossible, or no front runs.
     pub fn yield_front(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        parameters.validate()?;
-        let front = YieldFront::new(YieldingColumn {
-            height: parameters.height,
-            load: parameters.load,
-            initial_stress: parameters.uniform_stress,
-            preconsolidation: parameters.soil.preconsolidation,
-            virgin_modulus: parameters.soil.oedometric_modulus(),
-            reload_modulus: parameters.soil.reload_modulus,
-            porosity: parameters.soil.porosity,
-            water_bulk_modulus: parameters.soil.water_bulk_modulus,
-            mobility: parameters.soil.hydraulic_conductivity / parameters.soil.unit_weight_of_water(),
-        })?;
-        Ok(Self::of(parameters, Column::YieldFront(front)))
+        Ok(Self::of(parameters, Column::YieldFront(YieldFront::new(parameters)?)))
     }
 
     /// A column that no water leaves: `p = q/(1 + n E_oed/K_w)` for ever.

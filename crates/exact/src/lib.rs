@@ -26,6 +26,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod at_rest;
+mod bisection;
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;

@@ -15,40 +15,26 @@
 
 use core::f64::consts::PI;
 
+use crate::bisection::bisected;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal, positive};
 use crate::field_values::{Accuracy, FieldValues};
+use crate::parameters::ColumnParameters;
 use oedometer_soil::elementary::{erf, erfc, exp};
 
 /// Relative difference up to which two moduli are one.
 const EQUAL: f64 = 1e-9;
 
-/// A column of a soil that yields, under a load that acts at once. SI; stresses here are compression positive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YieldingColumn {
-    /// Height of the column, m.
-    pub height: f64,
-    /// Load `q`, Pa.
-    pub load: f64,
-    /// Effective stress `σ'_0` before the load, Pa.
-    pub initial_stress: f64,
-    /// Largest effective stress so far, `σ'_pc`, Pa.
-    pub preconsolidation: f64,
-    /// Oedometric modulus `E₁` of first loading, Pa.
-    pub virgin_modulus: f64,
-    /// Oedometric modulus `E₂` of unloading and reloading, Pa.
-    pub reload_modulus: f64,
-    /// Porosity `n`.
-    pub porosity: f64,
-    /// Bulk modulus `K_w` of the water, Pa.
-    pub water_bulk_modulus: f64,
-    /// `κ = k/γ_w`, m²/(Pa s).
-    pub mobility: f64,
-}
-
-/// The exact solution of a [`YieldingColumn`].
+/// The exact solution of a column of a preconsolidated soil under a load that acts at once. Stresses here are compression
+/// positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldFront {
-    column: YieldingColumn,
+    column: ColumnParameters,
+    /// Oedometric modulus `E₁` of first loading, Pa.
+    virgin: f64,
+    /// Oedometric modulus `E₂` of unloading and reloading, Pa.
+    reload: f64,
+    /// `κ = k/γ_w`, m²/(Pa s).
+    mobility: f64,
     /// `√c₁` and `√c₂`, m/√s.
     speeds: [f64; 2],
     /// Pressure `p_0` of the undrained start, Pa.
@@ -65,50 +51,39 @@ impl YieldFront {
     /// # Errors
     /// When a parameter is impossible, the modulus of reloading below that of first loading, or the stress at the end
     /// not beyond the preconsolidation, so that nothing yields, or the undrained start beyond it already.
-    pub fn new(column: YieldingColumn) -> Result<Self, ExactError> {
-        let virgin = normal("oedometric modulus of first loading", column.virgin_modulus)?;
-        let reload = normal("oedometric modulus of reloading", column.reload_modulus)?;
+    pub fn new(column: &ColumnParameters) -> Result<Self, ExactError> {
+        column.validate()?;
+        let ColumnParameters { soil, load, uniform_stress, .. } = *column;
+        let virgin = soil.oedometric_modulus();
+        let reload = normal("oedometric modulus of reloading", soil.reload_modulus)?;
         // Equal moduli may be typed as Young's and Poisson's numbers.
         if reload < virgin * (1.0 - EQUAL) {
             return Err(ExactError::ReloadModulus { reload, virgin });
         }
-        positive("height", column.height)?;
-        let load = normal("load", column.load)?;
-        if !(column.initial_stress.is_finite() && column.initial_stress >= 0.0) {
-            return Err(ExactError::NotPositive { quantity: "initial stress", value: column.initial_stress });
+        if !(uniform_stress.is_finite() && uniform_stress >= 0.0) {
+            return Err(ExactError::NotPositive { quantity: "initial stress", value: uniform_stress });
         }
-        let preconsolidation = positive("preconsolidation", column.preconsolidation)?;
-        let of_water = column.porosity / positive("bulk modulus of the water", column.water_bulk_modulus)?;
-        let mobility = normal("mobility of the water", column.mobility)?;
+        let preconsolidation = positive("preconsolidation", soil.preconsolidation)?;
+        let mobility =
+            normal("mobility of the water", soil.hydraulic_conductivity / soil.unit_weight_of_water())?;
+        let of_water = soil.porosity / soil.water_bulk_modulus;
         let [storage, elastic_storage] = [1.0 / virgin + of_water, 1.0 / reload + of_water];
         let speeds = [(mobility / storage).sqrt(), (mobility / elastic_storage).sqrt()];
         let start = load / (reload * elastic_storage);
-        let end = column.initial_stress + load;
+        let end = uniform_stress + load;
         let yielding = end - preconsolidation;
         if yielding <= 0.0 || yielding >= start {
             return Err(ExactError::NoYieldFront { preconsolidation, start: end - start, end });
         }
-        let mut solution = Self { column, speeds, start, yielding, front: 0.0 };
-        solution.front = solution.found_front();
-        Ok(solution)
-    }
-
-    /// `λ` by bisection: water arrives at the front faster than it leaves while the front is near the top.
-    fn found_front(&self) -> f64 {
-        let surplus = |a: f64| {
-            let b = a * self.speeds[0] / self.speeds[1];
-            let leaves = self.yielding * exp(-a * a) / (erf(a) * self.speeds[0]);
-            leaves - (self.start - self.yielding) * exp(-b * b) / (erfc(b) * self.speeds[1])
+        // Water arrives at the front faster than it leaves while the front is near the top: the flux that leaves falls
+        // from infinity to nothing, the one that arrives rises.
+        let missing = |a: f64| {
+            let b = a * speeds[0] / speeds[1];
+            let leaves = yielding * exp(-a * a) / (erf(a) * speeds[0]);
+            (start - yielding) * exp(-b * b) / (erfc(b) * speeds[1]) - leaves
         };
-        // The flux that leaves falls from infinity to nothing, the one that arrives rises.
-        let (mut low, mut high) = (0.0, 26.0);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                return 2.0 * self.speeds[0] * middle;
-            }
-            if surplus(middle) > 0.0 { low = middle } else { high = middle }
-        }
+        let front = 2.0 * speeds[0] * bisected(0.0, 26.0, missing);
+        Ok(Self { column: *column, virgin, reload, mobility, speeds, start, yielding, front })
     }
 
     /// Depth of the front, m.
@@ -120,7 +95,7 @@ impl YieldFront {
     pub fn water_out(&self, seconds: f64) -> f64 {
         let a = self.front / (2.0 * self.speeds[0]);
         let root = (seconds / PI).sqrt();
-        2.0 * self.column.mobility * self.yielding * root / (erf(a) * self.speeds[0])
+        2.0 * self.mobility * self.yielding * root / (erf(a) * self.speeds[0])
     }
 
     /// Pressure at a depth in m, Pa.
@@ -163,18 +138,18 @@ impl YieldFront {
     /// Shortening of all below a depth in the column, m, from before the load on.
     fn shortening_below(&self, seconds: f64, depth: f64) -> f64 {
         let Self { column, start, yielding, .. } = *self;
-        let elastic = (column.load - start) / column.reload_modulus * (column.height - depth);
+        let elastic = (column.load - start) / self.reload * (column.height - depth);
         let base = self.lost_pressure(seconds, column.height);
         let front = self.front_depth(seconds);
         if depth >= front {
-            return elastic + (self.lost_pressure(seconds, depth) - base) / column.reload_modulus;
+            return elastic + (self.lost_pressure(seconds, depth) - base) / self.reload;
         }
         // Above the front the stress rose by p_0 − p_y elastically and by the rest at the virgin modulus.
         let at_front = self.lost_pressure(seconds, front);
         let yielded = self.lost_pressure(seconds, depth) - at_front - (start - yielding) * (front - depth);
         elastic
-            + (at_front - base + (start - yielding) * (front - depth)) / column.reload_modulus
-            + yielded / column.virgin_modulus
+            + (at_front - base + (start - yielding) * (front - depth)) / self.reload
+            + yielded / self.virgin
     }
 
     /// Pressure, effective stress with the initial one, and displacement since before the load, at the relative depth
@@ -188,7 +163,7 @@ impl YieldFront {
         let pressure = self.pressure(seconds, depth);
         Ok(FieldValues {
             pressure,
-            effective_stress: pressure - self.column.load - self.column.initial_stress,
+            effective_stress: pressure - self.column.load - self.column.uniform_stress,
             displacement: -self.shortening_below(seconds, depth),
         })
     }
@@ -204,7 +179,7 @@ impl YieldFront {
     /// Settlement long after, when all of the column has yielded, m.
     pub fn final_settlement(&self) -> f64 {
         let Self { column, yielding, .. } = self;
-        let strain = (column.load - yielding) / column.reload_modulus + yielding / column.virgin_modulus;
+        let strain = (column.load - yielding) / self.reload + yielding / self.virgin;
         column.height * strain
     }
 
@@ -227,21 +202,22 @@ impl YieldFront {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oedometer_soil::material::Material;
 
     fn column(
         [virgin, reload, conductivity, porosity, initial, preconsolidation]: [f64; 6],
-    ) -> YieldingColumn {
-        YieldingColumn {
-            height: 1.0,
-            load: 1e5,
-            initial_stress: initial,
-            preconsolidation,
-            virgin_modulus: virgin,
+    ) -> ColumnParameters {
+        // Without Poisson's ratio the oedometric modulus is Young's.
+        let soil = Material {
+            youngs_modulus: virgin,
+            poissons_ratio: 0.0,
             reload_modulus: reload,
+            hydraulic_conductivity: conductivity,
             porosity,
-            water_bulk_modulus: 2.2e9,
-            mobility: conductivity / 9810.0,
-        }
+            preconsolidation,
+            ..Material::default()
+        };
+        ColumnParameters { load: 1e5, uniform_stress: initial, soil, ..ColumnParameters::default() }
     }
 
     #[test]
@@ -252,7 +228,7 @@ mod tests {
             ("early-yield", column([2e6, 1e7, 1e-8, 0.4, 3e4, 3.1e4])),
         ];
         for (name, column) in columns {
-            let solution = YieldFront::new(column).unwrap();
+            let solution = YieldFront::new(&column).unwrap();
             let rows: Vec<Vec<&str>> = include_str!("../tests/reference/yield_front.csv")
                 .lines()
                 .map(|line| line.split(',').collect::<Vec<_>>())
@@ -274,11 +250,12 @@ mod tests {
     #[test]
     fn the_settlement_is_the_water_that_left_less_what_the_water_gave_back() {
         let column = column([1.2e6, 6e6, 1e-8, 0.4, 2e4, 6e4]);
-        let solution = YieldFront::new(column).unwrap();
+        let solution = YieldFront::new(&column).unwrap();
         let undrained = solution.settlement(0.0).unwrap();
         for seconds in [1.0, 30.0, 400.0] {
             let lost = solution.lost_pressure(seconds, 0.0) - solution.lost_pressure(seconds, 1.0);
-            let expected = solution.water_out(seconds) - column.porosity / column.water_bulk_modulus * lost;
+            let expected =
+                solution.water_out(seconds) - column.soil.porosity / column.soil.water_bulk_modulus * lost;
             let found = solution.settlement(seconds).unwrap() - undrained;
             assert!((found / expected - 1.0).abs() < 1e-11, "{seconds}: {found:e} {expected:e}");
             // The displacement's slope is the strain of the stress at the place.
@@ -287,7 +264,7 @@ mod tests {
                 let at = |depth: f64| solution.fields(seconds, depth).unwrap().displacement;
                 let strain = (at(depth + step) - at(depth - step)) / (2.0 * step);
                 let stress = column.load - solution.pressure(seconds, depth);
-                let elastic = stress.min(column.preconsolidation - column.initial_stress);
+                let elastic = stress.min(column.soil.preconsolidation - column.uniform_stress);
                 let expected = elastic / 6e6 + (stress - elastic) / 1.2e6;
                 assert!((strain / expected - 1.0).abs() < 1e-6, "{seconds} {depth}: {strain:e} {expected:e}");
             }
@@ -297,7 +274,7 @@ mod tests {
     #[test]
     fn equal_moduli_are_terzaghis_half_space() {
         let column = column([2e6, 2e6, 1e-8, 0.4, 3e4, 8e4]);
-        let solution = YieldFront::new(column).unwrap();
+        let solution = YieldFront::new(&column).unwrap();
         let seconds: f64 = 120.0;
         let speed = solution.speeds[0];
         for depth in [0.0, 0.01, 0.05, 0.2] {
@@ -309,13 +286,13 @@ mod tests {
 
     #[test]
     fn columns_without_a_front_are_refused_in_sentences() {
-        let refused = |values| YieldFront::new(column(values)).unwrap_err().to_string();
+        let refused = |values| YieldFront::new(&column(values)).unwrap_err().to_string();
         assert!(refused([2e6, 1e6, 1e-8, 0.4, 3e4, 8e4]).contains("below that of first loading"));
         // Never reached, and reached by the undrained start.
         assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 1.4e5]).contains("yield"));
         assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 3.0e4]).contains("yield"));
         // The front has reached the base long ago.
-        let solution = YieldFront::new(column([2e6, 4e6, 1e-6, 0.4, 3e4, 8e4])).unwrap();
+        let solution = YieldFront::new(&column([2e6, 4e6, 1e-6, 0.4, 3e4, 8e4])).unwrap();
         assert!(solution.accuracy(1e4).unwrap().bound() > 0.1);
     }
 }

@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use super::{bisected, terms_for};
+use super::terms_for;
+use crate::bisection::bisected;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
 use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;

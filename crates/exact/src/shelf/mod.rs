@@ -229,14 +229,3 @@ fn terms_for(most: usize, time_factor: f64, tail: impl Fn(usize) -> f64) -> Resu
 
 /// What a term's round-off may add to the pressure over the load.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
-
-/// The root of a function that is negative at `low` and positive at `high`, to the last bit.
-fn bisected(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return middle;
-        }
-        if function(middle) < 0.0 { low = middle } else { high = middle }
-    }
-}
