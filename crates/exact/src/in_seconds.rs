@@ -20,7 +20,7 @@ pub struct ColumnInSeconds {
 #[derive(Clone, Debug)]
 enum Column {
     Layered(LayeredColumn),
-    YieldFront(YieldFront),
+    YieldFront(Box<YieldFront>),
     /// Undrained for ever: pressure, Pa, and share of the height that it gets shorter by.
     Sealed {
         pressure: f64,
@@ -67,7 +67,7 @@ impl ColumnInSeconds {
     /// # Errors
     /// When a parameter is impossible, or no front runs.
     pub fn yield_front(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        Ok(Self::of(parameters, Column::YieldFront(YieldFront::new(parameters)?)))
+        Ok(Self::of(parameters, Column::YieldFront(Box::new(YieldFront::new(parameters)?))))
     }
 
     /// A column that no water leaves: `p = q/(1 + n E_oed/K_w)` for ever.
