@@ -100,8 +100,9 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             let is_same = !(deforms && (base.method.contains("Bbar") || base.method.ends_with("-cells")));
             // Off the lattice a cell of the plane feels more of its pressures than one of a line.
             let is_same = is_same && (is_lattice || !base.method.ends_with("null-space"));
-            // One point integrates no shear of a plane's cell: without it nodes go to and fro beside each other.
-            let is_held = base.points_per_cell > 1 || is_lattice;
+            // One point integrates no shear of a plane's cell: without it nodes go to and fro beside each other, and where
+            // points move a lattice does not stay one.
+            let is_held = base.points_per_cell > 1 || (is_lattice && is_small);
             is_line && is_same && is_held && base.cells <= 24 && has_same_steps
         }
         Relation::TotalAndFrozen => {
@@ -256,13 +257,15 @@ fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
             largest = (difference, what);
         }
     };
+    // What is a share of the load is known to a share of the weight, where the weight acts and is more.
+    let scale = a.case.column.load / load_of(a);
     for row in &a.errors {
         let same = b.errors.iter().find(|other| {
             (other.quantity, other.sample, other.norm) == (row.quantity, row.sample, row.norm)
                 && other.reference == row.reference
                 && (other.time_factor / row.time_factor - 1.0).abs() < 1e-12
         });
-        let difference = same.map_or(f64::INFINITY, |same| (same.absolute - row.absolute).abs());
+        let difference = same.map_or(f64::INFINITY, |same| scale * (same.absolute - row.absolute).abs());
         let (quantity, sample) = (row.quantity.name(), row.sample.name());
         see(difference, format!("the error of the {quantity} at {sample}, T_v = {:e},", row.time_factor));
     }
@@ -272,11 +275,9 @@ fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
         }
     }
     let same_nodes = a.case.column.dimensions == b.case.column.dimensions;
-    let scale = a.case.column.load / load_of(a);
     for (what, one, other) in
         shares(a).into_iter().zip(shares(b)).map(|((what, one), (_, other))| (what, one, other))
     {
-        // What is a share of the load is known to a share of the weight, where the weight acts and is more.
         // The largest force on a node is another share of the load where its cells lie on one side alone.
         if what.starts_with("unbalanced force") && !same_nodes {
             continue;

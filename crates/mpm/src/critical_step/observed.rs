@@ -51,7 +51,8 @@ pub struct Probe {
 /// What is known of a problem's critical step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriticalStep {
-    /// From the spectral radius, s: beyond it a mode grows by 1/700 per step or more.
+    /// From the spectral radius, s: beyond it a mode grows by as much as is observed, `ln(5·10^4)/32768` per step, in a plane
+    /// a doubling in 10 000 steps.
     pub predicted: f64,
     /// Step, s, from which on a mode grows more slowly, where that begins long before: no run of a few thousand steps
     /// shows it, but a million steps can.
@@ -133,8 +134,9 @@ pub fn critical_step<const D: usize>(
     }
     let prediction = predict(&problem, settings, WHOLE_COLUMN);
     let strict = prediction.critical_step;
-    let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + VISIBLE_GROWTH);
-    let predicted = if is_sharp { strict } else { prediction.critical_step_for(VISIBLE_GROWTH).max(strict) };
+    let seen = if D > 1 { SLOWEST_SEEN } else { VISIBLE_GROWTH };
+    let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + seen);
+    let predicted = if is_sharp { strict } else { prediction.critical_step_for(seen).max(strict) };
     let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
     let mut probes = Vec::with_capacity(SHARES.len());
     for share in SHARES {

@@ -50,11 +50,8 @@ impl fmt::Display for GrowingMode {
 }
 
 impl<const D: usize> Prediction<D> {
-    /// Largest step, s, under which no mode grows by more than `growth` per step; in a plane the critical step.
+    /// Largest step, s, under which no mode grows by more than `growth` per step.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
-        if D > 1 {
-            return self.critical_step;
-        }
         let safe = self.critical_step;
         spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
     }

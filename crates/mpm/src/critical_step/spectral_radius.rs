@@ -111,8 +111,8 @@ pub fn growth<const D: usize>(step: &AssembledStep<D>, dt: f64, settings: &Expli
 /// equations in space are unstable then.
 ///
 /// In a plane squaring is expensive. There the limit is where a disturbance of all wavelengths begins to grow within a few
-/// hundred steps, and the spectral radius only confirms that nothing grows slowly there. A `sharp` limit is searched by the
-/// spectral radius beyond it, too.
+/// hundred steps, and the spectral radius only confirms that nothing grows slowly there: by `growth`, or by a doubling in
+/// 70 000 steps where that is more. A `sharp` limit is searched by the spectral radius beyond it, too.
 pub fn critical_step<const D: usize>(
     step: &AssembledStep<D>,
     settings: &ExplicitSettings,
@@ -129,7 +129,8 @@ pub fn critical_step<const D: usize>(
     if step.unknowns() > MOST_SQUARED {
         return soon;
     }
-    let mut is_stable = |dt: f64| is_within(dt, SLOW_GROWTH * (dt / safe).min(1.0));
+    let most = |dt: f64| if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) };
+    let mut is_stable = |dt: f64| is_within(dt, most(dt));
     match soon {
         Some(soon) if !sharp && is_stable(soon) => Some(soon),
         found => bracketed([found.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
