@@ -341,4 +341,18 @@ mod tests {
         };
         assert_eq!(found.inputs, [expected]);
     }
+
+    #[test]
+    fn a_case_whose_label_changed_is_compared_with_the_nearest_new_one() {
+        let mut after = state(&BEFORE, "1e6");
+        let mut renamed = after.inputs.take().expect("inputs");
+        let mut finer = renamed.remove("cells=8").expect("a case");
+        finer.insert("cells".to_owned(), "16".to_owned());
+        renamed.insert("cells=16".to_owned(), finer);
+        after.inputs = Some(renamed);
+        let found = StudyComparison::of("s", &state(&BEFORE, "1e6"), &after);
+        let told: Vec<_> =
+            found.inputs.iter().map(|one| (&*one.key, &*one.before, &*one.after, one.cases)).collect();
+        assert_eq!(told, [("cells", "8", "16", 1)]);
+    }
 }

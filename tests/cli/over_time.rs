@@ -67,15 +67,17 @@ fn repository() -> TempDir {
     write("run.sh", "kill -9 $$\n");
     commit("Crash");
     write("run.sh", &run);
-    commit("Mend the crash");
+    // In the middle, where the search begins.
     write("build.sh", "exit 1\n");
     commit("Break the build");
     write("build.sh", "true\n");
     commit("Mend the build");
+    commit("Change nothing");
     write("studies/gate.toml", &STUDY.replace("porosity = 0.3", "porosity = 0.45"));
     write("golden/gate.csv", &golden([8e-2, 5e-2], "a larger porosity"));
     commit(WORSE);
-    commit("Change nothing");
+    write("golden/gate.csv", &golden([8e-2, 6e-2], "worse again"));
+    commit("Accept more");
     commit("Change nothing again");
     folder
 }
@@ -103,6 +105,7 @@ fn bisect_finds_the_commit_that_moved_the_results_and_skips_what_cannot_be_tried
     let first = told.out.lines().next().expect("a commit");
     assert!(first.ends_with(WORSE), "{}{}", told.out, told.err);
     assert!(told.out.contains(" moved, in 2 cases"), "{}", told.out);
+    assert!(told.err.contains(" skip: Break the build"), "{}", told.err);
     // The user's own work tree is as it was.
     assert_eq!(git(folder.path(), &["status", "--porcelain"]), before);
     assert_eq!(git(folder.path(), &["worktree", "list"]).lines().count(), 1);
@@ -121,7 +124,12 @@ fn history_marks_the_step_and_compare_tells_it() {
     let told = call(at, &["history", "gate", "--format", "csv", "--page", "history.html"]);
     assert_eq!(told.code, 0, "{}", told.err);
     let rows: Vec<&str> = told.out.lines().collect();
-    assert_eq!(rows.len(), 3, "{}", told.out);
+    assert_eq!(rows.len(), 4, "{}", told.out);
+    // Geometric means over both errors, chained: √(5/4), then times √(6/5).
+    let place = rows[0].split(',').position(|name| name.starts_with("error index")).expect("a column");
+    let index = |row: &str| -> f64 { row.split(',').nth(place).expect("a field").parse().expect("a number") };
+    assert!((index(rows[2]) - 1.25_f64.sqrt()).abs() < 1e-6, "{}", rows[2]);
+    assert!((index(rows[3]) - 1.5_f64.sqrt()).abs() < 1e-6, "{}", rows[3]);
     assert!(rows[1].contains("first values") && rows[1].contains("same"), "{}", rows[1]);
     assert!(rows[2].contains("regressed") && rows[2].contains(WORSE), "{}", rows[2]);
     assert!(fs::read_to_string(at.join("history.html")).expect("a page").contains("<svg"));

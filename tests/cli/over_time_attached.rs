@@ -58,16 +58,16 @@ fn repository() -> TempDir {
     change("column.py", "def solve(case):", "def solve(case:");
     commit("Do not build");
     change("column.py", "def solve(case:", "def solve(case):");
-    commit("Mend the build");
     change("column.py", "    cells, height", "    import os; os.abort()\n    cells, height");
     commit("Crash");
     change("column.py", "    import os; os.abort()\n", "");
     commit("Mend the crash");
+    commit("Change nothing");
     change("column.py", "mobility = soil", "mobility = 1.05 * soil");
     accept(at, "a larger permeability");
     commit(WORSE);
-    commit("Change nothing");
-    commit("Change nothing again");
+    commit("Describe more");
+    commit("Describe all");
     folder
 }
 
@@ -81,6 +81,7 @@ fn the_commit_that_moved_a_python_solver_is_found_marked_and_told() {
     assert_eq!(told.code, 0, "{}{}", told.out, told.err);
     assert!(told.out.lines().next().is_some_and(|first| first.ends_with(WORSE)), "{}", told.out);
     assert!(told.out.contains("mine cells="), "what moved: {}", told.out);
+    assert!(told.err.contains(" skip: Crash"), "{}", told.err);
     assert_eq!(git(at, &["status", "--porcelain"]), "", "the user's tree is as it was");
     // What neither builds nor runs is never blamed, though it is all that is left.
     let told = bisect(&["--bad", "HEAD~3"]);
