@@ -5,7 +5,7 @@
 use crate::case::keys::{KEYS, Key, Kind};
 use crate::study::reading::{Placed, Typed};
 use oedometer_mpm::method::{
-    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+    Basis, Configuration, Memory, Method, PressureIntegration, Quadrature, Recovery, StrainGradient,
 };
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -203,6 +203,9 @@ pub struct MethodTable {
     /// Where the pressure is remembered.
     #[serde(default)]
     pub memory: Memory,
+    /// What volume a point integrates.
+    #[serde(default)]
+    pub quadrature: Quadrature,
     /// Parameter of a pressure projection over that of its source, 1 where nothing is named.
     pub projection: Typed<f64>,
     /// Configuration on which the operators live.

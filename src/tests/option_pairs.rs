@@ -11,7 +11,9 @@ use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::method::{Basis, Configuration, Memory, PressureIntegration, Recovery, StrainGradient};
+use oedometer_mpm::method::{
+    Basis, Configuration, Memory, PressureIntegration, Quadrature, Recovery, StrainGradient,
+};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::scene::SceneKind;
@@ -52,6 +54,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("pressure", PressureIntegration::ALL.map(PressureIntegration::name).to_vec()),
         ("recovery", Recovery::ALL.map(Recovery::name).to_vec()),
         ("memory", Memory::ALL.map(memory).to_vec()),
+        ("quadrature", Quadrature::ALL.map(Quadrature::name).to_vec()),
         ("configuration", Configuration::ALL.map(Configuration::name).to_vec()),
     ]
 }
@@ -101,6 +104,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ("pressure", method.pressure.name()),
         ("recovery", method.recovery.name()),
         ("memory", memory(method.memory)),
+        ("quadrature", method.quadrature.name()),
         ("configuration", method.configuration_or(case.scene.configuration()).name()),
     ]
     .into();
@@ -219,14 +223,18 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
     };
     let pressure = asked("pressure").unwrap_or(pressure);
     let word = |option: &str, default: &'static str| asked(option).unwrap_or(default);
+    let basis = if asked("quadrature") == Some("moments") { "hat" } else { "cpgimp" };
     let _ = write!(
         text,
         "method = [{{ basis = \"{}\", strain = \"{}\", pressure = \"{pressure}\", recovery = \"{}\", memory = \"{}\"",
-        word("basis", "cpgimp"),
+        word("basis", basis),
         word("strain", "standard"),
         word("recovery", "constant"),
         word("memory", "points"),
     );
+    if let Some(quadrature) = asked("quadrature") {
+        let _ = write!(text, ", quadrature = \"{quadrature}\"");
+    }
     if let Some(configuration) = asked("configuration") {
         let _ = write!(text, ", configuration = \"{configuration}\"");
     }

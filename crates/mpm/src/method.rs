@@ -170,6 +170,33 @@ impl Memory {
     }
 }
 
+/// What volume of the initial configuration a point integrates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Its own.
+    #[default]
+    Volumes,
+    /// That with which the points of a cell integrate constant and linear fields exactly, wherever they lie in it: moment
+    /// fitting (Müller, Kummer & Oberlack 2013).
+    Moments,
+}
+
+words!(Quadrature: Volumes "volumes", Moments "moments");
+
+impl Quadrature {
+    /// Whether it is the paper's.
+    pub fn is_volumes(&self) -> bool {
+        *self == Self::Volumes
+    }
+
+    /// Why it does not go with a basis, where it does not.
+    pub fn refuses(self, basis: Basis) -> Option<&'static str> {
+        (self == Self::Moments && basis != Basis::Hat).then_some(
+            "moments are fitted over cells, and the domains or splines of this basis reach beyond them",
+        )
+    }
+}
+
 /// Configuration on which shape functions are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Configuration {
@@ -212,6 +239,9 @@ pub struct Method {
     /// Where the state is kept while points move.
     #[serde(default, skip_serializing_if = "Memory::is_points")]
     pub memory: Memory,
+    /// What volume a point integrates.
+    #[serde(default, skip_serializing_if = "Quadrature::is_volumes")]
+    pub quadrature: Quadrature,
     /// Parameter of a pressure projection over that of its source, in thousandths.
     #[serde(default = "whole", skip_serializing_if = "is_whole")]
     pub projection: u32,
@@ -232,13 +262,14 @@ fn is_whole(thousandths: &u32) -> bool {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 18] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 19] = {
     use Basis::{Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
     use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp, PppMonotone, PppStep};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
     [
         ("MPM", Hat, Standard, Points, Constant),
+        ("MPM-SRI-patch", Hat, Standard, Sri, Patch),
         ("GIMP", Cpgimp, Standard, Points, Constant),
         ("GIMP-SRI", Cpgimp, Standard, Sri, Constant),
         ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
@@ -269,6 +300,8 @@ static KNOWN: LazyLock<Vec<(Method, String)>> = LazyLock::new(|| {
 const TOTAL_PREFIX: &str = "TL-";
 /// Suffix of the names of methods with the cell-averaged projection.
 const CELLS_SUFFIX: &str = "-cells";
+/// Suffix of the names of methods with moment-fitted volumes.
+const MOMENTS_SUFFIX: &str = "-moments";
 
 impl Method {
     /// The original MPM: hat functions, everything at the points.
@@ -278,6 +311,7 @@ impl Method {
         pressure: PressureIntegration::Points,
         recovery: Recovery::Constant,
         memory: Memory::Points,
+        quadrature: Quadrature::Volumes,
         projection: WHOLE_PROJECTION,
         configuration: None,
     };
@@ -288,7 +322,8 @@ impl Method {
     }
 
     /// The method of a name, bare, with the prefix `u` for fixed domains, with the prefix `TL-` for
-    /// shape functions on the initial configuration, or with the suffix `-cells` for the cell-averaged projection.
+    /// shape functions on the initial configuration, with the suffix `-cells` for the cell-averaged projection, or with
+    /// the suffix `-moments` for moment-fitted volumes.
     pub fn named(name: &str) -> Option<Self> {
         if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
             let method = Self::named(bare).filter(|method| method.can_move())?;
@@ -299,6 +334,11 @@ impl Method {
             // Domains on the initial configuration have nothing to follow.
             let total = Self { configuration: Some(Configuration::Total), ..method };
             return (method.basis != Basis::Ugimp).then_some(total);
+        }
+        if let Some(bare) = name.strip_suffix(MOMENTS_SUFFIX) {
+            let quadrature = Quadrature::Moments;
+            let method = Self::named(bare).filter(|method| quadrature.refuses(method.basis).is_none())?;
+            return (method.quadrature == Quadrature::Volumes).then_some(Self { quadrature, ..method });
         }
         let (bare, fixed_domains) = match name.strip_prefix('u') {
             Some(rest) => (rest, true),
@@ -320,7 +360,10 @@ impl Method {
         let total = NAMED.iter().map(|row| format!("{TOTAL_PREFIX}{}", row.0));
         let cells = NAMED.iter().filter(|row| row.4 == Recovery::Patch);
         let cells = cells.map(|row| format!("{}{CELLS_SUFFIX}", row.0));
-        bare.chain(fixed).chain(total).chain(cells).collect()
+        let fitted = NAMED.iter().filter(|row| Quadrature::Moments.refuses(row.1).is_none());
+        let fitted: Vec<String> = fitted.map(|row| format!("{}{MOMENTS_SUFFIX}", row.0)).collect();
+        let fitted_total: Vec<String> = fitted.iter().map(|name| format!("{TOTAL_PREFIX}{name}")).collect();
+        bare.chain(fixed).chain(total).chain(cells).chain(fitted).chain(fitted_total).collect()
     }
 
     /// Whether the method leaves it to the scene to move its points.
@@ -336,6 +379,9 @@ impl Method {
         }
         if self.projection != WHOLE_PROJECTION {
             choices = format!("{choices}({})", f64::from(self.projection) / f64::from(WHOLE_PROJECTION));
+        }
+        if self.quadrature == Quadrature::Moments {
+            choices = format!("{choices}+{}", self.quadrature.name());
         }
         match self.memory {
             Memory::Points => choices,
@@ -410,6 +456,8 @@ mod tests {
             "TL-TL-GIMP",
             "TL-GIMP-cells",
             "GIMP-cells-cells",
+            "GIMP-moments",
+            "MPM-moments-moments",
         ] {
             assert_eq!(Method::named(name), None, "{name}");
         }
@@ -423,11 +471,14 @@ mod tests {
             pressure: PressureIntegration::Sri,
             recovery: Recovery::Patch,
             memory: Memory::Points,
+            quadrature: Quadrature::Volumes,
             projection: WHOLE_PROJECTION,
             configuration: Some(Configuration::Updated),
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");
         let weaker = Method { projection: 125, ..Method::named("PPP").expect("a known method") };
         assert_eq!(weaker.to_string(), "cpgimp+standard+points+ppp(0.125)");
+        let fitted = Method { quadrature: Quadrature::Moments, configuration: None, ..method };
+        assert_eq!(fitted.to_string(), "hat+cmpm+sri+patch+moments");
     }
 }

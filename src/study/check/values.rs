@@ -86,7 +86,7 @@ impl Checker<'_> {
     }
 
     fn method_of(&mut self, table: &MethodTable, span: TextSpan, scene: SceneKind) -> Option<Solver> {
-        let MethodTable { basis, strain, pressure, memory, .. } = *table;
+        let MethodTable { basis, strain, pressure, memory, quadrature, .. } = *table;
         let recovery = match &table.recovery {
             Some(word) => **word,
             None if pressure == PressureIntegration::Points => Recovery::Constant,
@@ -100,10 +100,15 @@ impl Checker<'_> {
             self.complain(word.span(), why, "leave the key out, or choose another");
             return None;
         }
+        if let Some(why) = quadrature.refuses(basis) {
+            self.complain(span, why, "take the basis \"hat\", or leave `quadrature` out");
+            return None;
+        }
         let projection = self.projection_of(table, recovery)?;
         let configuration = table.configuration.as_deref().copied();
         let place = table.configuration.as_ref().map_or(span, Placed::span);
-        let method = Method { basis, strain, pressure, recovery, memory, projection, configuration };
+        let method =
+            Method { basis, strain, pressure, recovery, memory, quadrature, projection, configuration };
         self.method_fits(Solver::Own(method), place, scene)
     }
 

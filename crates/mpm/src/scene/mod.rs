@@ -12,6 +12,7 @@ mod dynamic_single_mode;
 mod layered;
 mod mandel;
 mod manufactured;
+mod moment_fitting;
 pub mod problem;
 mod sealed_element;
 mod single_mode;

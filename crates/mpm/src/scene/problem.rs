@@ -5,7 +5,7 @@ use crate::body::Problem;
 use crate::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::critical_step::predicted::{predict_for_run, whole_growth};
 use crate::explicit::ExplicitSettings;
-use crate::method::Method;
+use crate::method::{Method, Quadrature};
 use crate::operators::surface_load::LoadShape;
 use crate::run::results::outcome::Outcome;
 use crate::run::{Observer, Schedule, run};
@@ -13,6 +13,7 @@ use crate::scene::SceneKind;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{SceneLoad, SceneStart};
 use crate::scene::manufactured;
+use crate::scene::moment_fitting::fit_volumes;
 use crate::state::grid::Grid;
 use crate::state::nodes::Support;
 use crate::state::points::Points;
@@ -141,6 +142,9 @@ pub fn column_problem<const D: usize>(
     let set_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
         let mut points = Points::lattice(cell_size, extent, per_cell);
         column.points.arrange(&mut points, cell_size, cells);
+        if method.quadrature == Quadrature::Moments {
+            fit_volumes(&mut points, cell_size, extent, column.height);
+        }
         if soil.law.has_history() {
             // Stresses are counted from the initial one.
             let yield_stress = soil.preconsolidation - column.initial_stress;
