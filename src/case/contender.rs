@@ -70,7 +70,7 @@ const LINES: [(&str, Option<Method>, Inputs); 26] = {
         ("B2", Some(operators(Bspline2, Standard, Points, Constant)), &[]),
         ("B2-SRI-patch", Some(operators(Bspline2, Standard, Sri, Patch)), &[]),
         ("B3-SRI-patch", Some(operators(Bspline3, Standard, Sri, Patch)), &[]),
-        ("MPM-SRI-patch-moments", None, &[]),
+        ("TL-MPM-SRI-patch-moments", None, &[]),
         ("GIMP-SRI-patch-slopes", Some(operators(Cpgimp, Standard, Sri, Patch)), SLOPES),
     ]
 };
