@@ -39,7 +39,7 @@ const fn operators(
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 26] = {
+const LINES: [(&str, Option<Method>, Inputs); 27] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};

@@ -97,7 +97,7 @@ impl<'a> Attachment<'a> {
             self.solver.version.is_empty()
                 || may_start && self.version(&|| true).as_ref().is_ok_and(|told| *told == about.version)
         };
-        about.program_digest.is_some() && about.program_digest == *self.program() && is_version()
+        about.program_digest.is_some() && about.program_digest.as_ref() == self.program() && is_version()
     }
 
     /// Runs a case, or takes the result that is there already.
@@ -126,7 +126,7 @@ impl<'a> Attachment<'a> {
         let _passed = self.gate.pass();
         about.command.clone_from(&self.solver.command);
         about.warmed_up = self.solver.warm_up;
-        about.program_digest.clone_from(self.program());
+        about.program_digest = self.program().cloned();
         match self.version(wish.is_wanted) {
             Ok(version) => about.version.clone_from(version),
             Err(trouble) => about.notes.push(trouble.clone()),
@@ -262,8 +262,9 @@ impl<'a> Attachment<'a> {
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
-    fn program(&self) -> &Option<String> {
-        self.program.get_or_init(|| program_digest(self.solver))
+    /// Digest of the solver's files; `None` where they are too many to read.
+    fn program(&self) -> Option<&String> {
+        self.program.get_or_init(|| program_digest(self.solver)).as_ref()
     }
 
     /// What the solver says of its version, asked once.

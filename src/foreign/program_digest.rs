@@ -48,7 +48,7 @@ fn add_files(folder: &Path, files: &mut BTreeSet<PathBuf>) -> Option<()> {
         // A link to a folder may lead back to it.
         if entry.file_type().ok()?.is_dir() {
             add_files(&path, files)?;
-        } else if path.is_file() && !name.ends_with(".toml") {
+        } else if path.is_file() && path.extension().is_none_or(|ending| ending != "toml") {
             files.insert(path);
         }
         if files.len() > MOST_FILES {

@@ -258,7 +258,7 @@ mod tests {
         // E_oed = 1.2 MPa: strains to 30 and on to 60 kPa, back to 20 and on to 80 kPa.
         let path = [3e4 / 4.8e6 + 3e4 / 1.2e6, -4e4 / 4.8e6, 4e4 / 4.8e6 + 2e4 / 1.2e6];
         for steps in [1, 7] {
-            let mut history = History { yield_stress: soil.preconsolidation, ..History::default() };
+            let mut history = History { yield_stress: soil.preconsolidation };
             let mut stress = [[0.0; 2]; 2];
             for (strain, expected) in path.into_iter().zip([6e4, 2e4, 8e4]) {
                 let mut gradient = [[0.0; 2]; 2];

@@ -331,7 +331,7 @@ mod tests {
                     "liquid_svars_0|pore_pressures",
                     "displacement_x|displacements[0]",
                     "displacement_y|displacements[1]",
-                    "stress_yy|stresses[1]",
+                    "stress_yy|stresses[4]",
                     "volume",
                 ],
                 "points, stress tension-positive, current",

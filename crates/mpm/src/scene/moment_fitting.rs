@@ -262,12 +262,11 @@ mod tests {
 
     /// Largest force, N, left at the nodes of a column of jittered points at rest under its weight: stress and pressure
     /// are linear over the height, and 21 kPa at the base.
-    fn left_at_rest<const D: usize>(method: &str, configuration: Configuration, column: Column) -> f64 {
+    fn left_at_rest<const D: usize>(method: &str, configuration: Configuration, column: &Column) -> f64 {
         let method =
             Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
         let soil = Material::default();
-        let problem =
-            column_problem::<D>(SceneKind::AtRest, &column, &soil, method, 10, 2).expect("a column");
+        let problem = column_problem::<D>(SceneKind::AtRest, column, &soil, method, 10, 2).expect("a column");
         Body::new(problem).unbalanced_force()
     }
 
@@ -281,15 +280,15 @@ mod tests {
             let plane = Column { dimensions: 2, ..column }.with_extent(extent);
             for configuration in [Configuration::Frozen, Configuration::Updated, Configuration::Total] {
                 for method in ["MPM-moments", "MPM-SRI-patch-moments"] {
-                    let left = left_at_rest::<1>(method, configuration, column);
+                    let left = left_at_rest::<1>(method, configuration, &column);
                     assert!(left < 1e-10, "{method} {configuration:?} {jitter} {filling}: {left}");
-                    let left = left_at_rest::<2>(method, configuration, plane);
+                    let left = left_at_rest::<2>(method, configuration, &plane);
                     assert!(
                         left < 1e-10,
                         "{method} {configuration:?} {jitter} {filling} in the plane: {left}"
                     );
                 }
-                let left = left_at_rest::<1>("MPM-SRI-patch", configuration, column);
+                let left = left_at_rest::<1>("MPM-SRI-patch", configuration, &column);
                 assert!(left > 50.0, "volumes as they are leave forces: {left}");
             }
         }

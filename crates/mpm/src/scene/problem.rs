@@ -148,7 +148,7 @@ pub fn column_problem<const D: usize>(
         if soil.law.has_history() {
             // Stresses are counted from the initial one.
             let yield_stress = soil.preconsolidation - column.initial_stress;
-            points.history = vec![History { yield_stress, ..History::default() }; points.len()];
+            points.history = vec![History { yield_stress }; points.len()];
         }
         for point in 0..points.len() {
             let layer = column.soils.number_at(points.initial_position[point][D - 1]);
