@@ -206,9 +206,8 @@ fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() 
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
     let adapter = |pressure: f64| {
-        let rows: String =
-            (0..=10).map(|row| format!("8.175,0.{row},{},0\\n", pressure * f64::from(10 - row))).collect();
-        let rows = rows.replace("0.10,", "1,");
+        let row = |row: i32| format!("8.175,0.{row},{},0\\n", pressure * f64::from(10 - row));
+        let rows = (0..=10).map(row).collect::<Vec<_>>().concat().replace("0.10,", "1,");
         let result = format!("printf 't,y,p,u_y\\n{rows}' > \"$1/result.csv\"\n");
         format!("echo run >> \"$2/../runs\"\n. \"$2/law.inc\"\n{result}")
     };

@@ -2,7 +2,7 @@
 //!
 //! Written by the program: Kratos 10.4.4 (`tests/foreign/kratos-poro`, `kratos-mpm`). Written by VTK 9 and HDF5 with the calls
 //! of the program's sources: CB-Geo (`tests/foreign/cb-geo`; `src/io/vtk_writer.cc` at 061c4a6 and
-//! `src/hdf5_particle_twophase.cc` at 98b7763 of `github.com/cb-geo/mpm`). Made here after the program's sources: Anura3D
+//! `src/hdf5_particle_twophase.cc` at 98b7763 of `github.com/cb-geo/mpm`). Made here after the program's sources: `Anura3D`
 //! (`src/WriteVTKOutput.FOR` at 0ebf4e3 and `src/WriteVTKASCII.FOR` at 0fc0b5e of `github.com/Anura3D/Anura3D_OpenSource`) and
 //! MPM-Geomechanics (`src/Output.cpp` at 002af18 of `github.com/fabricix/MPM-Geomechanics`).
 
