@@ -370,7 +370,7 @@ mod tests {
                     "",
                     "coordinates[0]",
                     "coordinates[2]",
-                    "Pore Pressure|Pressure",
+                    "Pressure|Pore Pressure",
                     "Displacement[0]",
                     "Displacement[2]",
                     "Stress_ZZ",
