@@ -10,7 +10,7 @@ use oedometer_mpm::explicit::Drag;
 use oedometer_mpm::explicit::scheme::Scheme;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::scene::column::Shape;
+use oedometer_mpm::scene::column::{Shape, Undrained};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -120,7 +120,7 @@ macro_rules! word_fields {
     )+ };
 }
 
-word_fields!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme);
+word_fields!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKind, Law, Scheme, Undrained);
 
 /// Reads or writes the field of a case that a key stands for: a path of fields, or a field of one shape of the body.
 macro_rules! field {
@@ -249,6 +249,12 @@ keys! {
     length in &["sweep", "layer"], POSITIVE, "m", [of Layer length]; "Length"
     height in &["sweep", "column", "layer"], POSITIVE, "m", [column.height]; "Initial height H"
     width in &["sweep", "column"], POSITIVE, "m", [of Column width]; "Width, where there are two dimensions"
+    plate_width in &["sweep", "layer"], POSITIVE, "m", [column.footing.width];
+        "Width B of a footing, half of which lies on the layer"
+    plate in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [column.footing.contact];
+        "Whether the soil sticks to a footing"
+    undrained in &["sweep", "layer"], Kind::Word(&Undrained::NAMES), "", [column.footing.undrained];
+        "How the soil under a footing is kept undrained"
     base in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [of Layer base]; "How the layer rests on its base"
     load in &["sweep", "column", "layer"], POSITIVE, "Pa", [column.load]; "Load q on the surface"
     dimensions in &["column"], Kind::Count(2), "", [column.dimensions]; "Directions that are solved"
@@ -258,6 +264,8 @@ keys! {
         "Vertical effective stress of the start, compression positive, that a preconsolidated soil has already"
     reload_modulus in &["sweep", "material"], POSITIVE, "Pa", [material.reload_modulus];
         "Oedometric modulus of unloading and reloading of a preconsolidated soil"
+    undrained_strength in &["sweep", "material"], POSITIVE, "Pa", [material.undrained_strength];
+        "Undrained shear strength of a soil that yields by von Mises' condition"
     preconsolidation in &["sweep", "material"], POSITIVE, "Pa", [material.preconsolidation];
         "Largest vertical effective stress that a preconsolidated soil has had, compression positive"
     amplitude_x in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_x];

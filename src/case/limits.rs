@@ -5,6 +5,7 @@ use oedometer_mpm::method::{Basis, Configuration, Memory};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Undrained;
 use oedometer_soil::conductivity::ConductivityMean;
 
 /// Why a case cannot be.
@@ -133,6 +134,38 @@ impl Case {
                 two && *scene == SceneKind::Mandel,
                 "a rigid plate is tied to one point set",
                 "take another scene, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && *scene == SceneKind::Footing,
+                "the water under a footing stays with its soil",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "cells",
+                *scene == SceneKind::Footing && self.cells % 2 == 1,
+                "an odd number of cells under a footing: half of it is solved, and its middle lies on a node",
+                "take an even number",
+            ),
+            when(
+                "plate_width",
+                *scene == SceneKind::Footing && column.footing.width >= 2.0 * column.extent(),
+                "the layer ends under the footing: half of the footing lies on it",
+                "make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough",
+            ),
+            when(
+                "formulation",
+                *scene == SceneKind::Footing && *formulation != Formulation::QuasiStatic,
+                "a footing is pushed so slowly that nothing has inertia",
+                "leave `formulation` out",
+            ),
+            when(
+                "method",
+                *scene == SceneKind::Footing
+                    && column.footing.undrained == Undrained::TotalStress
+                    && method.strain.with_bbar().is_none(),
+                "the composite gradient between domain ends has no volume of its own: total stress needs one",
+                "take another method, or `undrained = \"two-phase\"`",
             ),
             when(
                 "sets",

@@ -103,7 +103,7 @@ pub struct Case {
 impl Case {
     /// The seed values of a scene on one cell, by the plain method: what a study does not name.
     pub fn seed(task: Task, scene: SceneKind) -> Self {
-        let integrator = IntegratorKind::Explicit;
+        let integrator = scene.default_integrator();
         Self {
             task,
             scene,
@@ -185,13 +185,13 @@ impl Case {
 
     /// Cell size, m.
     pub fn cell_size(&self) -> f64 {
-        self.column.points.cell_size(self.column.height, self.cells)
+        self.column.cell_size(self.cells)
     }
 
     /// Points there are to be, in all sets: cells times points a cell, in every direction.
     pub fn expected_points(&self) -> usize {
         let of_set = |per_cell: usize| {
-            let along = self.cells * per_cell;
+            let along = self.column.cells_up(self.cells) * per_cell;
             match self.column.dimensions {
                 1 => along,
                 _ => along * self.column.cells_across(self.cells).unwrap_or(1) * per_cell,
@@ -213,8 +213,9 @@ impl Case {
     /// Memory that a run may take, bytes, to an order of magnitude: its points, and the factors of the direct
     /// solver, which the undrained start of an explicit run needs too: those of a band, or of fronts.
     pub fn estimated_bytes(&self) -> f64 {
-        let across = self.column.cells_across(self.cells).unwrap_or(1) as f64;
-        let (short, long) = (across.min(self.cells as f64), across.max(self.cells as f64));
+        let across = self.column.cells_across(self.cells).unwrap_or(1);
+        let up = self.column.cells_up(self.cells);
+        let (short, long) = (across.min(up) as f64, across.max(up) as f64);
         let dimensions = self.column.dimensions as f64;
         let points_a_cell = elementary::powf(self.points_per_cell as f64, dimensions);
         let is_by_cells = self.method.own().is_some_and(|method| method.pressure.is_by_cells());
@@ -223,8 +224,7 @@ impl Case {
         let row = short * (dimensions + sites);
         let band = 12.0 * row;
         // Each halving of the body adds as much to the factors of its fronts.
-        let halvings =
-            f64::from(self.cells.min(self.column.cells_across(self.cells).unwrap_or(1)).max(2).ilog2());
+        let halvings = f64::from(across.min(up).max(2).ilog2());
         let factors = (16.0 * band).min(BYTES_A_HALVING * halvings);
         let solves = !self.is_explicit() || self.scene.start_is_solved();
         let solver = if solves { long * row * factors } else { 0.0 };

@@ -15,22 +15,29 @@ pub enum Quantity {
     Displacement,
     /// Settlement of the surface.
     Settlement,
+    /// Load of a footing over its width and the strength of the soil.
+    LoadFactor,
 }
 
 words!(
     Quantity:
     Pressure "pressure", EffectiveStress "effective_stress", Displacement "displacement",
-    Settlement "settlement",
+    Settlement "settlement", LoadFactor "load_factor",
 );
 
 impl Quantity {
-    /// Its field among samples; `None` for a settlement.
+    /// Whether it is one number, of the surface.
+    pub fn is_of_surface(self) -> bool {
+        matches!(self, Self::Settlement | Self::LoadFactor)
+    }
+
+    /// Its field among samples; `None` for what is of the surface.
     pub fn field(self, samples: &Samples) -> Option<&[f64]> {
         match self {
             Self::Pressure => Some(&samples.pressure),
             Self::EffectiveStress => Some(&samples.effective_stress),
             Self::Displacement => Some(&samples.displacement),
-            Self::Settlement => None,
+            Self::Settlement | Self::LoadFactor => None,
         }
     }
 }

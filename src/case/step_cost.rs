@@ -82,7 +82,8 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     let kind = StepKind::of(case);
     let cost = kind.cost(case.column.dimensions);
     let points = case.expected_points() as f64;
-    let width = case.column.cells_across(case.cells).unwrap_or(1).min(case.cells) as f64;
+    let width =
+        case.column.cells_across(case.cells).unwrap_or(1).min(case.column.cells_up(case.cells)) as f64;
     let method = case.method.own().unwrap_or(Method::STANDARD);
     let follows = matches!(kind, StepKind::PointWise | StepKind::Newton);
     let fits = method.uses_patch() || method.strain != StrainGradient::Standard;

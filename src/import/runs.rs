@@ -283,6 +283,7 @@ impl Run {
                         state.horizontal_displacement.clear();
                     }
                     Quantity::Settlement => state.surface_displacement = None,
+                    Quantity::LoadFactor => {}
                 }
             }
             self.expected.leave_out(*quantity);

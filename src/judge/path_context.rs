@@ -5,6 +5,7 @@ use crate::case::{Case, Norm, Quantity, Sample};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
 use crate::measure::fields::{PlaneField, exact_samples, relative_error, reversal};
+use crate::measure::footing::load_factor;
 use crate::measure::theory::known_reference;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
@@ -188,6 +189,7 @@ fn value_of(record: &Record, measure: &Measure) -> Option<f64> {
     let final_settlement = column_parameters(&case.column, &case.material).final_settlement();
     let scale = match measure.quantity {
         Quantity::Settlement => return Some(snapshot.settlement / final_settlement),
+        Quantity::LoadFactor => return load_factor(case, snapshot.plate_force?),
         Quantity::Pressure | Quantity::EffectiveStress => case.column.pressure_scale(),
         Quantity::Displacement => final_settlement,
     };

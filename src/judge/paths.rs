@@ -226,6 +226,9 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
     if measure.quantity == Quantity::Settlement {
         return Some(coarse.settlement / fine.settlement - 1.0);
     }
+    if measure.quantity == Quantity::LoadFactor {
+        return Some(coarse.plate_force? / fine.plate_force? - 1.0);
+    }
     let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
     let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);
     relative_error(measure.norm, computed, exact, &fine.volume)
@@ -233,7 +236,7 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
 
 /// The norm in which a quantity is reported first.
 pub fn first_norm(quantity: Quantity) -> Norm {
-    if quantity == Quantity::Settlement { Norm::Relative } else { Norm::L2 }
+    if quantity.is_of_surface() { Norm::Relative } else { Norm::L2 }
 }
 
 /// A quantity in its first norm, against a reference at a time factor.

@@ -28,7 +28,7 @@ pub fn start_checks(
     Ok(StartChecks {
         points: samples.pressure.len() + samples.water.as_ref().map_or(0, |water| water.pressure.len()),
         points_expected: case.expected_points(),
-        volume_error: start.totals.volume / case.column.volume() - 1.0,
+        volume_error: start.totals.volume / case.column.volume(case.cells) - 1.0,
         undrained_pressure_error: largest(off).unwrap_or(0.0),
         // Of the load on a cell's width, in the plane.
         unbalanced_force: start.totals.unbalanced_force
@@ -52,7 +52,7 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
     // What the load presses out in the end: of what leaves up to now nothing may be left, as at the start
     // or under a cosine.
     let pressed_out = load / case.material.oedometric_modulus() * case.column.height;
-    let surface = case.column.volume() / case.column.height;
+    let surface = case.column.volume(case.cells) / case.column.height;
     let excess = now.totals.surface_flux - now.totals.water_expansion / surface;
     Balance {
         time_factor,
@@ -112,7 +112,7 @@ mod tests {
     fn curve() -> Vec<HistoryRow> {
         let row = |step: i32| {
             let time_factor = 0.01 * 2_f64.powi(step);
-            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt() }
+            HistoryRow { time_factor, degree_of_consolidation: time_factor.sqrt(), load_factor: None }
         };
         (0..7).map(row).collect()
     }

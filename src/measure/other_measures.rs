@@ -2,9 +2,11 @@
 //! layers.
 
 use crate::case::Case;
+use crate::measure::footing::measures_of_footing;
 use crate::record::{Balance, MeasureRow};
 use oedometer_exact::Reference;
 use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::elementary;
 
 /// Name of the largest nodal velocity over the hydraulic conductivity, of a column at rest.
@@ -22,6 +24,9 @@ pub fn measures_of(
     snapshots: &[Snapshot],
 ) -> Vec<MeasureRow> {
     let Some(own) = own else { return Vec::new() };
+    if case.scene == SceneKind::Footing {
+        return measures_of_footing(case, own, snapshots);
+    }
     let row = |name: &str, time_factor, found, exact| MeasureRow {
         name: name.to_owned(),
         time_factor,

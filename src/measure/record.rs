@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::{LONG_AFTER, snapshot_errors};
+use crate::measure::footing::load_factor;
 use crate::measure::other_measures::measures_of;
 use crate::measure::theory::known_reference;
 use crate::record::provenance::Provenance;
@@ -51,7 +52,10 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
         RunStatus::Failed(failure) => Status::Failed(failure),
     };
     let parameters = column_parameters(&case.column, &case.material);
-    let curve = outcome.history.iter().map(|point| (parameters.time_factor(point.time), point.settlement));
+    let curve = outcome
+        .history
+        .iter()
+        .map(|point| (parameters.time_factor(point.time), point.settlement, point.plate_force));
     let results = Results {
         times: case.time_factors.to_vec(),
         curve: curve.collect(),
@@ -77,7 +81,9 @@ pub fn record_of_attached(
 ) -> Result<Record, ExactError> {
     let parameters = column_parameters(&case.column, &case.material);
     let times: Vec<f64> = snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
-    let curve = times.iter().copied().zip(snapshots.iter().map(|snapshot| snapshot.settlement)).collect();
+    let settled = snapshots.iter().map(|snapshot| (snapshot.settlement, snapshot.plate_force));
+    let curve =
+        times.iter().zip(settled).map(|(time, (settlement, force))| (*time, settlement, force)).collect();
     let steps = StepSizes { predicted_critical: 0.0, target: suggested_step, largest: suggested_step };
     let record = Record { attached: Some(attached), ..empty_record(case, status, steps, 0.0) };
     Results { times, curve, start: None, snapshots }.added_to(record, references)
@@ -87,8 +93,8 @@ pub fn record_of_attached(
 struct Results<'a> {
     /// Time factors of the snapshots.
     times: Vec<f64>,
-    /// Time factors and settlements, m.
-    curve: Vec<(f64, f64)>,
+    /// Time factors, settlements, m, and forces on the plate, N.
+    curve: Vec<(f64, f64, Option<f64>)>,
     /// The state at the start, where it is known.
     start: Option<&'a Snapshot>,
     snapshots: Vec<Snapshot>,
@@ -125,11 +131,13 @@ impl Results<'_> {
             Some(own) if own.kind() == ReferenceKind::AtRest || own.kind().is_manufactured() => {
                 column_parameters(&case.column, &case.material).final_settlement()
             }
+            Some(own) if own.kind() == ReferenceKind::Footing => own.settlement(1.0)?,
             Some(own) => own.settlement(LONG_AFTER)?,
         };
-        let degree = |(time_factor, settlement): &(f64, f64)| HistoryRow {
+        let degree = |(time_factor, settlement, force): &(f64, f64, Option<f64>)| HistoryRow {
             time_factor: *time_factor,
             degree_of_consolidation: settlement / final_settlement,
+            load_factor: force.and_then(|force| load_factor(case, force)),
         };
         let history: Vec<HistoryRow> = self.curve.iter().map(degree).collect();
         let balance = self.start.map_or_else(Vec::new, |start| {

@@ -3,6 +3,7 @@
 use crate::record::{Balance, Record, Status};
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::arrangement::Arrangement;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::typed;
@@ -258,6 +259,9 @@ fn most_pressure(record: &Record) -> Result<f64, &'static str> {
     if case.scene.is_at_rest() {
         return Err("the pressures are those of the weight");
     }
+    if case.scene == SceneKind::Footing {
+        return Err("the plate presses as hard as it has to");
+    }
     let is_full = case.method.own().is_some_and(|method| !method.pressure.is_by_cells());
     if case.scene.is_a_layer() && (is_full || case.material.poissons_ratio > LOCKING) {
         return Err("methods lock under a load that keeps the volume");
@@ -276,6 +280,9 @@ fn shift(record: &Record) -> f64 {
 /// conserve water.
 fn water_bound(record: &Record) -> Result<f64, &'static str> {
     let case = &record.case;
+    if case.scene == SceneKind::Footing {
+        return Err("no water leaves the soil under a footing");
+    }
     if case.material.continuity == Continuity::ConstantPorosityGradient {
         return Err("this form of the continuity does not conserve water");
     }

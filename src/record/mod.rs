@@ -176,6 +176,20 @@ pub struct MeasureRow {
 }
 
 impl MeasureRow {
+    /// Its fields in the order of [`ERROR_COLUMNS`]: a value of the surface, and no error.
+    pub fn csv_fields(&self) -> [String; 6] {
+        let time_factor = self.time_factor.map_or(String::new(), |factor| factor.to_string());
+        let [surface, value] = ["surface", "value"].map(str::to_owned);
+        [
+            time_factor,
+            self.name.clone(),
+            surface,
+            value,
+            self.reference.clone(),
+            format!("{:.16e}", self.found),
+        ]
+    }
+
     /// Error, relative where the exact value is not zero.
     pub fn error(&self) -> f64 {
         if self.exact == 0.0 { self.found } else { self.found / self.exact - 1.0 }
@@ -228,6 +242,9 @@ pub struct HistoryRow {
     pub time_factor: f64,
     /// Settlement over the final settlement of the scene's own reference.
     pub degree_of_consolidation: f64,
+    /// Load of a footing over its width and the strength of the soil.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_factor: Option<f64>,
 }
 
 /// How far a reference itself can be trusted.

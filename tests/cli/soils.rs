@@ -77,3 +77,41 @@ fn impossible_soils_are_refused_at_their_place() {
         assert!(told.err.contains(part), "{set}: {}", told.err);
     }
 }
+
+#[test]
+fn a_footing_prints_its_load_and_locks_with_full_integration() {
+    let loads = |method: &str| -> Vec<f64> {
+        let told = call(
+            Path::new("."),
+            &["solve", "footing", "--cells", "4", "--method", method, "--format", "csv"],
+        );
+        assert_eq!(told.code, 0, "{}", told.err);
+        let of_load = told.out.lines().filter(|line| line.contains(",load_factor,surface,value,"));
+        of_load.map(|line| line.rsplit(',').next().expect("a value").parse().expect("a number")).collect()
+    };
+    let exact = 2.0 + std::f64::consts::PI;
+    let [_, before, after] = loads("GIMP-SRI")[..] else { panic!("three outputs") };
+    assert!((after / exact - 1.0).abs() < 0.1 && (after - before).abs() < 0.02, "{before} {after}");
+    let [_, before, after] = loads("GIMP")[..] else { panic!("three outputs") };
+    assert!(after > 1.15 * exact && after > before, "{before} {after}");
+}
+
+#[test]
+fn impossible_footings_are_refused_at_their_place() {
+    for (scene, more, part) in [
+        ("footing", &["--cells", "5"][..], "take an even number"),
+        ("footing", &["--cells", "4", "--set", "layer.plate_width=5"], "the layer ends under the footing"),
+        ("footing", &["--cells", "4", "--set", "layer.load=5"], "its plate is pushed"),
+        ("footing", &["--cells", "4", "--set", "points.offset=0.1"], "has no [points]"),
+        ("footing", &["--cells", "4", "--set", "material.law=linear"], "is `von-mises`"),
+        ("footing", &["--cells", "4", "--integrator", "explicit"], "the integrator is `implicit`"),
+        ("footing", &["--cells", "4", "--method", "PPP"], "a pressure projection"),
+        ("footing", &["--cells", "4", "--method", "CE-SRI-patch"], "total stress needs one"),
+        ("cosine-layer", &["--cells", "4", "--set", "layer.plate=smooth"], "a plate belongs to"),
+        ("terzaghi", &["--cells", "4", "--set", "material.undrained_strength=1e4"], "has no effect"),
+    ] {
+        let told = call(Path::new("."), &[&["solve", scene, "--format", "csv"], more].concat());
+        assert_eq!((told.code, told.out.as_str()), (2, ""), "{more:?}: {}", told.err);
+        assert!(told.err.contains(part), "{more:?}: {}", told.err);
+    }
+}

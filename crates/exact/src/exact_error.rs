@@ -117,6 +117,11 @@ pub enum ExactError {
         /// `L/H`.
         ratio: f64,
     },
+    /// Fields of a problem in which only the load is unique.
+    #[error(
+        "only the load of a footing at collapse is unique: its fields are not, and have no exact solution"
+    )]
+    NoFields,
     /// Layers that do not fill the column.
     #[error("the layers are {sum} m thick together, and the column is {height} m high: they must fill it")]
     LayersDoNotFill {

@@ -34,6 +34,7 @@ pub mod dynamic_column;
 pub mod exact_error;
 #[doc(hidden)]
 pub mod field_values;
+pub mod footing;
 mod in_seconds;
 pub mod large_strain;
 pub mod layered;

@@ -64,6 +64,8 @@ pub struct ColumnParameters {
     pub soils: SoilLayers,
     /// Effective stress of the start, compression positive, Pa; only a yield front heeds it.
     pub uniform_stress: f64,
+    /// Width of a rigid plate on a layer, m; only a footing heeds it.
+    pub plate_width: f64,
 }
 
 impl Default for ColumnParameters {
@@ -80,6 +82,7 @@ impl Default for ColumnParameters {
             shelf: ShelfParameters::default(),
             soils: SoilLayers::default(),
             uniform_stress: 0.0,
+            plate_width: 0.0,
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::cosine_layer::{CosineLayer, LayerState};
 use crate::dynamic_column::{DynamicColumn, Start};
 use crate::exact_error::ExactError;
 use crate::field_values::{Accuracy, FieldValues};
+use crate::footing::Footing;
 use crate::in_seconds::ColumnInSeconds;
 use crate::large_strain::LargeStrain;
 use crate::large_strain::diffusion::{LargeStrainModel, Water};
@@ -55,6 +56,8 @@ pub enum ReferenceKind {
     YieldFront,
     /// A column that no water leaves.
     SealedElement,
+    /// A strip footing on undrained soil at collapse.
+    Footing,
     /// A motion in the plane that is exact because body forces and a source make it so.
     Manufactured(ManufacturedModel),
     /// A problem that no scene solves.
@@ -64,7 +67,7 @@ pub enum ReferenceKind {
 impl ReferenceKind {
     /// All kinds that a scene solves, in the order of the documentation; large strain and motions with their default
     /// models. [`ShelfProblem::ALL`] has the others.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Terzaghi,
         Self::TerzaghiIncompressible,
         Self::SingleMode,
@@ -80,6 +83,7 @@ impl ReferenceKind {
         Self::Layered,
         Self::YieldFront,
         Self::SealedElement,
+        Self::Footing,
         Self::Manufactured(ManufacturedModel::of(Motion::Box)),
         Self::Manufactured(ManufacturedModel::of(Motion::Shear)),
         Self::Manufactured(ManufacturedModel::of(Motion::Vortex)),
@@ -103,6 +107,7 @@ impl ReferenceKind {
             Self::Layered => "layered",
             Self::YieldFront => "yield-front",
             Self::SealedElement => "sealed-element",
+            Self::Footing => "footing",
             Self::Manufactured(model) => model.motion.name(),
             Self::Shelf(problem) => problem.name(),
         }
@@ -173,6 +178,7 @@ enum Solution {
     Mandel(Mandel),
     AtRest(AtRest),
     InSeconds(Box<ColumnInSeconds>),
+    Footing(Footing),
     Manufactured(Manufactured),
     Shelf(Shelf),
 }
@@ -190,6 +196,7 @@ macro_rules! ask {
             Solution::Mandel($solution) => $answer,
             Solution::AtRest($solution) => $answer,
             Solution::InSeconds($solution) => $answer,
+            Solution::Footing($solution) => $answer,
             Solution::Manufactured($solution) => $answer,
             Solution::Shelf($solution) => $answer,
         }
@@ -247,6 +254,7 @@ impl Reference {
             ReferenceKind::Layered => in_seconds(ColumnInSeconds::layered(parameters)?),
             ReferenceKind::YieldFront => in_seconds(ColumnInSeconds::yield_front(parameters)?),
             ReferenceKind::SealedElement => in_seconds(ColumnInSeconds::sealed(parameters)?),
+            ReferenceKind::Footing => Solution::Footing(Footing::new(parameters)?),
             ReferenceKind::Manufactured(model) => {
                 Solution::Manufactured(Manufactured::new(model, parameters)?)
             }
@@ -405,8 +413,10 @@ mod tests {
     fn every_reference_agrees_with_itself() {
         let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let times = [0.05, 0.3, 1.0];
-        // A yield front wants a soil that yields, and its own tests have one.
-        let is_plain = |kind: &ReferenceKind| !kind.is_manufactured() && *kind != ReferenceKind::YieldFront;
+        // A yield front wants a soil that yields, and its own tests have one; a footing has a load and no fields.
+        let is_other =
+            |kind: &ReferenceKind| matches!(kind, ReferenceKind::YieldFront | ReferenceKind::Footing);
+        let is_plain = |kind: &ReferenceKind| !kind.is_manufactured() && !is_other(kind);
         for kind in ReferenceKind::ALL.into_iter().filter(is_plain) {
             let reference = Reference::new(kind, &column, &times).unwrap();
             assert_eq!(reference.name(), kind.name());

@@ -48,6 +48,8 @@ pub struct Problem<const D: usize> {
     pub load_shape: LoadShape,
     /// Mean pressure, Pa, under a rigid plate on the upper face of the first direction, where there is one.
     pub plate_load: Option<f64>,
+    /// Rigid plate that is pushed into the surface, where there is one.
+    pub driven_plate: Option<DrivenPlate>,
     /// Gravity, m/s², that skeleton and water weigh with, where they do; the pressures of the points are those
     /// beyond the hydrostatic one, and their stresses are those of the weight.
     pub weight: Option<f64>,
@@ -100,6 +102,15 @@ impl<const D: usize> Problem<D> {
     pub fn most_of_soils(&self, quantity: impl Fn(&Material) -> f64) -> f64 {
         self.soils.iter().map(quantity).fold(0.0, f64::max)
     }
+}
+
+/// A rigid plate that settles at a given velocity; its place is that of the support.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenPlate {
+    /// Velocity, downward positive, m/s.
+    pub velocity: f64,
+    /// Whether the soil is skeleton and water that stays where it is, and not one phase of total stress.
+    pub has_water: bool,
 }
 
 /// The discretised body during a run.

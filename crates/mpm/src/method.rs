@@ -62,6 +62,15 @@ impl StrainGradient {
     pub fn is_bbar(self) -> bool {
         matches!(self, Self::Bbar | Self::CmpmBbar)
     }
+
+    /// The same with the volumetric strain of the pressure's divergence, where there is one.
+    pub fn with_bbar(self) -> Option<Self> {
+        match self {
+            Self::Standard | Self::Bbar => Some(Self::Bbar),
+            Self::Cmpm | Self::CmpmBbar => Some(Self::CmpmBbar),
+            Self::CmpmEnds => None,
+        }
+    }
 }
 
 /// Where the divergence that drives the pore pressure is taken.

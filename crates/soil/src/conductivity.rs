@@ -31,7 +31,7 @@ impl Law {
     #[inline]
     pub fn conductivity(self, initial: f64, volume_ratio: f64) -> f64 {
         match self {
-            Self::Linear | Self::Preconsolidated => initial,
+            Self::Linear | Self::Preconsolidated | Self::VonMises => initial,
             Self::LogLinear | Self::PorosityDependent | Self::Engineering | Self::NeoHookean => {
                 initial * volume_ratio * volume_ratio
             }
@@ -51,7 +51,7 @@ impl Law {
     pub fn flow_potential(self, strain: f64) -> f64 {
         match self {
             // κ = 1/J, dσ' = dJ/J
-            Self::Linear | Self::Preconsolidated => strain / (1.0 + strain),
+            Self::Linear | Self::Preconsolidated | Self::VonMises => strain / (1.0 + strain),
             // κ = J, dσ' = dJ/J
             Self::LogLinear | Self::Engineering => strain,
             // κ = J, dσ' = dJ/J²
@@ -67,7 +67,7 @@ impl Law {
         match self {
             Self::Linear | Self::LogLinear | Self::Engineering => elementary::exp_m1(-compression),
             Self::PorosityDependent => -compression / (1.0 + compression),
-            Self::NeoHookean | Self::Preconsolidated => f64::NAN,
+            Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
         }
     }
 }

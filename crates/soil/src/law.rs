@@ -2,6 +2,7 @@
 //! configuration. Every integrator updates stresses by [`StressLaw::update`].
 
 use crate::elementary;
+use crate::plasticity::{Components, PointLaw, PointState, Tangent, VonMises};
 use crate::tensor::{Tensor, product_with_transpose};
 use crate::wording::words;
 
@@ -25,11 +26,15 @@ pub enum Law {
     /// Oedometric law with a memory: a constant modulus up to the largest effective stress so far, a lower one for first
     /// loading beyond it, and constant conductivity (docs/theory.md, section 2).
     Preconsolidated,
+    /// Linear elasticity, perfect plasticity of von Mises with the undrained shear strength as its shear strength, which is
+    /// Tresca's in plane strain, and constant conductivity ([`VonMises`]).
+    VonMises,
 }
 
 words!(
     Law: Linear "linear", LogLinear "log-linear", PorosityDependent "porosity-dependent",
-    Engineering "engineering", NeoHookean "neo-hookean", Preconsolidated "preconsolidated"
+    Engineering "engineering", NeoHookean "neo-hookean", Preconsolidated "preconsolidated",
+    VonMises "von-mises"
 );
 
 impl Law {
@@ -48,7 +53,7 @@ impl Law {
     /// the start serves for a whole run.
     #[inline]
     pub fn has_history(self) -> bool {
-        self == Self::Preconsolidated
+        matches!(self, Self::Preconsolidated | Self::VonMises)
     }
 
     /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
@@ -58,9 +63,12 @@ impl Law {
     pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
         match self {
             // The engineering law has E_0/J against dJ, and that is E_0 against dJ/J.
-            Self::Linear | Self::LogLinear | Self::Engineering | Self::NeoHookean | Self::Preconsolidated => {
-                1.0
-            }
+            Self::Linear
+            | Self::LogLinear
+            | Self::Engineering
+            | Self::NeoHookean
+            | Self::Preconsolidated
+            | Self::VonMises => 1.0,
             Self::PorosityDependent => 1.0 / (before * after).sqrt(),
         }
     }
@@ -73,7 +81,7 @@ impl Law {
         match self {
             Self::Linear | Self::LogLinear | Self::Engineering => elementary::ln_1p(strain),
             Self::PorosityDependent => strain / (1.0 + strain),
-            Self::NeoHookean | Self::Preconsolidated => f64::NAN,
+            Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
         }
     }
 
@@ -85,7 +93,7 @@ impl Law {
             Self::LogLinear | Self::Engineering => -elementary::exp_m1(-compression),
             Self::PorosityDependent => compression / (1.0 + compression),
             Self::Linear => compression,
-            Self::NeoHookean | Self::Preconsolidated => f64::NAN,
+            Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
         }
     }
 }
@@ -154,6 +162,20 @@ pub struct StrainIncrement<const D: usize> {
     pub volume_ratio: [f64; 2],
 }
 
+impl<const D: usize> StrainIncrement<D> {
+    /// Its components `xx, yy, zz, xy`. The volume that B-bar adds is shared by three directions, also by those in which
+    /// nothing is displaced (Hughes 1980, Eq. 12).
+    #[inline]
+    pub fn components(&self) -> Components {
+        let (gradient, third) = (&self.gradient, self.dilation / 3.0);
+        let normal = |d: usize| gradient[d][d] - self.dilation / D as f64 + third;
+        if D == 1 {
+            return [third, normal(0), third, 0.0];
+        }
+        [normal(0), normal(D - 1), third, 0.5 * (gradient[0][D - 1] + gradient[D - 1][0])]
+    }
+}
+
 /// What a soil keeps at a point beside the stresses in the plane of the problem, of laws that
 /// [have one](Law::has_history).
 ///
@@ -162,9 +184,13 @@ pub struct StrainIncrement<const D: usize> {
 /// forgotten with its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct History {
+    /// Effective stress normal to the plane of the problem, Pa, tension positive: of [`Law::VonMises`] alone.
+    pub lateral_stress: f64,
     /// Stress at which the soil yields now, Pa: of [`Law::Preconsolidated`] the largest vertical effective stress so far,
     /// compression positive.
     pub yield_stress: f64,
+    /// Equivalent plastic strain: of [`Law::VonMises`] alone.
+    pub plastic_strain: f64,
 }
 
 /// A law with the stiffness of a soil: what an effective stress follows from.
@@ -176,6 +202,8 @@ pub struct StressLaw {
     pub stiffness: Stiffness,
     /// Modulus of first loading over that of the initial state, at most 1; 1 where they are one.
     pub virgin_share: f64,
+    /// Shear strength, Pa, of [`Law::VonMises`].
+    pub strength: f64,
 }
 
 impl StressLaw {
@@ -208,6 +236,10 @@ impl StressLaw {
             *stress = self.stiffness.neo_hookean_stress(&deformation(), after, elementary::ln(after));
             return;
         }
+        if self.law == Law::VonMises {
+            self.update_plastic(stress, history, &strain.components());
+            return;
+        }
         let change = self.elastic_stress(&strain.gradient, strain.dilation);
         let modulus = if self.law == Law::Preconsolidated {
             self.preconsolidated_share(
@@ -227,6 +259,33 @@ impl StressLaw {
 }
 
 impl StressLaw {
+    /// Takes a point of [`Law::VonMises`] through a strain increment `xx, yy, zz, xy`; the derivative of its stress by the
+    /// increment, Pa, the consistent tangent.
+    pub fn update_plastic<const D: usize>(
+        &self,
+        stress: &mut Tensor<D>,
+        history: &mut History,
+        strain: &Components,
+    ) -> Tangent {
+        let (up, zz) = (D - 1, history.lateral_stress);
+        let before = if D == 1 {
+            [zz, stress[up][up], zz, 0.0]
+        } else {
+            [stress[0][0], stress[up][up], zz, stress[0][up]]
+        };
+        let state =
+            PointState { stress: before, plastic_strain: history.plastic_strain, ..PointState::default() };
+        let law = VonMises { stiffness: self.stiffness, strength: self.strength };
+        let (after, tangent) = law.update(&state, strain);
+        let [xx, yy, zz, xy] = after.stress;
+        if D > 1 {
+            (stress[0][0], stress[0][up], stress[up][0]) = (xx, xy, xy);
+        }
+        stress[up][up] = yy;
+        (history.lateral_stress, history.plastic_strain) = (zz, after.plastic_strain);
+        tangent
+    }
+
     /// Secant modulus over the initial one of a step from a vertical compression, Pa, that would grow by `elastic` at the
     /// initial modulus. What of it goes beyond the yield stress goes at the modulus of first loading, and takes the yield
     /// stress along: exact for a step of any size.
@@ -258,7 +317,7 @@ mod tests {
         // E_oed = 1.2 MPa: strains to 30 and on to 60 kPa, back to 20 and on to 80 kPa.
         let path = [3e4 / 4.8e6 + 3e4 / 1.2e6, -4e4 / 4.8e6, 4e4 / 4.8e6 + 2e4 / 1.2e6];
         for steps in [1, 7] {
-            let mut history = History { yield_stress: soil.preconsolidation };
+            let mut history = History { yield_stress: soil.preconsolidation, ..History::default() };
             let mut stress = [[0.0; 2]; 2];
             for (strain, expected) in path.into_iter().zip([6e4, 2e4, 8e4]) {
                 let mut gradient = [[0.0; 2]; 2];

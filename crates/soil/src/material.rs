@@ -38,6 +38,9 @@ pub struct Material {
     /// Largest vertical effective stress so far, Pa, of a preconsolidated soil; zero of others.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub preconsolidation: f64,
+    /// Undrained shear strength `c_u`, Pa, of a soil that yields by von Mises' condition; zero of others.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub undrained_strength: f64,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -63,6 +66,7 @@ impl Default for Material {
             conductivity_mean: ConductivityMean::Points,
             reload_modulus: 0.0,
             preconsolidation: 0.0,
+            undrained_strength: 0.0,
         }
     }
 }
@@ -120,7 +124,12 @@ impl Material {
     /// The law with its stiffness, by which stresses are updated.
     #[inline]
     pub fn stress_law(&self) -> StressLaw {
-        StressLaw { law: self.law, stiffness: self.stiffness(), virgin_share: 1.0 / self.stiffening() }
+        StressLaw {
+            law: self.law,
+            stiffness: self.stiffness(),
+            virgin_share: 1.0 / self.stiffening(),
+            strength: self.undrained_strength,
+        }
     }
 
     /// Oedometric modulus of the initial state over that of first loading: above 1 where the soil is preconsolidated.
@@ -169,7 +178,7 @@ mod tests {
     fn conductivity_falls_with_the_square_of_the_volume_but_for_laws_of_small_strain() {
         for law in Law::ALL {
             let soil = Material { law, ..Material::default() };
-            let is_constant = matches!(law, Law::Linear | Law::Preconsolidated);
+            let is_constant = matches!(law, Law::Linear | Law::Preconsolidated | Law::VonMises);
             let expected = if is_constant { 1e-4 } else { 0.64e-4 };
             assert!((soil.hydraulic_conductivity_at(0.8) / expected - 1.0).abs() < 1e-14);
         }

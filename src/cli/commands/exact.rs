@@ -10,6 +10,7 @@ use clap::ValueEnum;
 use oedometer_exact::ShelfProblem;
 use oedometer_exact::consolidation;
 use oedometer_exact::field_values::Accuracy;
+use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
@@ -107,6 +108,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let (rows, accuracy) = if kind == ReferenceKind::Mandel {
         slab_rows(&parameters, &time_factors, arguments)?
+    } else if kind == ReferenceKind::Footing {
+        load_rows(&parameters, &time_factors)?
     } else {
         column_rows(kind, &parameters, &time_factors, arguments)?
     };
@@ -220,6 +223,20 @@ fn slab_rows(
             ]));
         }
         accuracy.push(Truncation::of(time_factor, slab.accuracy(time_factor)?));
+    }
+    Ok((rows, accuracy))
+}
+
+/// The load factor of a footing at collapse, whatever the settlement.
+fn load_rows(
+    parameters: &ColumnParameters,
+    time_factors: &[f64],
+) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
+    let reference = Reference::new(ReferenceKind::Footing, parameters, time_factors)?;
+    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
+    for &time_factor in time_factors {
+        rows.push(PrintedRow(vec![("time_factor", time_factor), ("load_factor", LOAD_FACTOR)]));
+        accuracy.push(Truncation::of(time_factor, reference.accuracy(time_factor)?));
     }
     Ok((rows, accuracy))
 }

@@ -19,6 +19,7 @@ use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
 use oedometer_mpm::run::profile::{PhaseTime, profiled};
 use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
+use oedometer_mpm::scene::SceneKind;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -79,7 +80,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let record = record?;
     match arguments.format {
         SolveFormat::Csv => {
-            print_data(&csv_of(ERROR_COLUMNS, record.errors.iter().map(|row| row.csv_fields().to_vec()))?)?;
+            let errors = record.errors.iter().map(|row| row.csv_fields().to_vec());
+            // Of a footing the load itself is asked for, beside its error.
+            let is_footing = record.case.scene == SceneKind::Footing;
+            let loads = record.measures.iter().filter(|_| is_footing).map(|row| row.csv_fields().to_vec());
+            print_data(&csv_of(ERROR_COLUMNS, errors.chain(loads))?)?;
         }
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
         SolveFormat::Table => print_data(&measures::table_of(&record)?)?,

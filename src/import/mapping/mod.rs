@@ -335,7 +335,7 @@ impl Mapping {
         let is_needed = |quantity: Quantity| match quantity {
             Quantity::Pressure => self.stress.is == StressKind::Total,
             Quantity::Displacement => is_current,
-            Quantity::EffectiveStress | Quantity::Settlement => false,
+            Quantity::EffectiveStress | Quantity::Settlement | Quantity::LoadFactor => false,
         };
         let may_lack = |quantity: &Quantity| quantities.contains(quantity) && !is_needed(*quantity);
         let columns =

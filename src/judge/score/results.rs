@@ -224,7 +224,7 @@ impl Scored {
             let of_scene = match held.mapping.whole_volume {
                 Some(volume) => vec![volume],
                 None if matches!(own, ReferenceKind::Shelf(_)) => Vec::new(),
-                None if held.case.scene.has_plane_fields() => vec![column.volume()],
+                None if held.case.scene.has_plane_fields() => vec![column.volume(held.case.cells)],
                 None => {
                     let widths = [Some(1.0), Some(column.extent()), self.run.width];
                     widths.into_iter().flatten().map(|width| column.height * width).collect()

@@ -79,7 +79,7 @@ impl ExactFields {
         match quantity {
             Quantity::Pressure => &self.pressure,
             Quantity::EffectiveStress => &self.effective_stress,
-            Quantity::Displacement | Quantity::Settlement => &self.displacement,
+            Quantity::Displacement | Quantity::Settlement | Quantity::LoadFactor => &self.displacement,
         }
     }
 }

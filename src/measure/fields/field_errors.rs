@@ -2,8 +2,9 @@
 
 use crate::case::{Case, Norm, Quantity, Sample};
 use crate::measure::fields::{FieldDifference, exact_samples};
+use crate::measure::footing::load_error;
 use crate::record::ErrorRow;
-use oedometer_exact::{ExactError, Reference};
+use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 
 /// Norms of a field's error.
@@ -112,6 +113,9 @@ pub fn snapshot_errors(
     time_factor: f64,
     snapshot: &Snapshot,
 ) -> Result<Vec<ErrorRow>, ExactError> {
+    if reference.kind() == ReferenceKind::Footing {
+        return Ok(load_error(case, reference, time_factor, snapshot).into_iter().collect());
+    }
     let load = case.column.pressure_scale();
     let final_settlement = reference.displacement_scale(LONG_AFTER)?;
     let resolution = resolution(reference, time_factor);
@@ -161,7 +165,6 @@ fn displacement_components(samples: &Samples) -> Vec<f64> {
 mod tests {
     use super::*;
     use oedometer_exact::parameters::ColumnParameters;
-    use oedometer_exact::reference::ReferenceKind;
 
     fn field(scale: f64, resolution: f64) -> FieldError<'static> {
         let (quantity, sample) = (Quantity::Pressure, Sample::Points);

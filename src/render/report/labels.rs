@@ -102,6 +102,7 @@ pub fn quantity(quantity: Quantity) -> &'static str {
         Quantity::EffectiveStress => "effective stress",
         Quantity::Displacement => "displacement",
         Quantity::Settlement => "settlement",
+        Quantity::LoadFactor => "load factor",
     }
 }
 
@@ -144,7 +145,7 @@ pub fn axis(axis: Axis) -> &'static str {
 /// Label of an error's axis.
 pub fn error_axis(measure: &Measure) -> String {
     match measure.quantity {
-        Quantity::Settlement => "relative error of settlement (–)".to_owned(),
+        one if one.is_of_surface() => format!("relative error of {} (–)", quantity(one)),
         other => format!("relative L_2 error, {} (–)", quantity(other)),
     }
 }

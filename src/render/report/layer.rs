@@ -10,13 +10,15 @@ use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::scene::SceneKind;
 
 /// Cells over the height of the runs whose fields are drawn.
 const SHOWN_CELLS: usize = 8;
 
 /// Fields and sweeps of a study of a layer; empty for a column.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
-    if !results.study.scene.has_plane_fields() {
+    let scene = results.study.scene;
+    if !scene.has_plane_fields() || scene == SceneKind::Footing {
         return Ok(Vec::new());
     }
     let mut blocks = Vec::new();

@@ -2,6 +2,7 @@
 
 mod checks;
 pub(crate) mod cost;
+mod footing;
 pub(crate) mod labels;
 pub(crate) mod layer;
 mod maps;

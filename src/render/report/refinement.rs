@@ -11,10 +11,13 @@ use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::WINDOW;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::SceneKind;
 
 /// Quantities of the figures, side by side: the settlement of a column, the displacement of a layer.
 fn panels(results: &StudyResults<'_>) -> [(Quantity, Sample); 4] {
-    let of_the_body = if results.study.scene.has_plane_fields() {
+    let of_the_body = if results.study.scene == SceneKind::Footing {
+        (Quantity::LoadFactor, Sample::Surface)
+    } else if results.study.scene.has_plane_fields() {
         (Quantity::Displacement, Sample::Nodes)
     } else {
         (Quantity::Settlement, Sample::Surface)

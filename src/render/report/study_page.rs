@@ -5,7 +5,7 @@ use crate::judge::judgement::Judgement;
 use crate::render::checks::verdicts::judgements_table;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
-    StudyResults, checks, cost, layer, maps, race, refinement, survival, theory_lines,
+    StudyResults, checks, cost, footing, layer, maps, race, refinement, survival, theory_lines,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{runs, uncertainties};
@@ -28,6 +28,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     } else {
         blocks.extend(survival::survival(results).map(Block::Table));
         blocks.extend(maps::cheapest_methods(results));
+        blocks.extend(footing::blocks(results));
         blocks.extend(layer::blocks(results)?);
         blocks.extend(theory_lines::blocks(results)?);
         for axis in Axis::REFINEMENTS {

@@ -37,7 +37,7 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
     let rows = carriers.iter().map(|carrier| {
         let row = &carrier.row;
         let main = match row.quantity {
-            Quantity::Settlement => Cell::Percent(row.value),
+            Quantity::Settlement | Quantity::LoadFactor => Cell::Percent(row.value),
             _ => Cell::Error(row.value),
         };
         let mut cells = vec![

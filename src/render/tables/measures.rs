@@ -8,6 +8,7 @@ use crate::record::{PhaseTime, Record, Status};
 use crate::render::error::RenderError;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use oedometer_mpm::scene::SceneKind;
 use std::fmt::Write;
 
 /// Errors of a record, start checks and balances, as text.
@@ -27,7 +28,10 @@ pub fn errors_table(record: &Record) -> Table {
     columns.extend(case.time_factors.iter().map(|factor| TableColumn::number(format!("T_v {factor}"))));
     let mut rows = Vec::new();
     for reference in &record.references {
-        for (quantity, sample, norm) in MEASURES {
+        let is_footing = case.scene == SceneKind::Footing;
+        for (quantity, sample, norm) in
+            MEASURES.into_iter().filter(|one| (one.0 == Quantity::LoadFactor) == is_footing)
+        {
             let errors = case.time_factors.iter().map(|factor| {
                 match record.error(quantity, sample, norm, &reference.name, *factor) {
                     Some(row) if norm == Norm::Relative => Cell::Percent(row.value),
@@ -51,12 +55,13 @@ pub fn errors_table(record: &Record) -> Table {
         .note(work_note(record))
 }
 
-const MEASURES: [(Quantity, Sample, Norm); 5] = [
+const MEASURES: [(Quantity, Sample, Norm); 6] = [
     (Quantity::Pressure, Sample::Points, Norm::L2),
     (Quantity::Pressure, Sample::Centres, Norm::L2),
     (Quantity::EffectiveStress, Sample::Points, Norm::L2),
     (Quantity::Displacement, Sample::Nodes, Norm::L2),
     (Quantity::Settlement, Sample::Surface, Norm::Relative),
+    (Quantity::LoadFactor, Sample::Surface, Norm::Relative),
 ];
 
 /// Why a relative error has no value.

@@ -60,7 +60,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
 
 fn error_cell(row: Option<&ErrorRow>) -> Cell {
     match row {
-        Some(row) if row.quantity == Quantity::Settlement => Cell::Percent(row.value),
+        Some(row) if row.quantity.is_of_surface() => Cell::Percent(row.value),
         Some(row) => Cell::Error(row.value),
         None => Cell::missing(NOT_RESOLVED),
     }

@@ -34,6 +34,8 @@ pub(super) struct Subject<'a> {
     pub(super) planned: &'a [PlannedCase],
     /// Height of all cases, by which the levels of expectations are sized; none where they have several.
     pub(super) height: Option<f64>,
+    /// Width of the plate that cells are counted over, m, where there is one.
+    pub(super) plate_width: Option<f64>,
 }
 
 impl Checker<'_> {
@@ -55,19 +57,23 @@ impl Checker<'_> {
         let time_factor = self.time_factor_of(table.time_factor.as_ref(), table.span())?;
         let selection = self.selection(&table.inputs, subject.scene);
         let height = self.height_of(&selection, table.span(), subject.height)?;
+        let size = |cells: usize| match subject.plate_width {
+            Some(width) => width / (cells + 1) as f64,
+            None => height / cells as f64,
+        };
         let demand = Demand {
             order: table.order.as_ref().map(|order| OrderBand {
                 value: order.value,
                 minus: order.minus.unwrap_or(DEFAULT_BAND),
                 plus: order.plus.unwrap_or(DEFAULT_BAND),
             }),
-            at: table.at.as_ref().and_then(|level| self.error_bound(level, table.axis, height)),
+            at: table.at.as_ref().and_then(|level| self.error_bound(level, table.axis, &size)),
             class: table.class,
             floor: table.floor.as_ref().map(|floor| FloorBand {
                 above: floor.above.unwrap_or(0.0),
                 below: floor.below.unwrap_or(f64::MAX),
             }),
-            spread: table.spread.as_ref().and_then(|level| self.error_bound(level, table.axis, height)),
+            spread: table.spread.as_ref().and_then(|level| self.error_bound(level, table.axis, &size)),
             uncertainty_below: table.uncertainty.as_ref().map(|bound| bound.below),
             oscillation_below: table.oscillation.as_ref().map(|bound| bound.below),
             xfail: table.xfail.as_ref().map(|known| KnownFailure {
@@ -194,7 +200,7 @@ impl Checker<'_> {
         own_word: Option<&str>,
     ) {
         let is_value = own_word == Some(NO_REFERENCE);
-        let is_field = table.quantity != Quantity::Settlement;
+        let is_field = !table.quantity.is_of_surface();
         let depth = table.probe.as_deref().copied().unwrap_or(0.5);
         let [probe, uncertainty, at, oscillation, reference] = [
             table.probe.as_ref().map(Placed::span),
@@ -277,11 +283,11 @@ impl Checker<'_> {
         sample: Option<&Placed<Sample>>,
         norm: Option<&Placed<Norm>>,
     ) -> Option<(Sample, Norm)> {
-        let is_settlement = quantity == Quantity::Settlement;
+        let is_settlement = quantity.is_of_surface();
         let (usual, subject, help) = if is_settlement {
             (
                 (Sample::Surface, Norm::Relative),
-                "a settlement",
+                if quantity == Quantity::Settlement { "a settlement" } else { "a load factor" },
                 "it is measured at the \"surface\", \"relative\" to the exact one: leave the key out",
             )
         } else {
@@ -332,11 +338,14 @@ impl Checker<'_> {
     }
 
     /// A bound at a level that is named in the words of its axis.
-    fn error_bound(&mut self, level: &Placed<LevelTable>, axis: Axis, height: f64) -> Option<ErrorBound> {
+    fn error_bound(
+        &mut self,
+        level: &Placed<LevelTable>,
+        axis: Axis,
+        size: &dyn Fn(usize) -> f64,
+    ) -> Option<ErrorBound> {
         let size = match axis {
-            Axis::Cells => self
-                .count(level.cells.as_ref(), "at.cells", 1..=MOST_CELLS)
-                .map(|cells| height / cells as f64),
+            Axis::Cells => self.count(level.cells.as_ref(), "at.cells", 1..=MOST_CELLS).map(size),
             Axis::PointsPerCell => self
                 .count(level.points_per_cell.as_ref(), "at.points_per_cell", 1..=MOST_POINTS)
                 .map(|points| 1.0 / points as f64),

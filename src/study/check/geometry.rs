@@ -67,7 +67,8 @@ impl Checker<'_> {
         let [layer, manufactured] = [&file.layer, &file.manufactured];
         let of_column = file.column.inputs.first_span();
         let strain = file.column.strain.as_ref().map(Placed::span).filter(|_| scene.is_manufactured());
-        let of_points = file.points.inputs.first_span().filter(|_| scene.is_manufactured());
+        let on_lattice = scene.is_manufactured() || scene == SceneKind::Footing;
+        let of_points = file.points.inputs.first_span().filter(|_| on_lattice);
         for (table, place) in [
             ("column", of_column.or(strain)),
             ("layer", layer.as_ref().map(Placed::span)),
@@ -83,7 +84,12 @@ impl Checker<'_> {
             }
         }
         match own {
-            "layer" => layer.as_ref().map_or(Vec::new(), |table| self.inputs(own, &table.inputs, seed)),
+            "layer" => layer.as_ref().map_or(Vec::new(), |table| {
+                for (key, typed) in &table.inputs.0 {
+                    self.footing_fits(key, typed.span(), scene);
+                }
+                self.inputs(own, &table.inputs, seed)
+            }),
             "manufactured" => manufactured.as_ref().map_or(Vec::new(), |table| {
                 for (key, typed) in &table.inputs.0 {
                     self.amplitude_fits(key, typed.span(), scene);
@@ -186,6 +192,17 @@ impl Checker<'_> {
         layers
     }
 
+    /// Complains of a footing's inputs where there is none, and of a load where one is pushed.
+    fn footing_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
+        let is_footing = scene == SceneKind::Footing;
+        let message = || format!("the scene `{}` has no `{}`", scene.name(), key.name);
+        if is_footing && key.name == "load" {
+            self.complain(place, message(), "its plate is pushed, and the load is what it is asked for");
+        } else if !is_footing && ["plate_width", "plate", "undrained"].contains(&key.name) {
+            self.complain(place, message(), "a plate belongs to the scene \"footing\"");
+        }
+    }
+
     /// Complains where a motion has no such amplitude.
     fn amplitude_fits(&mut self, key: &Key, place: Range<usize>, scene: SceneKind) {
         if let Some(why) = scene.refuses_input_of_motion(key.name) {
@@ -198,6 +215,7 @@ impl Checker<'_> {
         let own = scene.table_of_geometry();
         for (key, list) in &inputs.0 {
             self.amplitude_fits(key, list.span(), scene);
+            self.footing_fits(key, list.span(), scene);
             let takes = |table: &str| key.tables.contains(&table);
             let is_geometry = ["column", "layer", "manufactured"].into_iter().any(takes);
             if (scene.is_manufactured() && takes("points")) || (is_geometry && !takes(own)) {
@@ -209,10 +227,14 @@ impl Checker<'_> {
 
     /// Complains of what a soil remembers where the scene's does not.
     pub(super) fn soil_remembers(&mut self, material: &Inputs, scene: SceneKind) {
-        for key in ["reload_modulus", "preconsolidation"] {
-            if let Some(place) = material.span(key).filter(|_| scene != SceneKind::YieldFront) {
+        for (key, own) in [
+            ("reload_modulus", SceneKind::YieldFront),
+            ("preconsolidation", SceneKind::YieldFront),
+            ("undrained_strength", SceneKind::Footing),
+        ] {
+            if let Some(place) = material.span(key).filter(|_| scene != own) {
                 let message = format!("`{key}` has no effect in the scene `{}`", scene.name());
-                self.complain(place, message, "it belongs to the scene \"yield-front\"");
+                self.complain(place, message, format!("it belongs to the scene \"{}\"", own.name()));
             }
         }
     }

@@ -224,6 +224,9 @@ impl Checker<'_> {
                 case.column.points.name_water_points(case.points_per_cell);
                 if let Some(strain) = strain {
                     case.column.load = load_of(strain, &case);
+                } else if scene == SceneKind::Footing {
+                    // What the soil bears is what pressures are measured by.
+                    case.column.load = case.material.undrained_strength;
                 }
                 case
             };
@@ -252,7 +255,8 @@ impl Checker<'_> {
         let height = planned.first().map_or(base.column.height, |planned| planned.case.column.height);
         let is_common = planned.iter().all(|planned| planned.case.column.height == height);
         let height = is_common.then_some(height);
-        let subject = Subject { scene, references: &references, planned: &planned, height };
+        let plate_width = (scene == SceneKind::Footing).then_some(base.column.footing.width);
+        let subject = Subject { scene, references: &references, planned: &planned, height, plate_width };
         let expectations = file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
         let case_expectations =
             file.expect_case.iter().filter_map(|table| self.case_expectation(table, &subject)).collect();

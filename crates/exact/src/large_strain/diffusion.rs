@@ -102,8 +102,8 @@ impl Diffusion {
             }
             Law::LogLinear | Law::Engineering => (volume.recip(), volume, volume.recip()),
             Law::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
-            // Refused before: nothing follows from NaN.
-            Law::NeoHookean | Law::Preconsolidated => (f64::NAN, f64::NAN, f64::NAN),
+            // Refused before: nothing follows from what is no number.
+            Law::NeoHookean | Law::Preconsolidated | Law::VonMises => (f64::NAN, f64::NAN, f64::NAN),
         };
         let pores = volume - (1.0 - self.porosity);
         let dropped = match self.model.continuity {

@@ -56,7 +56,11 @@ impl ManufacturedModel {
         match self.law {
             Law::NeoHookean => true,
             Law::LogLinear => self.motion == Motion::Box,
-            Law::Linear | Law::PorosityDependent | Law::Engineering | Law::Preconsolidated => false,
+            Law::Linear
+            | Law::PorosityDependent
+            | Law::Engineering
+            | Law::Preconsolidated
+            | Law::VonMises => false,
         }
     }
 }

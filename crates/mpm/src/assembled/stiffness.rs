@@ -2,7 +2,6 @@
 
 use crate::body::Body;
 use crate::operators::volumetric::{VectorRow, VolumetricRows};
-use oedometer_soil::law::StressLaw;
 use oedometer_soil::tensor::{Tensor, Vector, dot};
 
 /// A sparse matrix of `D × D` blocks between nodes.
@@ -16,6 +15,20 @@ impl<const D: usize> NodeBlocks<D> {
     /// No block at all, for a number of nodes.
     pub fn zero(nodes: usize) -> Self {
         Self { rows: vec![Vec::new(); nodes] }
+    }
+
+    /// Product with a nodal field.
+    pub fn product(&self, field: &[Vector<D>]) -> Vec<Vector<D>> {
+        let of_row = |row: &Vec<(usize, Tensor<D>)>| {
+            let mut sum = [0.0; D];
+            for (column, block) in row {
+                for d in 0..D {
+                    sum[d] += dot(&block[d], &field[*column]);
+                }
+            }
+            sum
+        };
+        self.rows.iter().map(of_row).collect()
     }
 
     /// The block between two nodes, inserted if missing.
@@ -126,16 +139,37 @@ impl<const D: usize> Body<D> {
     /// N/m, with its sign turned.
     pub fn skeleton_stiffness(&self, rows: &VolumetricRows<D>) -> NodeBlocks<D> {
         let mut blocks = NodeBlocks::zero(self.nodes.len());
+        self.add_stiffness(
+            &mut blocks,
+            |point| self.strain_row(point, rows),
+            |point, gradient, dilation| self.stress_law_of(point).elastic_stress(gradient, dilation),
+        );
+        blocks
+    }
+
+    /// Adds `Σ V ∇N ⊗ C G` for the strain rows of the points and a stress, Pa, that each point makes of a small gradient and
+    /// of the volume in it that B-bar adds.
+    pub fn add_stiffness<Row: AsRef<[StrainEntry<D>]>>(
+        &self,
+        blocks: &mut NodeBlocks<D>,
+        strain_row: impl Fn(usize) -> Row,
+        stress: impl Fn(usize, &Tensor<D>, f64) -> Tensor<D>,
+    ) {
         // Stress of a unit displacement along each direction of each node that strains a point.
         let mut stresses: Vec<(usize, [Tensor<D>; D])> = Vec::new();
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
+            let of_unit = |entry: &StrainEntry<D>| {
+                let along = |e: usize| {
+                    let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
+                    unit[e] = 1.0;
+                    entry.add_to(&mut displaced, &unit);
+                    stress(point, &displaced, entry.dilation[e])
+                };
+                (entry.node, std::array::from_fn(along))
+            };
             stresses.clear();
-            stresses.extend(
-                self.strain_row(point, rows)
-                    .iter()
-                    .map(|entry| (entry.node, unit_stresses(self.stress_law_of(point), entry))),
-            );
+            stresses.extend(strain_row(point).as_ref().iter().map(of_unit));
             for (row, force) in self.basis.gradient_row(&self.grid, point) {
                 let (row, mut place) = (&mut blocks.rows[row], 0);
                 for (column, stresses) in &stresses {
@@ -148,7 +182,6 @@ impl<const D: usize> Body<D> {
                 }
             }
         }
-        blocks
     }
 
     /// `A = Σ V ∇N ⊗ R`: force on the nodes of unit pressures at the sites, `[node] → (site, N/Pa)`.
@@ -177,16 +210,6 @@ impl<const D: usize> Body<D> {
         }
         forces
     }
-}
-
-/// Stress by a law of a unit displacement along each direction.
-fn unit_stresses<const D: usize>(law: &StressLaw, entry: &StrainEntry<D>) -> [Tensor<D>; D] {
-    std::array::from_fn(|e| {
-        let (mut displaced, mut unit) = ([[0.0; D]; D], [0.0; D]);
-        unit[e] = 1.0;
-        entry.add_to(&mut displaced, &unit);
-        law.elastic_stress(&displaced, entry.dilation[e])
-    })
 }
 
 /// `K_p = A Q D`: force of the pressures of an undrained body over its displacements, N/m, with its sign

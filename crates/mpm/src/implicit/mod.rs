@@ -4,12 +4,14 @@
 //! - `linear_system`: the frozen body as `C ẋ + K x = g`; `linear`: SDIRK2 on it, one factorisation per step size;
 //! - `trial`: a moving or inertial body at a trial state, strained by `straining`; `residual`: what its balances leave;
 //!   `tangent`: the residual's differences; `secants`: rank-one corrections of an old tangent; `guess`: where the
-//!   iteration of a stage begins; `newton`: SDIRK2 with Newton's iteration.
+//!   iteration of a stage begins; `newton`: SDIRK2 with Newton's iteration;
+//! - `driven`: a plate that is pushed into a frozen body which yields, by the consistent tangent of its points.
 //!
 //! SDIRK2 (Alexander 1977) has two stages with one matrix, and is L-stable and stiffly accurate. With `γ = 1 − 1/√2` the
 //! stages start at `x̂_1 = x_n` and `x̂_2 = x_n + (1−γ)/γ z_1`, last `γ Δt` each and end at `x_i = x̂_i + z_i`; the step
 //! ends at `x_2`. Linear systems are solved by `direct_solver`.
 
+pub(crate) mod driven;
 mod guess;
 pub mod linear;
 pub(crate) mod linear_system;

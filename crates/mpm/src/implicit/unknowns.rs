@@ -126,6 +126,26 @@ impl<const D: usize> Unknowns<D> {
                 .all(|(numbers, free)| (0..D).all(|d| numbers[d].is_some() == (free[d] > 0.0)))
     }
 
+    /// Lists the free components of the nodes: node, component and number.
+    pub fn visit_numbers(&self, mut visitor: impl FnMut(usize, usize, usize)) {
+        for (node, numbers) in self.displacement.iter().enumerate() {
+            for (d, number) in numbers.iter().enumerate() {
+                if let Some(number) = number {
+                    visitor(node, d, *number);
+                }
+            }
+        }
+    }
+
+    /// Lists the places of a matrix of blocks between nodes: row and column.
+    pub fn visit_places(&self, blocks: &NodeBlocks<D>, visitor: &mut dyn FnMut(usize, usize)) {
+        self.visit_numbers(|node, _, row| {
+            for (other, _) in &blocks.rows[node] {
+                self.displacement[*other].iter().flatten().for_each(|column| visitor(row, *column));
+            }
+        });
+    }
+
     /// Lists the entries of a matrix of blocks between nodes that are not zero: row, column and value.
     pub fn visit_blocks(&self, blocks: &NodeBlocks<D>, mut visitor: impl FnMut(usize, usize, f64)) {
         for (rows, blocks) in self.displacement.iter().zip(&blocks.rows) {

@@ -188,7 +188,7 @@ impl<'a> Driver<'a> {
             self.stepper.advance(&most, most_error)?;
             (self.time, last) = (most.end(), most.next(1));
         }
-        let before = is_due.then(|| Settled { time: self.time, settlement: self.stepper.settlement() });
+        let before = is_due.then(|| Settled::now(self.stepper, self.time));
         let error = self.stepper.advance(&last, most_error)?;
         enter(Phase::Outputs);
         if error > most_error {
@@ -199,7 +199,7 @@ impl<'a> Driver<'a> {
         self.sizes.largest = self.sizes.largest.max(dt);
         self.counters.steps += steps.count;
         self.counters.point_updates += steps.count * self.counters.points as u64;
-        let after = Settled { time: end, settlement: self.stepper.settlement() };
+        let after = Settled::now(self.stepper, end);
         self.watch.look(self.stepper, after.settlement, steps, &self.sizes)?;
         if let Some(before) = before {
             self.history.note(before, after, self.stepper.settlement_rate());
@@ -216,6 +216,14 @@ pub struct Settled {
     pub time: f64,
     /// Settlement, m.
     pub settlement: f64,
+    /// Force, N, of the soil on a plate that is pushed into it.
+    pub plate_force: Option<f64>,
+}
+
+impl Settled {
+    fn now(stepper: &dyn Stepper, time: f64) -> Self {
+        Self { time, settlement: stepper.settlement(), plate_force: stepper.plate_force() }
+    }
 }
 
 /// Times that are due and the settlements noted so far.
@@ -238,7 +246,7 @@ impl<'a> History<'a> {
     }
 
     /// Notes the times within a step, given its two ends and the rate of the settlement at the later
-    /// one: a parabola through the three. Without a rate the settlement goes straight.
+    /// one: a parabola through the three. Without a rate the settlement goes straight, and so does a force.
     pub fn note(&mut self, before: Settled, after: Settled, rate: Option<f64>) {
         let (first, last) = (before.settlement, after.settlement);
         let dt = after.time - before.time;
@@ -247,7 +255,9 @@ impl<'a> History<'a> {
             let share = ((time - before.time) / dt).clamp(0.0, 1.0);
             let settlement =
                 first + (last - first) * share * (2.0 - share) + rate * dt * share * (share - 1.0);
-            self.noted.push(HistoryPoint { time, settlement });
+            let forces = before.plate_force.zip(after.plate_force);
+            let plate_force = forces.map(|(first, last)| first + share * (last - first));
+            self.noted.push(HistoryPoint { time, settlement, plate_force });
         }
     }
 }
@@ -262,7 +272,7 @@ mod tests {
         let rate = |time: f64| 2.0 - 1.4 * time;
         let due = [0.1, 0.15, 0.2, 0.75, 1.0];
         let mut history = History::of(&due);
-        let at = |time: f64| Settled { time, settlement: settlement(time) };
+        let at = |time: f64| Settled { time, settlement: settlement(time), plate_force: Some(2.0 * time) };
         // Steps with three times, with none, and with one inside and one at its end.
         for [start, end] in [[0.0, 0.2], [0.2, 0.5], [0.5, 1.0]] {
             history.note(at(start), at(end), Some(rate(end)));
@@ -271,6 +281,7 @@ mod tests {
         for (point, time) in history.noted.iter().zip(due) {
             assert_eq!(point.time, time);
             assert!((point.settlement - settlement(time)).abs() < 1e-15, "{point:?}");
+            assert!(point.plate_force.is_some_and(|force| (force - 2.0 * time).abs() < 1e-15), "{point:?}");
         }
     }
 
@@ -278,8 +289,12 @@ mod tests {
     fn without_a_rate_the_settlement_goes_straight() {
         let due = [0.25];
         let mut history = History::of(&due);
-        let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| Settled { time, settlement });
+        let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| Settled {
+            time,
+            settlement,
+            plate_force: None,
+        });
         history.note(before, after, None);
-        assert_eq!(history.noted, [HistoryPoint { time: 0.25, settlement: 1.5 }]);
+        assert_eq!(history.noted, [HistoryPoint { time: 0.25, settlement: 1.5, plate_force: None }]);
     }
 }

@@ -21,6 +21,7 @@ pub use schedule::{Kernel, Observer, Schedule, TimeStepRule};
 use crate::body::{Body, Problem};
 use crate::direct_solver::Singular;
 use crate::double_point::DoublePoint;
+use crate::implicit::driven::DrivenStepper;
 use crate::implicit::linear::LinearStepper;
 use crate::implicit::newton::NewtonStepper;
 use crate::method::Configuration;
@@ -61,13 +62,16 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     }
 }
 
-/// The integrator of a body: explicit; one linear system where the body is frozen and at rest;
+/// The integrator of a body: that of a driven plate; explicit; one linear system where the body is frozen and at rest;
 /// Newton's iteration elsewhere.
 fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper> {
     let Schedule { integrator, formulation, .. } = *plan.schedule;
     let is_linear = body.configuration == Configuration::Frozen
         && formulation == Formulation::QuasiStatic
         && !body.has_history();
+    if let Some(plate) = plan.driven_plate {
+        return Box::new(DrivenStepper::new(body, plate, plan));
+    }
     match integrator {
         IntegratorKind::Explicit => Box::new(ExplicitStepper::new(PointSets::One(Box::new(body)), plan)),
         _ if is_linear => Box::new(LinearStepper::new(body, plan)),

@@ -1,6 +1,6 @@
 //! What a run needs beside its body, from the problem and the schedule.
 
-use crate::body::Problem;
+use crate::body::{DrivenPlate, Problem};
 use crate::critical_step::formula;
 use crate::critical_step::predicted::{GrowingMode, predict_for_run};
 use crate::operators::surface_load::LoadedSurface;
@@ -61,6 +61,8 @@ pub struct Plan<'a> {
     pub bounds: PhysicalBounds,
     /// Time over which the load grows to its full value, s.
     pub loading_time: f64,
+    /// Rigid plate that is pushed into the surface.
+    pub driven_plate: Option<DrivenPlate>,
 }
 
 impl<'a> Plan<'a> {
@@ -113,6 +115,7 @@ impl<'a> Plan<'a> {
                 .height(&problem.points),
             bounds: PhysicalBounds::of(problem),
             loading_time: problem.loading_time,
+            driven_plate: problem.driven_plate,
             schedule,
         }
     }

@@ -97,6 +97,11 @@ pub trait Stepper {
         None
     }
 
+    /// Force, N, upward positive, of the soil on a plate that is pushed into it; none without one.
+    fn plate_force(&self) -> Option<f64> {
+        None
+    }
+
     /// Largest nodal velocity, m/s, infinite where one is not finite; none where nobody
     /// looks: the bounds of the scene see an implicit step that grows.
     fn largest_velocity(&self) -> Option<f64> {

@@ -4,6 +4,7 @@ use crate::scene::arrangement::Arrangement;
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
 use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
+use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 
 /// Geometry and load of a column, or of another body that drains at its top.
@@ -37,7 +38,39 @@ pub struct Column {
     /// Vertical effective stress of the start, compression positive, Pa, that other stresses are counted from.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub initial_stress: f64,
+    /// Plate that is pushed into a layer.
+    #[serde(default, skip_serializing_if = "Footing::is_none")]
+    pub footing: Footing,
 }
+
+/// A rigid strip footing on a layer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Footing {
+    /// Width `B`, m, half of which lies on the layer that is solved; 0 where there is no plate.
+    pub width: f64,
+    /// Whether the soil sticks to it.
+    pub contact: Base,
+    /// How the soil under it is kept undrained.
+    pub undrained: Undrained,
+}
+
+impl Footing {
+    fn is_none(&self) -> bool {
+        self.width == 0.0
+    }
+}
+
+/// How a soil is kept undrained.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Undrained {
+    /// One phase of total stress, whose Poisson's ratio is near ½.
+    #[default]
+    TotalStress,
+    /// Skeleton and water, which does not leave.
+    TwoPhase,
+}
+
+words!(Undrained: TotalStress "total-stress", TwoPhase "two-phase");
 
 fn has_one_soil(layers: &SoilLayers) -> bool {
     layers.is_empty()
@@ -114,6 +147,7 @@ impl Default for Column {
             points: Arrangement::default(),
             soils: SoilLayers::default(),
             initial_stress: 0.0,
+            footing: Footing::default(),
         }
     }
 }
@@ -128,6 +162,16 @@ impl Column {
     /// plates is the width.
     pub fn slab() -> Self {
         Self { dimensions: 2, ..Self::default() }
+    }
+
+    /// The layer under half of a footing of 1 m: 2.5 m long and 2 m deep.
+    pub fn under_footing() -> Self {
+        Self {
+            height: 2.0,
+            load: 1e4,
+            footing: Footing { width: 1.0, ..Footing::default() },
+            ..Self::layer().with_extent(2.5)
+        }
     }
 
     /// The body with another width or length, m; a square stays as it is.
@@ -161,23 +205,51 @@ impl Column {
         if let Shape::Layer { base, .. } = self.shape { Some(base) } else { None }
     }
 
-    /// Square cells over the width with `cells` over the height; `None` where they do not fill it.
-    /// One dimension has one.
+    /// Cell size, m, with `cells` cells over the height, or wholly under a footing: its edges lie half a cell beyond its
+    /// outermost nodes, in the middle of the way on which the surface leaves it.
+    pub fn cell_size(&self, cells: usize) -> f64 {
+        if self.footing.is_none() {
+            // A top cell that is filled in part makes every cell larger.
+            self.points.cell_size(self.height, cells)
+        } else {
+            self.footing.width / (cells + 1) as f64
+        }
+    }
+
+    /// Square cells over the width with `cells` over the height; `None` where they do not fill it. One dimension has one. A
+    /// layer under a footing is at least as long as it is said to be.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
     pub fn cells_across(&self, cells: usize) -> Option<usize> {
         if self.dimensions == 1 {
             return Some(1);
         }
-        // A top cell that is filled in part makes every cell larger.
-        let across = self.extent() / self.points.cell_size(self.height, cells);
+        let across = self.extent() / self.cell_size(cells);
+        if !self.footing.is_none() {
+            return Some(cells_within(across));
+        }
         let whole = across.round();
         (whole >= 1.0 && (across - whole).abs() <= WIDTH_TOLERANCE * whole).then_some(whole as usize)
     }
 
-    /// Volume of the soil, m^D.
-    pub fn volume(&self) -> f64 {
-        if self.dimensions == 1 { self.height } else { self.height * self.extent() }
+    /// Cells over the height; a layer under a footing is at least as deep as it is said to be.
+    pub fn cells_up(&self, cells: usize) -> usize {
+        if self.footing.is_none() { cells } else { cells_within(self.height / self.cell_size(cells)) }
     }
+
+    /// Volume of the soil, m^D, on so many cells.
+    pub fn volume(&self, cells: usize) -> f64 {
+        if self.footing.is_none() {
+            return if self.dimensions == 1 { self.height } else { self.height * self.extent() };
+        }
+        let size = self.cell_size(cells);
+        size * size * (self.cells_across(cells).unwrap_or(1) * self.cells_up(cells)) as f64
+    }
+}
+
+/// Whole cells that hold a length in cells.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
+fn cells_within(length: f64) -> usize {
+    (length * (1.0 - WIDTH_TOLERANCE)).ceil() as usize
 }
 
 /// The column as the exact solutions take it.
@@ -196,6 +268,7 @@ pub fn column_parameters(column: &Column, soil: &Material) -> ColumnParameters {
         },
         soils: column.soils,
         uniform_stress: column.initial_stress,
+        plate_width: column.footing.width,
         ..ColumnParameters::default()
     }
 }

@@ -37,6 +37,8 @@ pub enum SceneBody {
     Layer,
     /// A slab between two rigid plates, in two dimensions only; its fields vary as a column's do.
     Slab,
+    /// A plane layer, in two dimensions only, whose cells are counted over the plate on it.
+    Footing,
     /// A square between rollers on all sides, in two dimensions only, whose motion is chosen.
     Square,
 }

@@ -9,6 +9,7 @@ mod cosine_layer;
 mod definition;
 mod dynamic_column;
 mod dynamic_single_mode;
+mod footing;
 mod layered;
 mod mandel;
 mod manufactured;
@@ -65,6 +66,8 @@ pub enum SceneKind {
     YieldFront,
     /// A column that no water leaves.
     SealedElement,
+    /// A strip footing on undrained soil that yields.
+    Footing,
     /// A square stretched along its axes by body forces, at large strain.
     ManufacturedBox,
     /// A square with shear inside, at large strain.
@@ -77,7 +80,7 @@ words!(
     SceneKind: Terzaghi "terzaghi", SingleMode "single-mode", XieLeo "xie-leo", CosineLayer "cosine-layer",
     DynamicColumn "dynamic-column", DynamicSingleMode "dynamic-single-mode", StandingWave "standing-wave",
     Mandel "mandel", AtRest "at-rest", Layered "layered", YieldFront "yield-front",
-    SealedElement "sealed-element", ManufacturedBox "manufactured-box", ManufacturedShear "manufactured-shear",
+    SealedElement "sealed-element", Footing "footing", ManufacturedBox "manufactured-box", ManufacturedShear "manufactured-shear",
     ManufacturedVortex "manufactured-vortex"
 );
 
@@ -97,6 +100,7 @@ impl SceneKind {
             Self::Layered => &layered::LAYERED,
             Self::YieldFront => &yield_front::YIELD_FRONT,
             Self::SealedElement => &sealed_element::SEALED_ELEMENT,
+            Self::Footing => &footing::FOOTING,
             Self::ManufacturedBox => &manufactured::BOX,
             Self::ManufacturedShear => &manufactured::SHEAR,
             Self::ManufacturedVortex => &manufactured::VORTEX,
@@ -132,6 +136,7 @@ impl SceneKind {
             Some(model) => model.law,
             None if self.is_large_strain() => Law::LogLinear,
             None if self == Self::YieldFront => Law::Preconsolidated,
+            None if self == Self::Footing => Law::VonMises,
             None => Law::Linear,
         }
     }
@@ -145,14 +150,28 @@ impl SceneKind {
             // A clay, five times as stiff up to half of the load.
             let clay = Material { law, hydraulic_conductivity: 1e-7, porosity: 0.5, ..Material::default() };
             Material { reload_modulus: 6e6, preconsolidation: 0.5, ..clay }
+        } else if self == Self::Footing {
+            // A clay of 10 kPa that yields long before the first output.
+            let clay = Material { law, undrained_strength: 1e4, ..Material::default() };
+            Material { youngs_modulus: 1e7, poissons_ratio: 0.4999, ..clay }
         } else {
             Material { law, ..Material::default() }
         }
     }
 
-    /// Time factors where a study names none; a yield front has none once the base is felt.
+    /// Time factors where a study names none; a yield front has none once the base is felt, and those of a footing are
+    /// its settlements over its width.
     pub fn default_time_factors(self) -> &'static [f64] {
-        if self == Self::YieldFront { &[0.0005, 0.001, 0.002, 0.004] } else { &[0.05, 0.1, 0.2, 0.5, 1.0] }
+        match self {
+            Self::YieldFront => &[0.0005, 0.001, 0.002, 0.004],
+            Self::Footing => &[0.01, 0.02, 0.05],
+            _ => &[0.05, 0.1, 0.2, 0.5, 1.0],
+        }
+    }
+
+    /// Integrator where a study names none.
+    pub fn default_integrator(self) -> IntegratorKind {
+        if self == Self::Footing { IntegratorKind::Implicit } else { IntegratorKind::Explicit }
     }
 
     /// Choices of the explicit integrator where a study names none: the paper's, but of second order in the step
@@ -196,6 +215,11 @@ impl SceneKind {
 
     /// Why the scene cannot be solved by an integrator, where it cannot.
     pub fn refuses_integrator(self, integrator: IntegratorKind) -> Option<&'static str> {
+        if self == Self::Footing && integrator != IntegratorKind::Implicit {
+            return Some(
+                "the plate is pushed so slowly that nothing has inertia: the integrator is `implicit`",
+            );
+        }
         (self.is_manufactured() && integrator == IntegratorKind::SemiImplicit).then_some(
             "body forces and source of a manufactured motion act at the stages of explicit and implicit steps: a \
              semi-implicit one takes stress and pressure at times of their own",
@@ -212,7 +236,10 @@ impl SceneKind {
         if (self == Self::YieldFront) != (law == Law::Preconsolidated) {
             return Some("the law of the scene `yield-front` is `preconsolidated`, and of no other scene");
         }
-        if self == Self::YieldFront {
+        if (self == Self::Footing) != (law == Law::VonMises) {
+            return Some("the law of the scene `footing` is `von-mises`, and of no other scene");
+        }
+        if matches!(self, Self::YieldFront | Self::Footing) {
             return None;
         }
         if self.is_large_strain() && !Law::OF_COLUMNS.contains(&law) {
@@ -248,8 +275,13 @@ impl SceneKind {
                  the whole gradient at mid step",
             );
         }
+        if self == Self::Footing && method.has_projection() {
+            return Some(
+                "a pressure projection has unknown pressures at the nodes, and the footing's follow from displacements",
+            );
+        }
         let is_frozen = method.configuration.is_none_or(|kind| kind == Configuration::Frozen);
-        (self.has_plates() && (method.basis.is_spline() || !is_frozen)).then_some(
+        ((self.has_plates() || self == Self::Footing) && (method.basis.is_spline() || !is_frozen)).then_some(
             "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and \
              not of splines, whose coefficients are no values there",
         )
@@ -286,6 +318,7 @@ impl SceneKind {
             SceneBody::Column => Column { self_weight: self.is_at_rest(), ..Column::default() },
             SceneBody::Layer => Column::layer(),
             SceneBody::Slab => Column::slab(),
+            SceneBody::Footing => Column::under_footing(),
             SceneBody::Square => manufactured::square(self.model().map(|model| model.motion)),
         }
     }
@@ -324,7 +357,7 @@ impl SceneKind {
     pub fn table_of_geometry(self) -> &'static str {
         match self.definition().body {
             SceneBody::Column | SceneBody::Slab => "column",
-            SceneBody::Layer => "layer",
+            SceneBody::Layer | SceneBody::Footing => "layer",
             SceneBody::Square => "manufactured",
         }
     }
@@ -337,12 +370,12 @@ impl SceneKind {
 
     /// Whether its exact fields vary along the body too, so that there is no profile over the depth.
     pub fn has_plane_fields(self) -> bool {
-        self.is_a_layer() || self.is_manufactured()
+        self.is_a_layer() || self.is_manufactured() || self == Self::Footing
     }
 
     /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
     pub fn shows_locking(self) -> bool {
-        self.is_a_layer()
+        self.is_a_layer() || self == Self::Footing
     }
 
     /// Whether the solver finds its start, an undrained equilibrium of its own operators.
@@ -387,6 +420,7 @@ impl SceneKind {
             ReferenceKind::Layered => Self::Layered,
             ReferenceKind::YieldFront => Self::YieldFront,
             ReferenceKind::SealedElement => Self::SealedElement,
+            ReferenceKind::Footing => Self::Footing,
             ReferenceKind::Manufactured(model) => match model.motion {
                 Motion::Box => Self::ManufacturedBox,
                 Motion::Shear => Self::ManufacturedShear,

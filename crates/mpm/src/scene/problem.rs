@@ -1,7 +1,7 @@
 //! A scene's problem for the solver: grid, lattice of points, start and load. One `match` turns the number
 //! of dimensions into a type.
 
-use crate::body::Problem;
+use crate::body::{DrivenPlate, Problem};
 use crate::critical_step::observed::{CriticalStep, Stopped, critical_step};
 use crate::critical_step::predicted::{predict_for_run, whole_growth};
 use crate::explicit::ExplicitSettings;
@@ -10,12 +10,12 @@ use crate::operators::surface_load::LoadShape;
 use crate::run::results::outcome::Outcome;
 use crate::run::{Observer, Schedule, run};
 use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_parameters};
+use crate::scene::column::{Column, Undrained, column_parameters};
 use crate::scene::definition::{SceneLoad, SceneStart};
 use crate::scene::manufactured;
 use crate::scene::moment_fitting::fit_volumes;
 use crate::state::grid::Grid;
-use crate::state::nodes::Support;
+use crate::state::nodes::{PlateOnTop, Support};
 use crate::state::points::Points;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::{Base, ColumnParameters};
@@ -127,9 +127,10 @@ pub fn column_problem<const D: usize>(
     cells: usize,
     points_per_cell: usize,
 ) -> Result<Problem<D>, ExactError> {
-    let cell_size = column.points.cell_size(column.height, cells);
+    let cell_size = column.cell_size(cells);
     let mut extent = [column.cells_across(cells).unwrap_or(1); D];
-    extent[D - 1] = cells;
+    let up = column.cells_up(cells);
+    extent[D - 1] = up;
     let definition = scene.definition();
     let mut initial_gradient = [[0.0; D]; D];
     let start = match &definition.start {
@@ -148,7 +149,7 @@ pub fn column_problem<const D: usize>(
         if soil.law.has_history() {
             // Stresses are counted from the initial one.
             let yield_stress = soil.preconsolidation - column.initial_stress;
-            points.history = vec![History { yield_stress }; points.len()];
+            points.history = vec![History { yield_stress, ..History::default() }; points.len()];
         }
         for point in 0..points.len() {
             let layer = column.soils.number_at(points.initial_position[point][D - 1]);
@@ -193,6 +194,21 @@ pub fn column_problem<const D: usize>(
     } else {
         Support::oedometer()
     };
+    let footing = (scene == SceneKind::Footing).then_some(column.footing);
+    let plate = footing.map(|footing| PlateOnTop {
+        extent: 0.5 * footing.width,
+        height: up as f64 * cell_size,
+        is_rough: footing.contact == Base::Rough,
+    });
+    let support = Support { plate, ..support };
+    // It settles by its width in the time of `T_v = 1`.
+    let driven_plate = footing.map(|footing| DrivenPlate {
+        velocity: footing.width / column_parameters(column, soil).time(1.0),
+        has_water: footing.undrained == Undrained::TwoPhase,
+    });
+    // Total stress has one phase, whose volume goes the way that the water's would.
+    let of_one_phase = driven_plate.filter(|plate| !plate.has_water).and_then(|_| method.strain.with_bbar());
+    let method = of_one_phase.map_or(method, |strain| Method { strain, ..method });
     let load = column.pressure_scale().abs();
     // What no water leaves is a soil that lets none through.
     let sealing = if scene == SceneKind::SealedElement { SEALED } else { 1.0 };
@@ -218,6 +234,7 @@ pub fn column_problem<const D: usize>(
                 LoadShape::Uniform
             }
         },
+        driven_plate,
         plate_load: scene.has_plates().then_some(column.load),
         weight,
         balanced_weight,
@@ -228,7 +245,8 @@ pub fn column_problem<const D: usize>(
         pressure_scale: weight
             .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
         forcing,
-        is_bounded: true,
+        // A plate that is told where to go presses as hard as it has to.
+        is_bounded: footing.is_none(),
     })
 }
 

@@ -78,7 +78,7 @@ pub struct NodalSums<const D: usize> {
 }
 
 /// Faces of the grid whose normal velocity is zero for both phases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Support<const D: usize> {
     /// Fixed at the lower face of a direction, and beyond it.
     pub lower: [bool; D],
@@ -86,9 +86,31 @@ pub struct Support<const D: usize> {
     pub upper: [bool; D],
     /// Whether the skeleton sticks to the base: no displacement along it either.
     pub rough_base: bool,
+    /// Rigid plate on the upper face, from the lower side on, that moves as it is told to.
+    pub plate: Option<PlateOnTop>,
     /// Last node below the free surface that has enough of the material to stand alone, where splines
     /// reach beyond the surface: those above it follow its line.
     pub outermost: Option<usize>,
+}
+
+/// A rigid plate on the upper face of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlateOnTop {
+    /// Extent along the first direction, from the lower side on, m.
+    pub extent: f64,
+    /// Height of the face, m.
+    pub height: f64,
+    /// Whether the soil sticks to it.
+    pub is_rough: bool,
+}
+
+impl PlateOnTop {
+    /// Whether a node of a grid lies on it: the node under its edge does.
+    pub fn holds<const D: usize>(&self, grid: &Grid<D>, node: usize) -> bool {
+        let (position, tolerance) = (grid.node_position(node), 1e-6 * grid.cell_size);
+        (position[D - 1] - self.height).abs() < tolerance
+            && (-tolerance..self.extent + tolerance).contains(&position[0])
+    }
 }
 
 impl<const D: usize> Support<D> {
@@ -96,17 +118,17 @@ impl<const D: usize> Support<D> {
     pub fn oedometer() -> Self {
         let mut upper = [true; D];
         upper[D - 1] = false;
-        Self { lower: [true; D], upper, rough_base: false, outermost: None }
+        Self { lower: [true; D], upper, rough_base: false, plate: None, outermost: None }
     }
 
     /// Rollers on every face.
     pub fn closed() -> Self {
-        Self { lower: [true; D], upper: [true; D], rough_base: false, outermost: None }
+        Self { lower: [true; D], upper: [true; D], rough_base: false, plate: None, outermost: None }
     }
 
     /// Nothing held at all.
     pub fn free() -> Self {
-        Self { lower: [false; D], upper: [false; D], rough_base: false, outermost: None }
+        Self { lower: [false; D], upper: [false; D], rough_base: false, plate: None, outermost: None }
     }
 
     /// These faces with an upper side that a plate moves.
@@ -153,6 +175,14 @@ impl<const D: usize> Nodes<D> {
         // A domain that a face has let through by a round-off finds no stiffness behind it, in no direction.
         for node in (0..count).filter(|node| support.is_beyond(grid, *node, tolerance)) {
             supports[node] = [0.0; D];
+        }
+        if let Some(plate) = &support.plate {
+            for node in (0..count).filter(|node| plate.holds(grid, *node)) {
+                supports[node][D - 1] = 0.0;
+                if plate.is_rough {
+                    supports[node] = [0.0; D];
+                }
+            }
         }
         let mut sliding = vec![[0.0; D]; count];
         for node in (0..count).filter(|_| support.rough_base) {

@@ -302,6 +302,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         configuration: one.configuration,
         load: one.load,
         load_shape: oedometer_mpm::operators::surface_load::LoadShape::Uniform,
+        driven_plate: None,
         plate_load: None,
         weight: None,
         undrained_start: false,

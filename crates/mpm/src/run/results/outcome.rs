@@ -180,6 +180,9 @@ pub struct HistoryPoint {
     pub time: f64,
     /// Settlement of the surface, m.
     pub settlement: f64,
+    /// Force, N, of the soil on a plate that is pushed into it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plate_force: Option<f64>,
 }
 
 /// Everything a run leaves behind.

@@ -73,6 +73,9 @@ pub struct Snapshot {
     /// and left out on disk.
     #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub settlement: f64,
+    /// Force, N, upward positive, of the soil on a plate that is pushed into it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plate_force: Option<f64>,
     /// Values at the material points.
     pub points: Samples,
     /// Volume-weighted means over the points of each cell, at their mean initial place.
@@ -155,6 +158,7 @@ impl<const D: usize> Body<D> {
         Snapshot {
             time,
             settlement,
+            plate_force: None,
             points: told.sample_points(),
             centres: told.sample_centres(),
             nodes: told.sample_nodes(),
