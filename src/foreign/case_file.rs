@@ -261,8 +261,9 @@ mod tests {
             let is_bare = without.contains(&place.as_str()) || ratios.contains(&place.as_str());
             assert!(file.units.contains_key(place) != is_bare, "{place}");
         }
-        // What only a soil that remembers has.
-        let of_memory = ["material.reload_modulus", "material.preconsolidation"];
+        // What only a soil that remembers or yields has.
+        let of_memory =
+            ["material.reload_modulus", "material.preconsolidation", "material.undrained_strength"];
         for place in file.units.keys().filter(|place| !of_memory.contains(&place.as_str())) {
             assert!(found.contains(place), "the unit of {place}, which is not there");
         }

@@ -56,7 +56,7 @@ pub struct Footing {
 
 impl Footing {
     fn is_none(&self) -> bool {
-        self.width == 0.0
+        *self == Self::default()
     }
 }
 

@@ -19,8 +19,9 @@ proptest! {
         let mut column = ColumnParameters { soil: Material { porosity, water_bulk_modulus: 1e6 * 10.0_f64.powf(stiffness), hydraulic_conductivity: 10.0_f64.powf(conductivity), ..Material::default() }, ..ColumnParameters::default() };
         column.load = strain * column.soil.oedometric_modulus();
         let time_factor = 10.0_f64.powf(exponent);
-        // A yield front wants a soil that yields.
-        let is_plain = |kind: &ReferenceKind| !kind.is_manufactured() && *kind != ReferenceKind::YieldFront;
+        // A yield front wants a soil that yields, a footing a plate.
+        let has_more = [ReferenceKind::YieldFront, ReferenceKind::Footing];
+        let is_plain = |kind: &ReferenceKind| !kind.is_manufactured() && !has_more.contains(kind);
         for kind in ReferenceKind::ALL.into_iter().filter(is_plain) {
             if matches!(kind, ReferenceKind::LargeStrain(_)) && exponent > -2.0 {
                 // A march a case; its own tests have fewer.
