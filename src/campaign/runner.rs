@@ -8,6 +8,7 @@ use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::record::Record;
+use crate::record::provenance::Provenance;
 use crate::record::store::{Found, RecordStore};
 use crate::study::check::Study;
 use std::cell::Cell;
@@ -202,8 +203,10 @@ fn begun<'a>(
             continue;
         }
         match store.found(case) {
-            // Whoever keeps nothing judges: a gate asks more of an attached solver's record than a run that goes on.
-            Found::Finished(record) if selected.is_kept || runner.would_make(&record) => {
+            // Whoever keeps nothing judges: a gate asks more of a record than a run that goes on.
+            Found::Finished(record)
+                if selected.is_kept || is_of_this_build(&record) && runner.would_make(&record) =>
+            {
                 report.tally.add(selected.study, &record);
                 taken_up.push(case);
                 if !options.only_on_disk {
@@ -211,14 +214,19 @@ fn begun<'a>(
                 }
                 continue;
             }
-            Found::OfAnotherProgram | Found::Finished(_) => report.of_another_program += 1,
-            Found::Nothing => {}
+            Found::OfAnotherProgram => report.of_another_program += 1,
+            Found::Finished(_) | Found::Nothing => {}
         }
         open.push((case, None));
     }
     report.resumed = taken_up.len();
     report.origins = store.origins(&taken_up);
     Begun { cases: open, report }
+}
+
+/// Whether this build of the program solved or judged a case.
+fn is_of_this_build(record: &Record) -> bool {
+    record.provenance.is_of_one_build_with(&Provenance::of_this_program())
 }
 
 /// Runs a case and keeps its record. A record that cannot be kept stops every other case too; `None` where this one was

@@ -8,6 +8,7 @@ pub mod exit;
 mod help;
 pub mod job_list;
 pub mod output;
+pub mod place;
 pub mod progress;
 pub mod slurm;
 pub mod stream;

@@ -1,6 +1,5 @@
 //! Reads study files and checks their names before any work begins: results are stored under the name of the study.
 
-use crate::case::contender::RACE;
 use crate::cli::exit::Ended;
 use crate::study::diagnostic::nearest;
 use crate::study::file::StudySource;
@@ -13,8 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Reads study files, whose names must be valid and differ.
 pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
-    let paths = paths.iter().flat_map(|path| named_by(path));
-    let sources = paths.map(|path| read(&path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
+    let sources = paths.iter().map(|path| read(path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
     for (number, source) in sources.iter().enumerate() {
         let name = name_of(&source.name);
         if let Some(why) = refused_name(name) {
@@ -31,35 +29,9 @@ pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
     Ok(sources)
 }
 
-/// The studies that a name stands for: `race` for the situations of the race, all else for itself.
-fn named_by(path: &Path) -> Vec<PathBuf> {
-    if path.as_os_str() != RACE || path.exists() {
-        return vec![path.to_owned()];
-    }
-    shipped_names().into_iter().filter(|name| is_of_race(name)).map(PathBuf::from).collect()
-}
-
-fn is_of_race(study: &str) -> bool {
-    study.split('-').next() == Some(RACE)
-}
-
-/// The file of a study: the given one, or that of a shipped study in the repository.
-pub fn file_of(study: &str, named: &[PathBuf]) -> String {
-    let stem = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy() == study);
-    let file = named.iter().find(stem).map(|path| path.display().to_string());
-    file.unwrap_or_else(|| format!("studies/{study}.toml"))
-}
-
 /// The shipped study of a name, unless there is a file of that name.
-pub fn shipped_of(path: &Path) -> Option<StudySource> {
+fn shipped_of(path: &Path) -> Option<StudySource> {
     if path.is_file() { None } else { shipped_study(path.to_str()?) }
-}
-
-/// Whether a study is a shipped one: all are if none was given.
-pub fn is_shipped(study: &str, named: &[PathBuf]) -> bool {
-    let is_named =
-        |path: &PathBuf| path.as_os_str() == study || path.as_os_str() == RACE && is_of_race(study);
-    named.is_empty() || shipped_of(Path::new(study)).is_some() && named.iter().any(is_named)
 }
 
 /// The message about a study that is neither a file nor shipped, with what may have been meant.
@@ -98,12 +70,6 @@ fn read(path: &Path) -> anyhow::Result<StudySource> {
     }
     if !path.exists() {
         return Err(Ended::usage(not_there(path)));
-    }
-    if path.is_dir() {
-        let told = path.display();
-        return Err(Ended::usage(format!(
-            "cannot read the study {told}: it is a folder; give the study files in it, like {told}/*.toml"
-        )));
     }
     let refused =
         |error: std::io::Error| Ended::usage(format!("cannot read the study {}: {error}", path.display()));

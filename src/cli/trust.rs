@@ -7,8 +7,8 @@
 use crate::campaign::run_report::Tally;
 use crate::case::solver::Solver;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::place;
 use crate::cli::stream::say;
-use crate::cli::study_files;
 use crate::study::check::Study;
 use crate::study::check::solvers::digest_of_file;
 use crate::study::solver::ExternalSolver;
@@ -54,7 +54,7 @@ impl TrustArguments {
         let starting = starting(study);
         starting.is_empty()
             || self.allow_solvers
-            || study_files::is_shipped(&study.name, named)
+            || place::is_shipped(&study.name, named)
             || is_remembered(&digest_of(study, &starting))
             || is_answered(study, &starting)
     }

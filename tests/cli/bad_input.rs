@@ -287,7 +287,7 @@ fn files_that_cannot_be_read_are_named() {
         let told = refused_in(folder.path(), &[command, "nowhere.toml"]);
         assert_says(&told, &["nowhere.toml", "no such file"]);
         let told = refused_in(folder.path(), &[command, "."]);
-        assert_says(&told, &["the study .", "folder"]);
+        assert_says(&told, &["the folder . has no study", "oedometer new"]);
     }
     // A sound study beside a missing one: nothing of it is run.
     std::fs::write(folder.path().join("study.toml"), SOUND).expect("a file");
@@ -394,7 +394,7 @@ fn impossible_arguments_of_exact_are_refused() {
 fn an_unknown_command_is_refused_with_the_nearest() {
     assert_says(&refused(&["slove"]), &["'slove'", "solve"]);
     assert_says(&refused(&["solve"]), &["SCENE"]);
-    assert_says(&refused(&["run"]), &["STUDY.toml"]);
+    assert_says(&refused(&["accept", "--reason", "a test"]), &["STUDY.toml"]);
 }
 
 #[test]

@@ -242,11 +242,12 @@ fn every_help_fits_a_terminal_and_has_no_marks_of_the_source() {
 fn mistakes_at_the_command_line_are_answered_with_what_to_type() {
     let folder = folder_with(SOFT);
     let at = folder.path();
+    fs::create_dir(at.join("empty")).expect("a folder");
     for (typed, parts) in [
         (&["check", "short"][..], &["did you mean the file `short.toml`?"][..]),
         (&["check", "shrt.toml"], &["did you mean `short.toml`?"]),
         (&["check", "terzaghi-mesh.toml"], &["the shipped study is called `terzaghi-mesh`"]),
-        (&["run", "."], &["it is a folder"]),
+        (&["run", "empty"], &["the folder empty has no study"]),
         (&["run", "nothing-like-it"], &["`oedometer new NAME`"]),
         (&["run", "short.toml", "--case", "zzz"], &["no case has a hash that begins with `zzz`"]),
         (&["explain", "zzz", "short.toml"], &["no case of `short` is described by `zzz`"]),

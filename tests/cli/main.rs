@@ -16,6 +16,7 @@ mod manufactured;
 mod mapping;
 mod over_time;
 mod over_time_attached;
+mod place;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;

@@ -5,8 +5,10 @@ use crate::cli::commands::check::run_quietly;
 use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::destination::is_on;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::place::{golden_folder, named};
 use crate::cli::stream::say;
 use crate::cli::trust::TrustArguments;
+use crate::golden::references::REFERENCES;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::study_check::StudyCheck;
@@ -15,12 +17,12 @@ use crate::record::provenance::Provenance;
 use crate::render::checks::verdicts::objections_of;
 use crate::study::check::Study;
 use crate::study::perturbed::LastDigit;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `accept`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files, or names of shipped studies
+    /// Study files, folders of them, or names of shipped studies
     #[arg(required_unless_present = "references", value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Take the present values of the exact solutions too
@@ -32,9 +34,9 @@ pub struct Arguments {
     /// Why the new values are right
     #[arg(long, value_name = "TEXT")]
     reason: String,
-    /// Folder of the golden values
-    #[arg(long, value_name = "DIR", default_value = crate::cli::commands::check::GOLDEN)]
-    golden: PathBuf,
+    /// Folder of the golden values [default: `golden` beside the study or above]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
@@ -49,12 +51,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
-    let mut studies = load(&arguments.studies)?;
-    arguments.trust.mark_all(&mut studies, &arguments.studies)?;
+    let chosen = named(&arguments.studies)?;
+    let mut studies = load(&chosen)?;
+    arguments.trust.mark_all(&mut studies, &chosen)?;
     let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
     refuse_failing(&studies, &records, arguments.despite_failing)?;
+    let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
     if arguments.references {
-        keep(&GoldenFile::of_references(reason)?, arguments)?;
+        keep(&GoldenFile::of_references(reason)?, &folder_of(REFERENCES))?;
     }
     let mut perturbed = Vec::new();
     for digit in LastDigit::ALL {
@@ -65,7 +69,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let golden = GoldenFile::of(&study.name, &records[number], reason);
         let others: Vec<_> = perturbed.iter().map(|records| values_of(&records[number])).collect();
         let spread = spread_by_group(&golden.values, &others);
-        keep(&golden.widened_by(spread), arguments)?;
+        keep(&golden.widened_by(spread), &folder_of(&study.name))?;
     }
     Ok(Exit::Pass)
 }
@@ -109,8 +113,8 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn keep(golden: &GoldenFile, arguments: &Arguments) -> anyhow::Result<()> {
-    let path = golden.write(&arguments.golden)?;
+fn keep(golden: &GoldenFile, folder: &Path) -> anyhow::Result<()> {
+    let path = golden.write(folder)?;
     say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
     Ok(())
 }

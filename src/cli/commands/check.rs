@@ -3,17 +3,16 @@
 use crate::campaign::run_report::{RunReport, Tally};
 use crate::campaign::runner::{RunOptions, Selected, run_studies_thinned};
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{TableFormat, json_of, print_coloured};
+use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
-use crate::cli::study_files;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::references::REFERENCES;
-use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
@@ -25,26 +24,26 @@ use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Folder of the golden values.
-pub const GOLDEN: &str = "golden";
-
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files or names of shipped studies; every shipped one and the exact solutions where none is named
-    #[arg(value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Folder of the golden values
-    /// [default: golden; for shipped studies without a file there, those inside the program]
+    /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
+    /// Folder of results: what this very build has solved already is taken from there and not solved again
+    #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
+    records: PathBuf,
     /// Cases at the same time; all cores where not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Run every case anew; the results of `run` in out/ are taken for attached solvers where nothing changed since
+    /// Solve every case anew, whatever is in the folder of results
     #[arg(long)]
     fresh: bool,
-    /// Compare the exact solutions with their golden values too; done by itself where no study is named
+    /// Compare the exact solutions with their golden values too; done by itself with `--shipped`, and without names
+    /// where the project has such values
     #[arg(long)]
     references: bool,
     /// Write a `JUnit` report
@@ -66,17 +65,18 @@ pub struct Arguments {
 
 /// Runs, judges, compares and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let mut studies = load_or_shipped(&arguments.studies)?;
-    arguments.trust.mark(&mut studies, &arguments.studies);
-    let (checks, tally) = checks_of(arguments, &studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let mut studies = load(&chosen)?;
+    arguments.trust.mark(&mut studies, &chosen);
+    let (checks, tally) = checks_of(arguments, &studies, &chosen)?;
     if checks.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
     let verdict = worst_of(&checks);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
-    let files = |study: &str| file_of(study, &arguments.studies);
+    let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
     let mut refused = Vec::new();
-    refused.extend(print(&checks, arguments).err());
+    refused.extend(print(&checks, files, arguments.format).err());
     if let Some(path) = &arguments.junit {
         refused.extend(write_document(path, &junit(&checks)?).err());
     }
@@ -96,10 +96,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 }
 
 /// The studies that have cases in the CI tier, and the exact solutions where they are wanted; how their cases ended.
-fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<(Vec<StudyCheck>, Tally)> {
-    let read = |name: &str| golden_of(arguments.golden.as_deref(), name, &arguments.studies);
+fn checks_of(
+    arguments: &Arguments,
+    studies: &[Study],
+    chosen: &[PathBuf],
+) -> anyhow::Result<(Vec<StudyCheck>, Tally)> {
+    let read = |name: &str| golden_of(arguments.golden.as_deref(), name, chosen);
     let mut checks = Vec::new();
-    if arguments.references || arguments.studies.is_empty() {
+    if arguments.references || arguments.studies.has_references() {
         checks.push(StudyCheck::of_references(read(REFERENCES))?);
     }
     let golden: Vec<_> = studies.iter().map(|study| read(&study.name)).collect();
@@ -111,8 +115,17 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<(Vec<St
             thin(study, record);
         }
     };
-    let results = (!arguments.fresh).then_some(Path::new(DEFAULT_RESULTS));
-    let reports = run_all(studies, jobs_of(arguments.jobs), results, &thin_alone)?;
+    let records = (!arguments.fresh).then_some(arguments.records.as_path());
+    let reports = run_all(studies, jobs_of(arguments.jobs), records, &thin_alone)?;
+    let taken: usize = reports.iter().map(|report| report.resumed).sum();
+    if taken > 0 {
+        let all: usize = studies.iter().map(|study| study.cases(Tier::Ci).len()).sum();
+        say!(
+            "{taken} of {} taken from {}, where this build solved them; `--fresh` solves them anew",
+            count_of(all, "case", "cases"),
+            arguments.records.display()
+        );
+    }
     let mut tally = Tally::default();
     for ((study, golden), report) in studies.iter().zip(golden).zip(&reports) {
         tally.join(report.tally);
@@ -122,18 +135,6 @@ fn checks_of(arguments: &Arguments, studies: &[Study]) -> anyhow::Result<(Vec<St
         }
     }
     Ok((checks, tally))
-}
-
-/// The golden values of a study: from a folder; for a study from inside the program from there, where no folder was
-/// named and the usual one has none.
-pub fn golden_of(folder: Option<&Path>, study: &str, named: &[PathBuf]) -> Result<GoldenFile, GoldenError> {
-    match folder {
-        Some(folder) => GoldenFile::read(folder, study),
-        None if study == REFERENCES || study_files::is_shipped(study, named) => {
-            GoldenFile::read_or_embedded(Path::new(GOLDEN), study)
-        }
-        None => GoldenFile::read(Path::new(GOLDEN), study),
-    }
 }
 
 /// Runs the CI tier of studies and keeps nothing; the records of each study.
@@ -148,12 +149,12 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
     studies.iter().zip(run_all(studies, jobs, None, &|_, _| {})?).map(of_study).collect()
 }
 
-/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. Studies with attached solvers take
-/// what `run` left in a folder of results.
+/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. What this build and unchanged attached
+/// solvers solved already is taken from a folder of results.
 fn run_all(
     studies: &[Study],
     jobs: usize,
-    results: Option<&Path>,
+    records: Option<&Path>,
     thin: &(dyn Fn(&Study, &mut Record) + Sync),
 ) -> anyhow::Result<Vec<RunReport>> {
     let name = match studies {
@@ -161,10 +162,7 @@ fn run_all(
         _ => "check",
     };
     let bar = StudyBar::new(name);
-    let store_of = |study: &Study| {
-        let results = results.filter(|_| !study.solvers.is_empty())?;
-        Some(RecordStore::for_cases(results, &study.name, study.planned.len()))
-    };
+    let store_of = |study: &Study| Some(RecordStore::for_cases(records?, &study.name, study.planned.len()));
     let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
     let selected: Vec<Selected<'_>> = (studies.iter().zip(&stores))
         .map(|(study, store)| Selected { study, store: store.as_ref(), is_kept: false })
@@ -172,15 +170,6 @@ fn run_all(
     let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Ci, jobs) };
     let reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
     bar.finish();
-    for (study, report) in studies.iter().zip(&reports).filter(|(_, report)| report.resumed > 0) {
-        say!(
-            "{}: {} of {} were taken from {}, for nothing changed since `run`; `--fresh` runs them anew",
-            study.name,
-            report.resumed,
-            count_of(report.tally.recorded, "case", "cases"),
-            Path::new(DEFAULT_RESULTS).join(&study.name).display()
-        );
-    }
     refuse_unfinished(&reports)?;
     Ok(reports)
 }
@@ -226,9 +215,12 @@ struct CheckJson<'a> {
     warnings: &'a [String],
 }
 
-fn print(checks: &[StudyCheck], arguments: &Arguments) -> anyhow::Result<()> {
-    let file_of = |study: &str| file_of(study, &arguments.studies);
-    let text = match arguments.format {
+fn print(
+    checks: &[StudyCheck],
+    file_of: impl Fn(&str) -> Option<String> + Copy,
+    format: TableFormat,
+) -> anyhow::Result<()> {
+    let text = match format {
         TableFormat::Table => {
             let text = |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref());
             return print_coloured(&checks.iter().map(text).collect::<String>());
@@ -256,9 +248,4 @@ impl<'a> CheckJson<'a> {
             warnings: &check.warnings,
         }
     }
-}
-
-/// The file that a study came from, as a repository knows it.
-fn file_of(study: &str, named: &[PathBuf]) -> Option<String> {
-    (study != REFERENCES).then(|| study_files::file_of(study, named))
 }

@@ -1,10 +1,10 @@
 //! `oedometer compare`: two states of studies beside each other, accuracy and cost apart.
 
-use crate::cli::commands::check::GOLDEN;
 use crate::cli::commands::run::load;
 use crate::cli::destination::write_document;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::place::folder_of_golden;
 use crate::cli::stream::{print_data, say};
 use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
@@ -35,9 +35,9 @@ pub struct Arguments {
     rounds: u64,
     #[command(flatten)]
     trust: TrustArguments,
-    /// Folder of the golden values in the repository
-    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
-    golden: PathBuf,
+    /// Folder of the golden values in the repository [default: `golden` here or above]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Write a page with figures
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let ([before, after], studies) = if arguments.commands {
         (states_of_commands(named, arguments)?, &[][..])
     } else {
-        let [before, after] = named.map(|name| state_of(name, &arguments.golden));
+        let [before, after] = named.map(|name| state_of(name, arguments.golden.as_deref()));
         ([before?, after?], &arguments.studies[..])
     };
     let (mut found, notes) = compare_states(&before, &after, studies);
@@ -97,7 +97,7 @@ fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Res
 }
 
 /// A state as it is named: a folder, or a revision of the repository around the current folder.
-pub fn state_of(named: &str, golden: &Path) -> anyhow::Result<State> {
+pub fn state_of(named: &str, golden: Option<&Path>) -> anyhow::Result<State> {
     let usage = |error: &dyn std::fmt::Display| Ended::usage(error.to_string());
     let folder = Path::new(named);
     if folder.is_dir() {
@@ -108,11 +108,13 @@ pub fn state_of(named: &str, golden: &Path) -> anyhow::Result<State> {
 }
 
 /// The repository around the current folder, and the path of its golden values from the root.
-pub fn repository_with(golden: &Path) -> anyhow::Result<(Repository, String)> {
+pub fn repository_with(golden: Option<&Path>) -> anyhow::Result<(Repository, String)> {
     let here = std::env::current_dir()?;
     let repository = Repository::around(&here).map_err(|error| Ended::usage(error.to_string()))?;
     let root = repository.root().canonicalize()?;
-    let whole = here.canonicalize()?.join(golden);
+    let given = golden.map_or_else(|| folder_of_golden(None), Path::to_owned);
+    let whole = here.canonicalize()?.join(given);
+    let whole = whole.canonicalize().unwrap_or(whole);
     let inside = whole.strip_prefix(&root).map_err(|_| {
         Ended::usage(format!("{} lies outside the repository {}", whole.display(), root.display()))
     })?;

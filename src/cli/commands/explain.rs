@@ -5,12 +5,11 @@ use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::stop;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::commands::check::golden_of;
-use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
+use crate::cli::commands::run::{DEFAULT_RESULTS, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::stream::{print_data, say};
-use crate::cli::study_files::file_of;
 use crate::golden::GoldenError;
 use crate::judge::explanation::explain;
 use crate::record::Record;
@@ -27,15 +26,14 @@ const MOST_NAMED: usize = 10;
 pub struct Arguments {
     /// Case: the first digits of its hash, words of its label, or a golden value as `check` names it
     case: String,
-    /// Study files or names of shipped studies; every shipped one if none is given
-    #[arg(value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Folder of results: a record that this program made is taken from there, or else the case is solved; no other
     /// program is ever started
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values
-    /// [default: golden; for shipped studies without a file there, those inside the program]
+    /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
     /// Output format
@@ -45,14 +43,15 @@ pub struct Arguments {
 
 /// Finds the case, solves it if its record is missing, and explains it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let studies = load_or_shipped(&arguments.studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let studies = load(&chosen)?;
     let (description, focus) = match arguments.case.split_once(" | ") {
         Some((label, measure)) => (label, Some(measure)),
         None => (arguments.case.as_str(), None),
     };
     let (study, case) = the_one(&studies, description)?;
     let record = record_of(study, case, &arguments.records)?;
-    let golden = match golden_of(arguments.golden.as_deref(), &study.name, &arguments.studies) {
+    let golden = match golden_of(arguments.golden.as_deref(), &study.name, &chosen) {
         Ok(golden) => Some(golden),
         Err(GoldenError::Missing(_)) => None,
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
@@ -65,8 +64,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
     }
     say!("{}: {}", study.name, explanation::golden_sentence(&found));
-    let file = file_of(&study.name, &arguments.studies);
-    say!("run it again: oedometer run {file} --case {}", case.hash());
+    let file = chosen_as(&study.name, &chosen).unwrap_or(Path::new(&study.name));
+    say!("run it again: oedometer run {} --case {}", file.display(), case.hash());
     Ok(Exit::Pass)
 }
 

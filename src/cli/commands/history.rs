@@ -1,6 +1,5 @@
 //! `oedometer history`: golden values over the commits that changed them; nothing is run.
 
-use crate::cli::commands::check::GOLDEN;
 use crate::cli::commands::compare::repository_with;
 use crate::cli::destination::write_document;
 use crate::cli::exit::{Ended, Exit};
@@ -20,9 +19,9 @@ pub struct Arguments {
     /// Names of the studies; all with golden values where none is named, one row each
     #[arg(value_name = "STUDY")]
     studies: Vec<String>,
-    /// Folder of the golden values in the repository
-    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
-    golden: PathBuf,
+    /// Folder of the golden values in the repository [default: `golden` here or above]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Write a page with figures
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
@@ -33,7 +32,7 @@ pub struct Arguments {
 
 /// Reads the history and prints it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let (repository, folder) = repository_with(&arguments.golden)?;
+    let (repository, folder) = repository_with(arguments.golden.as_deref())?;
     if repository.is_shallow() {
         say!(
             "the clone is shallow: commits before its first one are not shown; `git fetch --unshallow` brings them"

@@ -2,8 +2,9 @@
 
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, load_or_shipped};
+use crate::cli::commands::run::{DEFAULT_RESULTS, load};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::place::{chosen_as, studies_of_this_project};
 use crate::cli::stream::say;
 use crate::cli::study_tables::{Beside, write_table};
 use crate::record::csv::table_file::TableForm;
@@ -11,6 +12,7 @@ use crate::record::provenance::Origins;
 use crate::record::store::RecordStore;
 use crate::record::{Record, WallSample};
 use crate::study::check::Study;
+use crate::study::shipped::{name_of, shipped_names};
 use std::path::PathBuf;
 
 /// Holes that are named before the rest is only counted.
@@ -19,7 +21,8 @@ const MOST_HOLES: usize = 10;
 /// Arguments of `merge`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files (`*.toml`) and folders of results; without a study every shipped one that the folders know
+    /// Study files (`*.toml`) and folders of results; without a study those of the project here and the shipped ones that
+    /// the folders know
     #[arg(required = true, value_name = "STUDY.toml|DIR")]
     inputs: Vec<PathBuf>,
     /// Folder for the merged results
@@ -38,13 +41,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
         return Err(Ended::usage(format!("there is no folder of results {}", missing.display())));
     }
-    let mut studies = load_or_shipped(&files)?;
+    let files = if files.is_empty() { known_to(&folders) } else { files };
     if files.is_empty() {
-        studies.retain(|study| folders.iter().any(|folder| folder.join(&study.name).is_dir()));
+        let why = "the folders have results of no study of this project and of no shipped one";
+        return Err(Ended::with(Exit::NothingSelected, why));
     }
-    if studies.is_empty() {
-        return Err(Ended::with(Exit::NothingSelected, "the folders have results of no shipped study"));
-    }
+    let studies = load(&files)?;
     // Every record is looked at before any is written.
     let origins = studies.iter().map(|study| origins_of(study, &folders, arguments));
     let origins = origins.collect::<anyhow::Result<Vec<Origins>>>()?;
@@ -63,6 +65,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     Ok(exit)
+}
+
+/// The studies of this project and the shipped ones that folders of results know.
+fn known_to(folders: &[PathBuf]) -> Vec<PathBuf> {
+    let mut known = studies_of_this_project().unwrap_or_default();
+    let shipped = shipped_names().into_iter().filter(|name| chosen_as(name, &known).is_none());
+    let shipped: Vec<PathBuf> = shipped.map(PathBuf::from).collect();
+    known.extend(shipped);
+    known.retain(|path| folders.iter().any(|folder| folder.join(name_of(&path.to_string_lossy())).is_dir()));
+    known
 }
 
 /// The stores of a study in the target and in each other folder.

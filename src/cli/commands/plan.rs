@@ -6,10 +6,11 @@ use crate::campaign::shares::Parting;
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::case::work_estimate::{estimated_seconds, estimated_updates};
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::output::json_of;
+use crate::cli::place::StudyArguments;
 use crate::cli::stream::{of_device, print_data, print_with, say};
 use crate::cli::time_notes::{note_on_longest, side_by_side};
 use crate::foreign::case_file::CaseFile;
@@ -24,9 +25,8 @@ const COLUMNS: [&str; 5] = ["study", "case", "estimated_point_updates", "label",
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files or names of shipped studies; every shipped one if none is given
-    #[arg(value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// How much of each study
     #[arg(long, value_enum, default_value_t = Tier::Full)]
     tier: Tier,
@@ -62,7 +62,8 @@ enum PlanFormat {
 /// Prints one line per case as CSV, the case files as JSON, or a job list; totals go to standard error.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is checked before anything is printed.
-    let studies = load_or_shipped(&arguments.studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let studies = load(&chosen)?;
     let tier = arguments.tier;
     if let Some(folder) = arguments.missing.as_ref().filter(|folder| !folder.is_dir()) {
         return Err(Ended::usage(format!("there is no folder of results {}", folder.display())));
@@ -76,7 +77,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(tasks) = arguments.tasks {
         let results = arguments.out.clone().or(arguments.missing.clone());
         let list = JobList {
-            files: arguments.studies.clone(),
+            files: chosen,
             results: results.unwrap_or_else(|| DEFAULT_RESULTS.into()),
             tier,
             tasks,

@@ -7,6 +7,7 @@ use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
 use crate::case::tier::Tier;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::place::StudyArguments;
 use crate::cli::progress::StudyBar;
 use crate::cli::slurm;
 use crate::cli::stream::say;
@@ -21,7 +22,6 @@ use crate::record::store::RecordStore;
 use crate::study::check::Purpose;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use crate::study::shipped::shipped_studies;
 use clap::ValueEnum;
 use oedometer_soil::wording::count_of;
 use std::path::{Path, PathBuf};
@@ -32,9 +32,8 @@ pub const DEFAULT_RESULTS: &str = "out";
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files, or names of shipped studies
-    #[arg(required = true, value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
@@ -78,11 +77,11 @@ pub enum Engine {
 /// Runs and keeps.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // Every file is judged before any work begins.
-    let mut studies = load(&arguments.studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let mut studies = load(&chosen)?;
     if arguments.engine == Some(Engine::Slurm) {
-        arguments.trust.mark_all(&mut studies, &arguments.studies)?;
-        let (files, tier) = (&arguments.studies, arguments.tier);
-        return slurm::run(&arguments.cluster, files, &studies, tier, &arguments.out);
+        arguments.trust.mark_all(&mut studies, &chosen)?;
+        return slurm::run(&arguments.cluster, &chosen, &studies, arguments.tier, &arguments.out);
     }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
         return Err(Ended::usage(
@@ -96,7 +95,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         only_on_disk: true,
         ..RunOptions::whole(arguments.tier, jobs_of(arguments.jobs))
     };
-    arguments.trust.mark(&mut studies, &arguments.studies);
+    arguments.trust.mark(&mut studies, &chosen);
     stop::heed_signals()?;
     let with_one: Vec<Study>;
     let selected = match &arguments.case {
@@ -269,15 +268,6 @@ pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> 
 pub fn tell_warnings(study: &Study) {
     for warning in &study.warnings {
         say!("{warning}");
-    }
-}
-
-/// The named studies, or every shipped one where none is named.
-pub fn load_or_shipped(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    if paths.is_empty() {
-        shipped_studies().iter().map(|source| Ok(Study::check(source)?)).collect()
-    } else {
-        load(paths)
     }
 }
 

@@ -5,9 +5,10 @@ use crate::campaign::case_run::run_case;
 use crate::case::tier::Tier;
 use crate::cli::commands::accept::refuse_without_origin;
 use crate::cli::commands::check::run_quietly;
-use crate::cli::commands::run::{jobs_of, load_or_shipped};
+use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::place::StudyArguments;
 use crate::cli::stream::print_data;
 use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::spread_by_group;
@@ -24,9 +25,8 @@ use std::path::PathBuf;
 /// Arguments of `spread`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files or names of shipped studies; every shipped one where none is named
-    #[arg(value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Results of another build of the same sources, as by `cargo run -- run STUDY.toml --out DIR`
     /// without `--release`: the spread between optimisation levels
     #[arg(long, value_name = "DIR")]
@@ -52,8 +52,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.into.is_some() {
         refuse_without_origin()?;
     }
-    let mut studies = load_or_shipped(&arguments.studies)?;
-    arguments.trust.mark_all(&mut studies, &arguments.studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let mut studies = load(&chosen)?;
+    arguments.trust.mark_all(&mut studies, &chosen)?;
     let mut spreads: Vec<ValueScatter> = Vec::new();
     for study in &studies {
         let one = records_of(study, 1)?;

@@ -6,12 +6,12 @@ use crate::campaign::run_report::{RunReport, Tally};
 use crate::campaign::runner::RunOptions;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::commands::check::{GOLDEN, refuse_unfinished};
+use crate::cli::commands::check::refuse_unfinished;
 use crate::cli::commands::compare::state_of;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_or_shipped, run_and_store};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load, run_and_store};
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::stream::say;
-use crate::cli::study_files;
 use crate::cli::study_tables::Beside;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::{GoldenFile, parts};
@@ -31,18 +31,17 @@ use std::time::Instant;
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files or names of shipped studies; every shipped one where none is named
-    #[arg(value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Folder for the report
     #[arg(long, value_name = "DIR", default_value = "report")]
     out: PathBuf,
     /// Folder of the records
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
-    /// Folder of the golden values that the records are compared with
-    #[arg(long, value_name = "DIR", default_value = GOLDEN)]
-    golden: PathBuf,
+    /// Folder of the golden values that the records are compared with [default: `golden` beside the study or above]
+    #[arg(long, value_name = "DIR")]
+    golden: Option<PathBuf>,
     /// Say what changed against this state instead: a folder of records, or a git revision with golden values
     #[arg(long, value_name = "A")]
     against: Option<String>,
@@ -63,15 +62,17 @@ pub struct Arguments {
 /// its figures and tables as files.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let start = Instant::now();
-    let against = arguments.against.as_deref().map(|named| state_of(named, &arguments.golden)).transpose()?;
+    let against =
+        arguments.against.as_deref().map(|named| state_of(named, arguments.golden.as_deref())).transpose()?;
     for note in against.iter().flat_map(|state| &state.notes) {
         say!("{note}");
     }
-    let mut studies = load_or_shipped(&arguments.studies)?;
+    let chosen = arguments.studies.chosen()?;
+    let mut studies = load(&chosen)?;
     let reports = if arguments.from_records {
         kept(&studies, arguments)?
     } else {
-        arguments.trust.mark(&mut studies, &arguments.studies);
+        arguments.trust.mark(&mut studies, &chosen);
         run_missing(&studies, arguments)?
     };
     let with_records: Vec<(&Study, &RunReport)> =
@@ -79,7 +80,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let results = with_records
         .par_iter()
         .map(|(study, report)| {
-            let file = typed_name(&study.name, arguments);
+            let file = typed_name(&study.name, &chosen);
             StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
         })
         .collect::<Vec<_>>();
@@ -91,7 +92,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
         left_out: results.iter().map(StudyResults::left_out).sum(),
     };
-    let changes = changes(&studies, &reports, against.as_ref(), &arguments.golden);
+    let golden_of = |study: &str| golden_of(arguments.golden.as_deref(), study, &chosen).ok();
+    let changes = changes(&studies, &reports, against.as_ref(), &golden_of);
     let name = against.as_ref().map_or("the golden values", |state| &state.name);
     let written = files::write(&arguments.out, &results, (name, changes.as_deref()), making, start)?;
     say!("the report is {}", written.display());
@@ -113,18 +115,15 @@ fn selected(study: &Study, is_named: bool) -> Study {
     selected
 }
 
-/// What a study is called at the command line: its file, or its name where it came from inside the program and there
-/// is no such file here.
-fn typed_name(study: &str, arguments: &Arguments) -> String {
-    let file = study_files::file_of(study, &arguments.studies);
-    let is_inside = study_files::is_shipped(study, &arguments.studies) && !Path::new(&file).is_file();
-    if is_inside { study.to_owned() } else { file }
+/// What a study is called at the command line: its file, or its name where it came from inside the program.
+fn typed_name(study: &str, chosen: &[PathBuf]) -> String {
+    chosen_as(study, chosen).map_or_else(|| study.to_owned(), |path| path.display().to_string())
 }
 
 fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
     let tier = arguments.tier;
     let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
-    let is_named = !arguments.studies.is_empty();
+    let is_named = !arguments.studies.names_none();
     let chosen: Vec<Study> = studies.iter().map(|study| selected(study, is_named)).collect();
     let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, Beside::Machines)?;
     refuse_unfinished(&reports)?;
@@ -180,12 +179,12 @@ fn changes(
     studies: &[Study],
     reports: &[RunReport],
     against: Option<&State>,
-    golden: &Path,
+    golden_of: &(dyn Fn(&str) -> Option<GoldenFile> + Sync),
 ) -> Option<Vec<StudyComparison>> {
     let of_study = |(study, report): &(&Study, &RunReport)| {
         let before = match against {
             Some(state) => state.studies.get(&study.name)?.clone(),
-            None => StudyState::of_golden(GoldenFile::read_or_embedded(golden, &study.name).ok()?),
+            None => StudyState::of_golden(golden_of(&study.name)?),
         };
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
         let known: HashSet<&str> = before.golden.values.keys().map(|name| parts(name).0).collect();

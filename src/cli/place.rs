@@ -1,0 +1,193 @@
+//! The place: the studies that a command takes where none is named, and the folder of the golden values of a study.
+//!
+//! The project is the current folder or the nearest one above it that has `oedometer.toml`, `golden/` or `studies/`. Its
+//! studies are those of `studies/`, or those beside it where there are none.
+
+use crate::case::contender::RACE;
+use crate::cli::exit::{Ended, Exit};
+use crate::golden::references::REFERENCES;
+use crate::golden::{GoldenError, GoldenFile};
+use crate::study::shipped::{name_of, shipped_names, shipped_study};
+use oedometer_formats::input_file::read_text;
+use std::path::{Path, PathBuf};
+
+/// Name of the folder of the golden values.
+pub const GOLDEN: &str = "golden";
+/// Name of the folder of a project's studies.
+const STUDIES: &str = "studies";
+/// Empty file that says where a project begins.
+const MARK: &str = "oedometer.toml";
+
+/// Which studies a command takes.
+#[derive(Debug, clap::Args)]
+pub struct StudyArguments {
+    /// Study files, folders of them, or names of shipped studies; the studies of this project (`studies/*.toml` or
+    /// `*.toml`, here or above) where none is named
+    #[arg(value_name = "STUDY.toml")]
+    studies: Vec<PathBuf>,
+    /// Take every shipped study
+    #[arg(long, conflicts_with = "studies")]
+    shipped: bool,
+}
+
+impl StudyArguments {
+    /// Files and names of the studies, one each.
+    ///
+    /// # Errors
+    /// When none is named and there is none here, or a named folder has none.
+    pub fn chosen(&self) -> anyhow::Result<Vec<PathBuf>> {
+        if self.shipped {
+            return Ok(shipped_names().into_iter().map(PathBuf::from).collect());
+        }
+        if self.names_none() { studies_of_this_project() } else { named(&self.studies) }
+    }
+
+    /// Whether all studies are taken, of the project or of the program.
+    pub fn names_none(&self) -> bool {
+        self.studies.is_empty()
+    }
+
+    /// Whether the golden values of the exact solutions belong to what is taken.
+    pub fn has_references(&self) -> bool {
+        self.shipped || self.names_none() && GoldenFile::path(&folder_of_golden(None), REFERENCES).is_file()
+    }
+}
+
+/// The studies that were named, with those of folders and of the race one by one.
+///
+/// # Errors
+/// When a folder has no study.
+pub fn named(given: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    let mut chosen = Vec::new();
+    for path in given {
+        if path.is_dir() && shipped_study(&path.to_string_lossy()).is_none() {
+            let found = studies_in(path);
+            if found.is_empty() {
+                let told = path.display();
+                return Err(Ended::usage(format!(
+                    "the folder {told} has no study: `oedometer new {}` writes one there",
+                    path.join("my-study").display()
+                )));
+            }
+            chosen.extend(found);
+        } else if path.as_os_str() == RACE && !path.exists() {
+            chosen.extend(shipped_names().into_iter().filter(|name| is_of_race(name)).map(PathBuf::from));
+        } else {
+            chosen.push(path.clone());
+        }
+    }
+    Ok(chosen)
+}
+
+fn is_of_race(study: &str) -> bool {
+    study.split('-').next() == Some(RACE)
+}
+
+/// The studies of the project around the current folder.
+///
+/// # Errors
+/// When there are none.
+pub fn studies_of_this_project() -> anyhow::Result<Vec<PathBuf>> {
+    let is_project = |folder: &Path| {
+        folder.as_os_str().is_empty()
+            || folder.join(MARK).is_file()
+            || [GOLDEN, STUDIES].iter().any(|one| folder.join(one).is_dir())
+    };
+    let mut folders = with_parents(Path::new("")).into_iter().filter(|folder| is_project(folder));
+    folders.find_map(|folder| Some(studies_in(&folder)).filter(|found| !found.is_empty())).ok_or_else(|| {
+        let why = "there is no study in this folder, in its `studies/` or in a project above: name one, \
+                   `oedometer new my-study` writes one, and `--shipped` takes those of the program";
+        Ended::with(Exit::NothingSelected, why)
+    })
+}
+
+/// The studies of a folder: those in its `studies/`, or those in itself where there are none. The shipped ones in the
+/// order of the report, then all others by name.
+fn studies_in(folder: &Path) -> Vec<PathBuf> {
+    let order = shipped_names();
+    let mut found = [folder.join(STUDIES), folder.to_owned()]
+        .iter()
+        .map(|folder| study_files_of(folder))
+        .find(|found| !found.is_empty())
+        .unwrap_or_default();
+    found.sort_by_cached_key(|file| {
+        let told = file.display().to_string();
+        (order.iter().position(|name| name == name_of(&told)).unwrap_or(order.len()), told)
+    });
+    found
+}
+
+/// The study files in a folder. Mappings and the settings of other programs, which have no scene and no sweep, are none.
+fn study_files_of(folder: &Path) -> Vec<PathBuf> {
+    let begins = |line: &str| ["scene", "[[sweep]]"].iter().any(|word| line.trim_start().starts_with(word));
+    // One that cannot be read is told of when it is.
+    let is_study = |path: &PathBuf| read_text(path).map_or(true, |text| text.lines().any(begins));
+    let entries = std::fs::read_dir(Path::new(".").join(folder)).into_iter().flatten().flatten();
+    let files = entries.map(|entry| folder.join(entry.file_name()));
+    files.filter(|path| path.extension().is_some_and(|end| end == "toml")).filter(is_study).collect()
+}
+
+/// A folder and all those above it, as they are reached from the current one.
+fn with_parents(folder: &Path) -> Vec<PathBuf> {
+    let depth = whole(folder).map_or(1, |whole| whole.ancestors().count());
+    std::iter::successors(Some(folder.to_owned()), |folder| Some(above(folder))).take(depth).collect()
+}
+
+/// The whole path of a folder, where it is there.
+fn whole(folder: &Path) -> Option<PathBuf> {
+    Path::new(".").join(folder).canonicalize().ok()
+}
+
+/// The folder above one.
+fn above(folder: &Path) -> PathBuf {
+    match (folder.parent(), folder.file_name()) {
+        (Some(parent), Some(_)) => parent.to_owned(),
+        _ => folder.join(".."),
+    }
+}
+
+/// The folder of the golden values of a study file, or of a study from inside the program: `golden/` beside the file or
+/// above it, up to the root of its project or repository; else the one here. Where there is none yet, beside the file
+/// or beside its `studies/`.
+pub fn folder_of_golden(file: Option<&Path>) -> PathBuf {
+    let own = file.and_then(Path::parent).unwrap_or(Path::new(""));
+    let is_root = |folder: &PathBuf| folder.join(MARK).is_file() || folder.join(".git").exists();
+    let folders = with_parents(own);
+    let is_home = whole(own).is_some_and(|own| own.ends_with(STUDIES));
+    let root = folders.iter().position(is_root).unwrap_or(usize::from(is_home));
+    let mut searched = folders[..=root.min(folders.len() - 1)].to_vec();
+    searched.push(PathBuf::new());
+    let found = searched.into_iter().map(|folder| folder.join(GOLDEN)).find(|folder| folder.is_dir());
+    found.unwrap_or_else(|| if is_home { above(own) } else { own.to_owned() }.join(GOLDEN))
+}
+
+/// The golden values of a chosen study or of the exact solutions: from a folder where one is given, else from that of its
+/// file; of what is inside the program from there, where the folder has none.
+///
+/// # Errors
+/// As [`GoldenFile::read`].
+pub fn golden_of(given: Option<&Path>, study: &str, chosen: &[PathBuf]) -> Result<GoldenFile, GoldenError> {
+    let is_inside = study == REFERENCES || is_shipped(study, chosen);
+    match given {
+        Some(folder) => GoldenFile::read(folder, study),
+        None if is_inside => GoldenFile::read_or_embedded(&golden_folder(None, study, chosen), study),
+        None => GoldenFile::read(&golden_folder(None, study, chosen), study),
+    }
+}
+
+/// The folder of the golden values of a chosen study: the given one, or that of its file.
+pub fn golden_folder(given: Option<&Path>, study: &str, chosen: &[PathBuf]) -> PathBuf {
+    let is_stream = |path: &Path| ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));
+    let file = chosen_as(study, chosen).filter(|path| path.is_file() && !is_stream(path));
+    given.map_or_else(|| folder_of_golden(file), Path::to_owned)
+}
+
+/// As what a study was chosen: a file, or the name of a shipped one.
+pub fn chosen_as<'a>(study: &str, chosen: &'a [PathBuf]) -> Option<&'a Path> {
+    chosen.iter().find(|path| name_of(&path.to_string_lossy()) == study).map(PathBuf::as_path)
+}
+
+/// Whether a chosen study comes from inside the program.
+pub fn is_shipped(study: &str, chosen: &[PathBuf]) -> bool {
+    chosen_as(study, chosen).is_some_and(|path| !path.is_file() && shipped_study(study).is_some())
+}
