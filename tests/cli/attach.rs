@@ -224,7 +224,7 @@ fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() 
     let check = |options: &[&str]| {
         let before = runs();
         let told = call(at, &[&["check", "study/s.toml"], options].concat());
-        let taken = told.err.contains("2 of 2 cases were taken from out/s");
+        let taken = told.err.contains("2 of 2 cases taken from out");
         assert_eq!(runs() == before, taken, "{}", told.err);
         (runs() - before, told.out)
     };
