@@ -39,7 +39,7 @@ pub struct Column {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub initial_stress: f64,
     /// Plate that is pushed into a layer.
-    #[serde(default, skip_serializing_if = "Footing::is_none")]
+    #[serde(default, skip_serializing_if = "Footing::is_untouched")]
     pub footing: Footing,
 }
 
@@ -55,7 +55,13 @@ pub struct Footing {
 }
 
 impl Footing {
+    /// Whether there is no plate.
     fn is_none(&self) -> bool {
+        self.width == 0.0
+    }
+
+    /// Whether no key of a footing has been given.
+    fn is_untouched(&self) -> bool {
         *self == Self::default()
     }
 }
