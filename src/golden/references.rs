@@ -188,12 +188,17 @@ fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, Ex
         ..*seed
     };
     let growing = ColumnParameters { loading_time: seed.time(LOADED_AT), ..soft };
-    // Motions that were chosen have no column; their balances are tested. Soils of several kinds and soils that yield are
-    // compared with values computed by other ways.
+    // Motions that were chosen and a footing have no column; their balances are tested. Soils of several kinds and soils
+    // that yield are compared with values computed by other ways.
     let has_seed_column = |kind: &ReferenceKind| {
-        let needs_own_soil =
-            matches!(kind, ReferenceKind::Layered | ReferenceKind::YieldFront | ReferenceKind::SealedElement);
-        !kind.is_manufactured() && !needs_own_soil
+        let needs_own_inputs = matches!(
+            kind,
+            ReferenceKind::Layered
+                | ReferenceKind::YieldFront
+                | ReferenceKind::SealedElement
+                | ReferenceKind::Footing
+        );
+        !kind.is_manufactured() && !needs_own_inputs
     };
     for kind in ReferenceKind::ALL.into_iter().filter(has_seed_column) {
         values.note_solution("seed column", kind, seed, &TIME_FACTORS)?;
