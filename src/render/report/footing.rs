@@ -11,10 +11,17 @@ use oedometer_mpm::scene::SceneKind;
 /// Load factor up to which curves are drawn, over that of collapse: what locks leaves the figure.
 const HIGHEST: f64 = 2.0;
 
-/// Curves on the finest mesh that every method has run, the first run of each method; empty for other scenes.
+/// Curves on the finest mesh that every method has run, the first run of each method, all kept undrained as in the study's
+/// first case; empty for other scenes.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
-    let is_footing = results.study.scene == SceneKind::Footing;
-    let sound = results.records.iter().filter(|record| is_footing && record.status == Status::Ok);
+    let Some(first) = results.records.first() else { return Vec::new() };
+    let undrained = first.case.column.footing.undrained;
+    let is_drawn = |record: &&Record| {
+        results.study.scene == SceneKind::Footing
+            && record.status == Status::Ok
+            && record.case.column.footing.undrained == undrained
+    };
+    let sound = results.records.iter().filter(is_drawn);
     let of_methods = grouped(sound.map(|record| (record.case.method, record)));
     let finest = |own: &[&Record]| own.iter().map(|record| record.case.cells).max();
     let Some(cells) = of_methods.iter().filter_map(|(_, own)| finest(own)).min() else { return Vec::new() };
@@ -38,8 +45,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     }
     chart.series.push(Series::theory("2 + π", vec![(0.0, LOAD_FACTOR), (end, LOAD_FACTOR)]));
     let caption = format!(
-        "{cells} cells under the plate. A method that locks never comes to a plateau: its curve leaves the figure at twice the load \
-         of collapse."
+        "{cells} cells under the plate, undrained by {}. A method that locks never comes to a plateau: its curve leaves the figure at twice the load \
+         of collapse.",
+        undrained.name().replace('-', " ")
     );
     vec![
         Block::Heading("Load and settlement".to_owned()),
