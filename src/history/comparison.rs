@@ -7,6 +7,7 @@ use crate::golden::{is_counter, is_error, parts};
 use crate::history::orders::{OrderChange, order_changes};
 use crate::history::state::{Inputs, State, StudyState};
 use crate::measure::statistics::spread;
+use oedometer_soil::wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where something went from the first state to the second.
@@ -181,13 +182,19 @@ pub(crate) fn compare_states(
 ) -> (Vec<StudyComparison>, Vec<String>) {
     let wanted = |study: &&String| only.is_empty() || only.contains(study);
     let mut notes: Vec<String> = before.notes.iter().chain(&after.notes).cloned().collect();
-    let mut found = Vec::new();
+    let (mut found, mut gone, mut new) = (Vec::new(), Vec::new(), Vec::new());
     let names: BTreeSet<&String> = before.studies.keys().chain(after.studies.keys()).filter(wanted).collect();
     for name in names {
         match (before.studies.get(name), after.studies.get(name)) {
             (Some(a), Some(b)) => found.push(StudyComparison::of(name, a, b)),
-            (Some(_), None) => notes.push(format!("{name} is in {} only", before.name)),
-            (None, _) => notes.push(format!("{name} is in {} only", after.name)),
+            (Some(_), None) => gone.push(name.as_str()),
+            (None, _) => new.push(name.as_str()),
+        }
+    }
+    for (state, studies) in [(before, gone), (after, new)] {
+        if !studies.is_empty() {
+            let count = count_of(studies.len(), "study is", "studies are");
+            notes.push(format!("{count} in {} only: {}", state.name, studies.join(", ")));
         }
     }
     for study in only

@@ -1,6 +1,6 @@
 //! Results over time as tables and pages: two states of studies, and golden values over commits.
 
-use crate::golden::compare::Difference;
+use crate::golden::compare::{Change, Difference};
 use crate::history::comparison::{Arrow, Seconds, StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
@@ -8,7 +8,8 @@ use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::summary;
-use oedometer_soil::wording::short;
+use oedometer_soil::elementary;
+use oedometer_soil::wording::{count_of, short};
 
 fn trend(trend: Trend) -> Cell {
     let mood = match trend {
@@ -25,39 +26,91 @@ fn time(seconds: Option<Seconds>) -> Cell {
     Cell::Text(format!("{}{scatter}", short(median)))
 }
 
-/// Two states beside each other: a row per study, then what moved in it.
+/// Two states beside each other: the studies that differ, what got worse first, then what differs in them, and the
+/// names of those that are the same.
 pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> Vec<Table> {
-    let row = |one: &StudyComparison| {
-        let largest =
-            |of: fn(&StudyComparison) -> Option<f64>| Cell::of(of(one), Cell::Error, "nothing moved");
+    let found = worst_first(found);
+    let differing: Vec<&StudyComparison> = found.iter().copied().filter(|one| differs(one)).collect();
+    let same: Vec<&str> = found.iter().filter(|one| !differs(one)).map(|one| one.study.as_str()).collect();
+    let mut table = summary_table(&differing, names);
+    if !same.is_empty() {
+        let studies = count_of(same.len(), "study is", "studies are");
+        table = table.note(format!("{studies} the same: {}.", same.join(", ")));
+    }
+    let details = [inputs_table(&found), moved_table(&found), orders_table(&found)];
+    std::iter::once(table).chain(details.into_iter().flatten()).collect()
+}
+
+/// One row per study, those that are the same among them, for programs.
+pub(crate) fn comparison_rows(found: &[StudyComparison], names: [&str; 2]) -> Table {
+    summary_table(&worst_first(found), names)
+}
+
+/// Whether a value, an input or the set of values is another.
+fn differs(one: &StudyComparison) -> bool {
+    one.has_changed() || one.unpaired > 0
+}
+
+/// What got worse first, then what changed, those that moved most in front.
+fn worst_first(found: &[StudyComparison]) -> Vec<&StudyComparison> {
+    let rank = |one: &StudyComparison| match (one.is_regression(), differs(one)) {
+        (true, _) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+    };
+    let mut sorted: Vec<&StudyComparison> = found.iter().collect();
+    sorted.sort_by(|a, b| {
+        let change = |one| largest_change(one).unwrap_or(0.0);
+        rank(a).cmp(&rank(b)).then_with(|| change(b).total_cmp(&change(a)))
+    });
+    sorted
+}
+
+/// The largest relative change of a value that both states have; `None` where nothing moved.
+fn largest_change(one: &StudyComparison) -> Option<f64> {
+    one.groups.iter().filter_map(|group| group.worst.relative_change()).reduce(f64::max)
+}
+
+/// A row per study.
+fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
+    let row = |one: &&StudyComparison| {
+        let of = |change: &[Change]| {
+            let groups = one.groups.iter().filter(|group| change.contains(&group.change));
+            groups.map(|group| group.values as u64).sum::<u64>()
+        };
+        let (gone, new) = (of(&[Change::Missing]), of(&[Change::Extra]));
+        let moved = one.groups.iter().map(|group| group.values as u64).sum::<u64>() - gone - new;
         vec![
             Cell::Code(one.study.clone()),
             trend(one.accuracy),
             trend(one.cost),
             Cell::Count(one.values as u64),
-            Cell::Count(
-                one.groups.iter().map(|group| group.values as u64).sum::<u64>() - one.unpaired as u64,
-            ),
-            Cell::Count(one.unpaired as u64),
-            largest(|one| {
-                let changes = one.groups.iter().filter_map(|group| group.worst.relative_change());
-                changes.reduce(f64::max)
-            }),
-            time(one.seconds.map(|[before, _]| before)),
-            time(one.seconds.map(|[_, after]| after)),
+            Cell::Count(moved),
+            Cell::Count(gone),
+            Cell::Count(new),
+            Cell::of(largest_change(one), Cell::Error, "nothing moved"),
         ]
     };
-    let header = "study | accuracy | cost | > values | > moved | > in one state only | > largest relative change \
-                  | > processor time before [s] | > after [s]";
-    let mut tables = vec![
-        Table::of(format!("{} → {}", names[0], names[1]), columns(header), found.iter().map(row))
-            .note("Cost is judged by work counters. Times are medians over runs, with the shortest and longest, and never judged."),
-    ];
-    let inputs: Vec<Vec<Cell>> = found
+    let header = "study | accuracy | cost | > values | > moved | > gone | > new | > largest relative change";
+    let mut table = Table::of(format!("{} → {}", names[0], names[1]), columns(header), found.iter().map(row))
+        .note("Cost is judged by work counters.");
+    if found.iter().any(|one| one.seconds.is_some()) {
+        table.columns.extend(columns("> processor time before [s] | > after [s]"));
+        for (row, one) in table.rows.iter_mut().zip(found) {
+            row.extend([0, 1].map(|state| time(one.seconds.map(|seconds| seconds[state]))));
+        }
+        table = table.note("Times are medians over runs, with the shortest and longest, and never judged.");
+    }
+    table
+}
+
+/// The inputs that differ; none where none does.
+fn inputs_table(found: &[&StudyComparison]) -> Option<Table> {
+    let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
+    let rows: Vec<Vec<Cell>> = found
         .iter()
         .flat_map(|one| one.inputs.iter().map(move |input| (one, input)))
         .map(|(one, input)| {
-            let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
             vec![
                 Cell::Code(one.study.clone()),
                 Cell::Code(input.key.clone()),
@@ -67,14 +120,13 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             ]
         })
         .collect();
-    if !inputs.is_empty() {
-        tables.push(Table::of(
-            "inputs that differ",
-            columns("study | input | before | after | > cases"),
-            inputs,
-        ));
-    }
-    let moved: Vec<Vec<Cell>> = found
+    let header = "study | input | before | after | > cases";
+    (!rows.is_empty()).then(|| Table::of("inputs that differ", columns(header), rows))
+}
+
+/// What moved, a row per kind of change; none where nothing did.
+fn moved_table(found: &[&StudyComparison]) -> Option<Table> {
+    let rows: Vec<Vec<Cell>> = found
         .iter()
         .flat_map(|one| one.groups.iter().map(move |group| (one, group)))
         .map(|(one, group)| {
@@ -88,19 +140,12 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             ]
         })
         .collect();
-    tables.extend(orders_table(found));
-    if !moved.is_empty() {
-        tables.push(Table::of(
-            "what moved",
-            columns("study | what | worst value | > before | > after"),
-            moved,
-        ));
-    }
-    tables
+    let header = "study | what | worst value | > before | > after";
+    (!rows.is_empty()).then(|| Table::of("what moved", columns(header), rows))
 }
 
 /// The series whose order or class is another; none where there is none.
-fn orders_table(found: &[StudyComparison]) -> Option<Table> {
+fn orders_table(found: &[&StudyComparison]) -> Option<Table> {
     let orders: Vec<Vec<Cell>> = found
         .iter()
         .flat_map(|one| one.orders.iter().map(move |change| (one, change)))
@@ -185,24 +230,41 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
 /// Arrows of one study drawn before the rest is only in the table.
 const MOST_ARROWS: usize = 40;
 
-/// Two states as a page: the tables, and each case as an arrow in the plane of cost and error.
+/// Studies whose figures a comparison shows unasked, what got worse first.
+const MOST_FIGURES: usize = 6;
+
+/// Two states as a page: the studies that differ, each case of them as an arrow in the plane of cost and error, then
+/// what differs in detail. What got worse comes first.
 pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Page {
-    let moved = |one: &&StudyComparison| !one.groups.is_empty();
-    let mut sections = vec![Section {
-        heading: "What changed".to_owned(),
-        id: "changes".to_owned(),
-        blocks: comparison_tables(found, names).into_iter().map(Block::Table).collect(),
+    let mut tables = comparison_tables(found, names).into_iter();
+    let summary = tables.next().map(Block::Table);
+    let section = |heading: &str, id: &str, blocks: Vec<Block>| Section {
+        heading: heading.to_owned(),
+        id: id.to_owned(),
+        blocks,
         ..Section::default()
-    }];
-    let figures: Vec<Block> = found.iter().filter(moved).filter_map(arrows_of).map(Block::Figure).collect();
-    if !figures.is_empty() {
-        sections.push(Section {
-            heading: "Error and cost of each case".to_owned(),
-            id: "arrows".to_owned(),
-            blocks: figures,
-            ..Section::default()
-        });
+    };
+    let mut figures = worst_first(found).into_iter().filter(|one| differs(one)).filter_map(arrows_of);
+    let worst: Vec<Figure> = figures.by_ref().take(MOST_FIGURES).collect();
+    let rest: Vec<Block> = figures.map(Block::Figure).collect();
+    let mut drawn = vec![Block::Figures(worst)];
+    if !rest.is_empty() {
+        let summary = count_of(rest.len(), "more study", "more studies");
+        drawn.push(Block::Details { summary, blocks: rest });
     }
+    let details = tables.map(|table| {
+        let rows = count_of(table.rows.len(), "row", "rows");
+        Block::Details { summary: format!("{}, {rows}", table.title), blocks: vec![Block::Table(table)] }
+    });
+    let mut sections = vec![
+        section("What changed", "changes", summary.into_iter().collect()),
+        section("Error and cost of each case", "arrows", drawn),
+        section("In detail", "details", details.collect()),
+    ];
+    sections.retain(|section| {
+        let is_empty = |block: &Block| matches!(block, Block::Figures(figures) if figures.is_empty());
+        !section.blocks.iter().all(is_empty)
+    });
     let worse = found.iter().filter(|one| one.is_regression()).count();
     Page {
         title: format!("{} → {}", names[0], names[1]),
@@ -216,10 +278,12 @@ pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Pa
 
 /// The cases of a study that moved, each a line from its state before to a marker at its state after.
 fn arrows_of(one: &StudyComparison) -> Option<Figure> {
+    // What is no longer than its own marker is in the tables only.
+    let is_long = |before: f64, after: f64| elementary::ln(after / before).abs() > 1e-3;
     let is_drawable = |arrow: &&Arrow| {
         let [before, after] = [arrow.before, arrow.after];
-        before != after
-            && [before.0, before.1, after.0, after.1].iter().all(|value| *value > 0.0 && value.is_finite())
+        [before.0, before.1, after.0, after.1].iter().all(|value| *value > 0.0 && value.is_finite())
+            && (is_long(before.0, after.0) || is_long(before.1, after.1))
     };
     let arrows: Vec<&Arrow> = one.arrows.iter().filter(is_drawable).take(MOST_ARROWS).collect();
     if arrows.is_empty() {
@@ -245,17 +309,23 @@ fn arrows_of(one: &StudyComparison) -> Option<Figure> {
     Some(Figure::new(format!("arrows-{}", one.study), chart, caption))
 }
 
-/// Golden values over time as a page: a figure and the commits per study.
+/// Golden values over time as a page: the studies with links to their commits, and a figure where values moved.
 pub(crate) fn timeline_page(lines: &[Timeline]) -> Page {
+    let mut table = timeline_summary(lines);
+    for row in &mut table.rows {
+        if let Some(Cell::Code(study)) = row.first().cloned() {
+            row[0] = Cell::Link { target: format!("#{study}"), words: study };
+        }
+    }
     let summary = Section {
         heading: "Studies".to_owned(),
         id: "studies".to_owned(),
-        blocks: vec![Block::Table(timeline_summary(lines))],
+        blocks: vec![Block::Table(table)],
         ..Section::default()
     };
     let of_study = |line: &Timeline| {
         let mut blocks = Vec::new();
-        if line.steps.len() > 1 {
+        if line.steps.iter().skip(1).any(|step| step.moved > 0) {
             blocks.push(Block::Figure(timeline_figure(line)));
         }
         blocks.push(Block::Table(timeline_table(std::slice::from_ref(line))));
@@ -265,6 +335,7 @@ pub(crate) fn timeline_page(lines: &[Timeline]) -> Page {
         title: "Golden values over time".to_owned(),
         lead: "Errors and work of each study over the commits that changed its golden values.".to_owned(),
         sections: std::iter::once(summary).chain(lines.iter().map(of_study)).collect(),
+        is_wide: true,
         filter: Some("study".to_owned()),
         ..Page::default()
     }
@@ -286,10 +357,6 @@ fn timeline_figure(line: &Timeline) -> Figure {
     let told: Vec<String> = steps
         .map(|(at, step)| format!("{}: `{}` {}", at + 1, step.commit.short(), step.commit.subject))
         .collect();
-    let caption = if told.is_empty() {
-        "No value moved.".to_owned()
-    } else {
-        format!("Values moved at {}.", told.join("; "))
-    };
+    let caption = format!("Values moved at {}.", told.join("; "));
     Figure::new(format!("history-{}", line.study), chart, caption)
 }

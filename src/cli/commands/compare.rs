@@ -11,7 +11,7 @@ use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
 use crate::history::rounds::{self, with_command};
 use crate::history::state::State;
-use crate::render::history_tables::{comparison_page, comparison_tables};
+use crate::render::history_tables::{comparison_page, comparison_rows, comparison_tables};
 use crate::render::page::render_html;
 use std::path::{Path, PathBuf};
 
@@ -67,13 +67,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             format!("{} and {} have no value of a study in common", before.name, after.name),
         ));
     }
-    if arguments.format == TableFormat::Json {
-        print_data(&json_of(&found)?)?;
-    } else {
-        print_tables(&comparison_tables(&found, [&before.name, &after.name]), arguments.format)?;
+    let names = [before.name.as_str(), &after.name];
+    match arguments.format {
+        TableFormat::Json => print_data(&json_of(&found)?)?,
+        TableFormat::Csv => print_tables(&[comparison_rows(&found, names)], TableFormat::Csv)?,
+        format => print_tables(&comparison_tables(&found, names), format)?,
     }
     if let Some(page) = &arguments.page {
-        write_document(page, &render_html(&comparison_page(&found, [&before.name, &after.name]))?)?;
+        write_document(page, &render_html(&comparison_page(&found, names))?)?;
     }
     let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
     say!("{} of {} studies got worse", regressed.len(), found.len());

@@ -85,9 +85,12 @@ fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     out
 }
 
-/// The list of the sections, where there are several.
+/// Sections that a list of contents may have: a longer one hides the page on a phone.
+const MOST_CONTENTS: usize = 20;
+
+/// The list of the sections, where there are several and not too many.
 fn html_contents(page: &Page) -> String {
-    if page.sections.len() < 2 {
+    if !(2..=MOST_CONTENTS).contains(&page.sections.len()) {
         return String::new();
     }
     let mut out = "<nav aria-label=\"Contents\">\n<p class=\"nav-title\">Contents</p>\n<ol>\n".to_owned();
