@@ -107,15 +107,17 @@ fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
         } else if off <= ALIKE {
             format!("the same error to within {}", number::percent(off))
         } else {
-            let [least, median, largest] = [least, median, largest].map(number::number);
-            format!("double-point MPM has {median} times the error (from {least} to {largest})")
+            let [least, median, largest] = [least, median, largest].map(|ratio| format!("{ratio:.2}"));
+            format!(
+                "double-point MPM has {median} times the error in the median, {least} to {largest} times in all"
+            )
         };
         parts.push(format!("“{}”, {method}: {errors}", one.situation.name()));
     }
     let costs: Vec<f64> = told.iter().filter_map(|one| one.cost).collect();
     let cost = match (costs.iter().copied().reduce(f64::min), costs.iter().copied().reduce(f64::max)) {
         (Some(least), Some(most)) => {
-            let [least, most] = [least, most].map(number::number);
+            let [least, most] = [least, most].map(|ratio| format!("{ratio:.1}"));
             let times = if least == most { least } else { format!("{least} to {most}") };
             format!(" A double-point run takes {times} times as long.")
         }

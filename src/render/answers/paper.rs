@@ -1,5 +1,6 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
+use crate::case::Case;
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};
@@ -11,6 +12,9 @@ use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
 use crate::render::report::theory_lines;
 use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Column;
+use oedometer_soil::material::Material;
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
 
@@ -60,17 +64,12 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
 fn run_of<'a>(results: &'a [StudyResults<'a>], is_large: bool) -> Option<PaperRun<'a>> {
     let fits = |record: &&Record| {
         let case = &record.case;
-        let scene = case.scene;
         record.status == Status::Ok
             && record.stability.is_none()
             && case.method.to_string() == PAPERS
             && case.cells == QUOTED_CELLS
-            && case.column.dimensions == 1
-            && scene.is_large_strain() == is_large
-            && scene.is_loaded()
-            && !scene.has_waves()
+            && is_papers_column(case, is_large)
             && case.variant().is_empty()
-            && record.case.column.loading_time == 0.0
     };
     let all = results
         .iter()
@@ -79,6 +78,22 @@ fn run_of<'a>(results: &'a [StudyResults<'a>], is_large: bool) -> Option<PaperRu
     all.reduce(|best, next| {
         if next.record.case.time_factors.len() > best.record.case.time_factors.len() { next } else { best }
     })
+}
+
+/// Load of the paper's column at large strain, Pa.
+const LARGE_STRAIN_LOAD: f64 = 200e3;
+
+/// Whether a case is of the soil, height and, at large strain, load of Figs 3 and 4.
+fn is_papers_column(case: &Case, is_large: bool) -> bool {
+    let (scene, load) = if is_large {
+        (SceneKind::XieLeo, LARGE_STRAIN_LOAD)
+    } else {
+        (SceneKind::Terzaghi, case.column.load)
+    };
+    let papers = Column { load, points: case.column.points, ..Column::default() };
+    let soil =
+        Material { law: case.material.law, continuity: case.material.continuity, ..Material::default() };
+    case.scene == scene && *case.column == papers && *case.material == soil
 }
 
 /// The paper's run with those of other methods that differ in nothing else.
@@ -115,4 +130,34 @@ pub(crate) fn largest_error(record: &Record, reference: &str) -> Option<(f64, f6
         Some((measure.error(record)?.value.abs(), *time))
     });
     errors.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::tier::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    #[test]
+    fn only_the_papers_column_is_said_to_reproduce_the_paper() {
+        let answered = |scene: &str, inputs: &str| {
+            let text = format!(
+                "title = 't'\nscene = '{scene}'\n{inputs}\n[output]\ntime_factors = [0.1]\n[[sweep]]\n\
+                 method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n"
+            );
+            let source = StudySource { name: "s.toml".to_owned(), text: text.clone() };
+            let study = Study::check(&source).expect("a sound study");
+            let records = records_of(&text);
+            let results = [StudyResults::new(&study, &records, Tier::Full)];
+            let links = |study: &str| format!("{study}.html");
+            matches!(answer(&results, &links).expect("an answer"), Answer::Told(_))
+        };
+        assert!(answered("terzaghi", ""));
+        assert!(answered("xie-leo", "[column]\nload = 200e3"));
+        assert!(!answered("terzaghi", "[material]\nyoungs_modulus = 2e6"));
+        assert!(!answered("terzaghi", "[column]\nheight = 5.0"));
+        assert!(!answered("xie-leo", "[column]\nload = 100e3"));
+    }
 }

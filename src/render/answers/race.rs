@@ -232,8 +232,11 @@ fn of_the_step(grid: &Grid) -> Option<String> {
 
 fn the_one(grid: &Grid, one: &Overall) -> String {
     let (name, of) = (&grid.contenders[one.contender], grid.rows.len());
+    let worst = one.worst_at.map_or(String::new(), |place| {
+        format!(" and at most {} times the best ({})", times(one.worst_ratio), quoted(grid, place))
+    });
     let results = match one.without {
-        0 => format!("it has a result in all {}", count_of(of, "situation", "situations")),
+        0 => "it has a result in each of them".to_owned(),
         lacking => {
             let places = grid
                 .everywhere()
@@ -241,18 +244,16 @@ fn the_one(grid: &Grid, one: &Overall) -> String {
                 .filter(|place| grid.rows[*place].ratio(one.contender).is_none());
             let names: Vec<String> = places.map(|place| quoted(grid, place)).collect();
             format!(
-                "no contender has a usable result in every situation, and it lacks one in {lacking} of {of} ({})",
+                "it has no usable result in {lacking} ({}), and no contender has one in all",
                 names.join(", ")
             )
         }
     };
-    let worst = one.worst_at.map_or(String::new(), |place| {
-        format!(", its error is at most {} times the best ({})", times(one.worst_ratio), quoted(grid, place))
-    });
     format!(
-        "If you may have only one method, take **`{name}`**: {results}{worst}, and it is within a factor of 2 of the best in {} \
-         of {of}.",
-        one.nearly_best
+        "If you may have only one method, take **`{name}`**: its error is within a factor of 2 of the best in {} of {}{worst}; \
+         {results}.",
+        one.nearly_best,
+        count_of(of, "situation", "situations")
     )
 }
 
@@ -379,8 +380,8 @@ mod tests {
             ("plane", [f64::INFINITY, 0.3, f64::NAN]),
         ]));
         let expected = [
-            "If you may have only one method, take **`b`**: it has a result in all 3 situations, its error is at most 3.0 times \
-             the best (“column-b”), and it is within a factor of 2 of the best in 2 of 3.",
+            "If you may have only one method, take **`b`**: its error is within a factor of 2 of the best in 2 of 3 \
+             situations and at most 3.0 times the best (“column-b”); it has a result in each of them.",
             "**Columns at small strain** (2 situations): `GC-SRI-patch`, at most 2.0 times the best error.",
             "**Large strain in the plane** (1 situation): `b`, at most 1.0 times the best error.",
             "**The paper's method**, `GC-SRI-patch`, is number 1 of 3 by mean rank (1.7 over 3 situations): it is first, alone \
@@ -398,10 +399,14 @@ mod tests {
         assert_eq!(told, ["No contender has a usable result in any situation."]);
         // Only `c` has both.
         let one = sentences(&grid(&[("a", [0.1, f64::INFINITY, 0.2]), ("b", [f64::NAN, 0.1, 0.3])]));
-        assert!(one[0].contains("take **`c`**: it has a result in all 2 situations"), "{}", one[0]);
+        assert!(
+            one[0].contains("take **`c`**") && one[0].contains("it has a result in each of them"),
+            "{}",
+            one[0]
+        );
         let none =
             sentences(&grid(&[("a", [0.1, f64::INFINITY, f64::INFINITY]), ("b", [f64::NAN, 0.1, 0.3])]));
-        assert!(none[0].contains("no contender has a usable result in every situation"), "{}", none[0]);
+        assert!(none[0].contains("and no contender has one in all"), "{}", none[0]);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::render::report::labels::{
 };
 use crate::study::expectation::Axis;
 use oedometer_convergence::WINDOW;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 
@@ -51,9 +52,9 @@ pub fn large_strain<'a>(results: &'a [StudyResults<'a>]) -> Option<Regime<'a>> {
     regime(results, &|case| case.scene.is_large_strain())
 }
 
-/// Paths alike in everything but method, step and integrator, of the column with most methods.
+/// Paths alike in everything but method, step and integrator, of the column with most methods, the classic one first.
 fn regime<'a>(results: &'a [StudyResults<'a>], fits: &dyn Fn(&Case) -> bool) -> Option<Regime<'a>> {
-    let mut groups: BTreeMap<String, (&'static str, Vec<MethodPath<'a>>)> = BTreeMap::new();
+    let mut groups: BTreeMap<String, (bool, &'static str, Vec<MethodPath<'a>>)> = BTreeMap::new();
     for one in results {
         let Some(reference) = one.study.references.first() else { continue };
         let is_candidate = |path: &Path<'_>| {
@@ -65,12 +66,14 @@ fn regime<'a>(results: &'a [StudyResults<'a>], fits: &dyn Fn(&Case) -> bool) -> 
             let key =
                 format!("{:?} {:?} {:?} {}", case.scene, case.column, case.material, case.points_per_cell);
             let method = case.method.to_string();
-            let group = groups.entry(key).or_insert_with(|| (reference.name(), Vec::new()));
-            group.1.push(MethodPath { method, study: &one.study.name, path: path.clone() });
+            let is_classic = matches!(case.scene, SceneKind::Terzaghi | SceneKind::XieLeo);
+            let group = groups.entry(key).or_insert_with(|| (is_classic, reference.name(), Vec::new()));
+            group.2.push(MethodPath { method, study: &one.study.name, path: path.clone() });
         }
     }
-    let (reference, all) =
-        groups.into_values().max_by_key(|(_, all)| distinct(all.iter().map(|one| &one.method)).len())?;
+    let (_, reference, all) = groups.into_values().max_by_key(|(is_classic, _, all)| {
+        (distinct(all.iter().map(|one| &one.method)).len(), *is_classic)
+    })?;
     let time_factor = time_of_most(&all)?;
     let methods = best_of_each(all, reference, time_factor);
     let finest_cells = mesh_of_most(&methods)?;
