@@ -26,16 +26,19 @@ fn time(seconds: Option<Seconds>) -> Cell {
     Cell::Text(format!("{}{scatter}", short(median)))
 }
 
+/// Studies that are the same with a row each; more are named in one line where others differ.
+const MOST_SAME: usize = 10;
+
 /// Two states beside each other: the studies that differ, what got worse first, then what differs in them, and the
 /// names of those that are the same.
 pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> Vec<Table> {
     let found = worst_first(found);
-    let differing: Vec<&StudyComparison> = found.iter().copied().filter(|one| differs(one)).collect();
-    let same: Vec<&str> = found.iter().filter(|one| !differs(one)).map(|one| one.study.as_str()).collect();
-    let mut table = summary_table(&differing, names);
-    if !same.is_empty() {
-        let studies = count_of(same.len(), "study is", "studies are");
-        table = table.note(format!("{studies} the same: {}.", same.join(", ")));
+    let (differing, same): (Vec<_>, Vec<_>) = found.iter().copied().partition(|one| differs(one));
+    let mut table = summary_table(&found, names);
+    if same.len() > MOST_SAME && !differing.is_empty() {
+        let studies = same.iter().map(|one| one.study.as_str()).collect::<Vec<_>>().join(", ");
+        table =
+            summary_table(&differing, names).note(format!("{} studies are the same: {studies}.", same.len()));
     }
     let details = [inputs_table(&found), moved_table(&found), orders_table(&found)];
     std::iter::once(table).chain(details.into_iter().flatten()).collect()

@@ -179,7 +179,9 @@ fn columns(of: &str) -> String {
     let text = columns_csv().expect("a table");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
-    let rows = rows.iter().filter(|row| &row[0] == of);
+    // Inputs are keys, which have a page of their own.
+    let is_key = |name: &str| KEYS.iter().any(|key| key.name == name);
+    let rows = rows.iter().filter(|row| &row[0] == of && !(of.is_empty() && is_key(&row[1])));
     markdown(
         "column | unit | meaning",
         rows.map(|row| vec![code(&row[1]), row[2].to_owned(), row[3].to_owned()]),
