@@ -9,6 +9,8 @@ const HEADER_MARK: char = '#';
 const LABELS: [&str; 2] = ["case", "T_v"];
 /// What stands before the quantity of a column of spreads.
 const SPREAD_MARK: &str = "spread of ";
+/// What stands before the key of a column of inputs.
+const INPUT_MARK: &str = "input ";
 
 /// Numbers of a row, by whether they are spreads, and by measure.
 type TableRow<'a> = BTreeMap<(bool, &'a str), f64>;
@@ -78,7 +80,9 @@ impl GoldenFile {
             .iter()
             .map(|(group, spread)| (group, true, format!("{spread:.1e}").parse().unwrap_or(*spread)));
         let mut columns = BTreeSet::new();
-        let mut rows: BTreeMap<(&str, &str), TableRow<'_>> = BTreeMap::new();
+        let cases = self.inputs.own.iter().filter(|(_, own)| !own.is_empty());
+        let mut rows: BTreeMap<(&str, &str), TableRow<'_>> =
+            cases.map(|(label, _)| ((label.as_str(), ""), TableRow::new())).collect();
         for (name, is_spread, value) in values.chain(spreads) {
             let place = TablePlace::of(name);
             let column = (is_spread, place.measure);
@@ -98,12 +102,28 @@ impl GoldenFile {
                 [case, time_factor].map(|label| (*label).to_owned()).into_iter().chain(cells).collect(),
             );
         }
+        self.add_own_inputs(&mut records);
         for record in &records {
             writer.write_record(record).map_err(|error| error.to_string())?;
         }
         let table = writer.into_inner().map_err(|error| error.to_string())?;
         text.push_str(&String::from_utf8(table).map_err(|error| error.to_string())?);
         Ok(text)
+    }
+
+    /// Adds the columns of the inputs that differ between the cases, in the rows without a time.
+    fn add_own_inputs(&self, records: &mut [Vec<String>]) {
+        let keys: BTreeSet<&String> = self.inputs.own.values().flat_map(BTreeMap::keys).collect();
+        let Some((titles, rows)) = records.split_first_mut() else { return };
+        titles.extend(keys.iter().map(|key| format!("{INPUT_MARK}{key}")));
+        for row in rows {
+            let own = self.inputs.own.get(&row[0]).filter(|_| row[1].is_empty());
+            let values: Vec<String> = keys
+                .iter()
+                .map(|key| own.and_then(|own| own.get(*key)).cloned().unwrap_or_default())
+                .collect();
+            row.extend(values);
+        }
     }
 
     /// Reads what [`Self::to_text`] wrote.
@@ -140,8 +160,19 @@ impl GoldenFile {
     /// Takes the values and spreads of a row of the table.
     fn take_row(&mut self, titles: &csv::StringRecord, record: &csv::StringRecord) -> Result<(), String> {
         let row = (&record[0], &record[1]);
+        if !self.inputs.is_unknown() {
+            self.inputs.own.entry(record[0].to_owned()).or_default();
+        }
         let cells = titles.iter().zip(record).skip(LABELS.len());
         for (title, cell) in cells.filter(|(_, cell)| !cell.is_empty()) {
+            if let Some(key) = title.strip_prefix(INPUT_MARK) {
+                self.inputs
+                    .own
+                    .entry(record[0].to_owned())
+                    .or_default()
+                    .insert(key.to_owned(), cell.to_owned());
+                continue;
+            }
             let value = cell.parse().map_err(|_| format!("`{cell}` under `{title}` is not a number"))?;
             let (kept, measure) = match title.strip_prefix(SPREAD_MARK) {
                 Some(measure) => (&mut self.spread, measure),
@@ -159,6 +190,7 @@ impl GoldenFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::inputs::CaseInputs;
 
     /// Every kind of name and number there is.
     fn golden() -> GoldenFile {
@@ -180,7 +212,23 @@ mod tests {
             pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<BTreeMap<_, _>>()
         };
         let reason = "two lines,\nand \"quoted\" # so".to_owned();
-        GoldenFile { reason, values: owned(&values), spread: owned(&spread), ..GoldenFile::of("s", &[], "-") }
+        let inputs = CaseInputs {
+            shared: [("youngs_modulus".to_owned(), "1e6 Pa".to_owned())].into(),
+            own: [
+                ("MPM cells=4 (u-p, implicit drag)", &[("cells", "4")][..]),
+                ("MPM cells=8", &[("cells", "8"), ("points.jitter", "0.1")]),
+                ("a case without values", &[("cells", "16")]),
+                ("cosine-layer rough", &[]),
+                ("a name of its own", &[]),
+            ]
+            .map(|(case, own)| {
+                let own = own.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
+                (case.to_owned(), own.collect())
+            })
+            .into(),
+        };
+        let (values, spread) = (owned(&values), owned(&spread));
+        GoldenFile { reason, inputs, values, spread, ..GoldenFile::of("s", &[], "-") }
     }
 
     #[test]
@@ -211,12 +259,12 @@ mod tests {
             table[0],
             "case,T_v,,observed critical step,pressure points l2 terzaghi,\
              settlement surface relative terzaghi,steps,water balance,σ'_xx x=0.3 y=0.5,\
-             spread of pressure,spread of water balance"
+             spread of pressure,spread of water balance,input cells,input points.jitter"
         );
         let case = "\"MPM cells=4 (u-p, implicit drag)\"";
-        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.8e-11"));
-        assert_eq!(table[3], format!("{case},0.05,,,0.12345678901,,,0,,1e-12,"));
-        assert_eq!(table.len(), 7);
+        assert_eq!(table[1], format!("{case},,,-1,,,46824,,,,3.8e-11,4,"));
+        assert_eq!(table[3], format!("{case},0.05,,,0.12345678901,,,0,,1e-12,,,"));
+        assert_eq!(table.len(), 9, "a row of their inputs for cases without counters");
     }
 
     #[test]

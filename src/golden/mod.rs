@@ -8,39 +8,50 @@
 //! `golden/STUDY.csv` has a header, whose lines begin with `#` and which is TOML behind that, and a table:
 //!
 //! ```text
-//! # schema = 2
+//! # schema = 3
 //! # study = "terzaghi-mesh"
 //! # reason = "why these values were taken"
 //! # relative_tolerance = 1e-9
 //! # …
 //! # [provenance]
 //! # …
-//! case,T_v,point updates,pressure points l2 terzaghi,…,steps,…,spread of pressure,…
-//! MPM implicit cells=4 points=2,,800,,…,100,…,,…
-//! MPM implicit cells=4 points=2,0.1,,0.0213,…,,…,2.1e-11,…
+//! # [inputs]
+//! # youngs_modulus = "1e6 Pa"
+//! # …
+//! case,T_v,point updates,pressure points l2 terzaghi,…,steps,…,spread of pressure,…,input cells
+//! MPM implicit cells=4 points=2,,800,,…,100,…,,…,4
+//! MPM implicit cells=4 points=2,0.1,,0.0213,…,,…,2.1e-11,…,
 //! ```
 //!
-//! A row per case and time factor, by label and then by time; counters stand in a row without a time. Columns
+//! The header has the inputs that all cases share, the columns `input KEY` those that differ. Layout 2, which knows no
+//! inputs, is read too.
+//!
+//! A row per case and time factor, by label and then by time; counters and inputs stand in a row without a time. Columns
 //! are in the order of their names; a cell is empty where nothing was measured. A number has the digits that its
 //! tolerance compares and one more. `spread of X` is the largest change by round-off of all values of the row whose
 //! first word is `X`, where it is large enough to widen a tolerance. `git diff --word-diff-regex='[^,]+' golden/` shows which numbers changed.
 
 pub mod compare;
 mod file_text;
+pub mod inputs;
 pub mod references;
 pub mod tolerance;
 
-use crate::golden::tolerance::{ABSOLUTE_FLOOR, BASIS, RELATIVE_FLOOR};
+use crate::golden::compare::compare;
+use crate::golden::inputs::{CaseInputs, Pairing};
+use crate::golden::tolerance::{ABSOLUTE_FLOOR, BASIS, RELATIVE_FLOOR, spread_group};
 use crate::record::provenance::Provenance;
 use crate::record::whole_file::{StoreError, write_whole};
 use crate::record::{ErrorRow, Record};
 use include_dir::{Dir, include_dir};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Version of the file's layout.
-const SCHEMA: u32 = 2;
+const SCHEMA: u32 = 3;
+/// Older version that is read too: it has no inputs.
+const WITHOUT_INPUTS: u32 = 2;
 /// Golden values of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,6 +73,9 @@ pub struct GoldenFile {
     pub seconds: Option<f64>,
     /// What made the values.
     pub provenance: Provenance,
+    /// Inputs of the cases; empty where they are not known.
+    #[serde(default, skip_serializing_if = "CaseInputs::is_unknown")]
+    pub inputs: CaseInputs,
     /// Largest change by round-off that was measured, by case, quantity and time: a tolerance is ten
     /// times as wide.
     #[serde(skip)]
@@ -110,9 +124,41 @@ impl GoldenFile {
             basis: BASIS.to_owned(),
             provenance: Provenance::of_this_program(),
             seconds: Some(seconds_of(records)),
+            inputs: CaseInputs::of(records.iter().map(|record| &record.case)),
             spread: BTreeMap::new(),
             values: values_of(records),
         }
+    }
+
+    /// The file beside cases with other inputs: the values of a case that has another label now are under that one. And
+    /// how the cases belong together.
+    #[must_use]
+    pub fn beside(mut self, inputs: &CaseInputs) -> (Self, Pairing) {
+        let pairing = Pairing::of(&self.inputs, inputs);
+        self.values = pairing.rename(self.values);
+        self.spread = pairing.rename(self.spread);
+        self.inputs.own = pairing.rename(self.inputs.own);
+        (self, pairing)
+    }
+
+    /// The file with the values and spreads of an older one wherever these agree: what is written again differs where
+    /// something moved, and nowhere else.
+    #[must_use]
+    pub fn keeping(mut self, older: &Self) -> Self {
+        let differences = compare(older, &self.values);
+        // Counters share a spread with nothing: each is a group of its own.
+        let group_of = |name: &str| spread_group(name).unwrap_or_else(|| name.to_owned());
+        let moved: BTreeSet<String> = differences.iter().map(|one| group_of(&one.name)).collect();
+        for (name, value) in &mut self.values {
+            let group = group_of(name);
+            let Some(before) = older.values.get(name).filter(|_| !moved.contains(&group)) else { continue };
+            *value = *before;
+            match older.spread.get(&group) {
+                Some(spread) => self.spread.insert(group, *spread),
+                None => self.spread.remove(&group),
+            };
+        }
+        self
     }
 
     /// Path of a study's golden file in a folder.
@@ -135,7 +181,7 @@ impl GoldenFile {
             Err(error) => return Err(unreadable(error.to_string())),
         };
         let file = Self::from_text(&text).map_err(unreadable)?;
-        if file.schema != SCHEMA || file.study != study {
+        if ![SCHEMA, WITHOUT_INPUTS].contains(&file.schema) || file.study != study {
             return Err(unreadable(format!("it is of study `{}` and layout {}", file.study, file.schema)));
         }
         match file.out_of_bounds() {
@@ -265,5 +311,31 @@ mod tests {
         }
         let missing = GoldenFile::read_or_embedded(nowhere, "no-such-study");
         assert!(matches!(missing, Err(GoldenError::Missing(_))));
+    }
+
+    #[test]
+    fn what_agrees_stays_as_it_was_written_and_what_moved_is_taken_with_its_spread() {
+        let name =
+            |cells: u32, norm: &str| format!("MPM cells={cells} | pressure points {norm} terzaghi T_v=0.1");
+        let file = |values: [f64; 3], spread: [f64; 2]| GoldenFile {
+            values: [(name(4, "l1"), values[0]), (name(4, "l2"), values[1]), (name(8, "l2"), values[2])]
+                .into(),
+            spread: [4, 8]
+                .map(|cells| format!("MPM cells={cells} | pressure T_v=0.1"))
+                .into_iter()
+                .zip(spread)
+                .collect(),
+            ..GoldenFile::of("s", &[], "test")
+        };
+        let older = file([0.1, 0.2, 0.3], [1e-12, 2e-12]);
+        let (round_off, moved) = (1e-11, 1e-3);
+        let written = file([0.1 + round_off, 0.2, 0.3 + moved], [3e-12, 4e-12]).keeping(&older);
+        assert_eq!(written, file([0.1, 0.2, 0.3 + moved], [1e-12, 4e-12]));
+        // A counter has no spread to share: it is taken when it moved.
+        let counted = |steps: f64| GoldenFile {
+            values: [("MPM cells=4 | steps".to_owned(), steps)].into(),
+            ..GoldenFile::of("s", &[], "test")
+        };
+        assert_eq!(counted(101.0).keeping(&counted(100.0)), counted(101.0));
     }
 }

@@ -3,9 +3,10 @@
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
+use crate::golden::inputs::InputChange;
 use crate::golden::{is_counter, is_error, parts};
 use crate::history::orders::{OrderChange, order_changes};
-use crate::history::state::{Inputs, State, StudyState};
+use crate::history::state::{State, StudyState};
 use crate::measure::statistics::spread;
 use oedometer_soil::wording::count_of;
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,19 +49,6 @@ impl Trend {
             Self::Regressed => "regressed",
         }
     }
-}
-
-/// An input that differs in the same way in some cases of a study.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct InputChange {
-    /// Key, `material.youngs_modulus`.
-    pub key: String,
-    /// Value before; empty where it was not given.
-    pub before: String,
-    /// Value after.
-    pub after: String,
-    /// Cases in which it differs so.
-    pub cases: usize,
 }
 
 /// A study in two states.
@@ -148,7 +136,9 @@ impl StudyComparison {
     /// Compares a study's states; tolerances are those of the first.
     pub(crate) fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
         let found = &after.golden.values;
-        let differences = compare(&before.golden, found);
+        let seconds = Seconds::of_both(before, after);
+        let (before, pairing) = before.golden.clone().beside(&after.golden.inputs);
+        let differences = compare(&before, found);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
             .iter()
             .filter(|one| one.golden.is_some() && one.found.is_some())
@@ -157,19 +147,19 @@ impl StudyComparison {
         let cost = Trend::of(counters.iter().any(|one| !grew(one)), counters.iter().any(grew));
         let is_better = |one: &&Difference| matches!(one.change, Change::Stale | Change::Smaller);
         let accuracy = Trend::of(errors.iter().any(is_better), errors.iter().any(|one| !is_better(one)));
-        let names = before.golden.values.keys().chain(found.keys()).map(String::as_str);
+        let names = before.values.keys().chain(found.keys()).map(String::as_str);
         Self {
             study: study.to_owned(),
             accuracy,
             cost,
-            values: before.golden.values.keys().filter(|name| found.contains_key(*name)).count(),
+            values: before.values.keys().filter(|name| found.contains_key(*name)).count(),
             unpaired: differences.iter().filter(|one| one.golden.is_none() || one.found.is_none()).count(),
-            inputs: input_changes(before.inputs.as_ref(), after.inputs.as_ref()),
+            inputs: pairing.changes,
             groups: groups_of(&differences, names.collect::<BTreeSet<_>>()),
             changes: case_changes(&differences),
-            orders: order_changes(&before.golden.values, found, &differences),
-            seconds: Seconds::of_both(before, after),
-            arrows: arrows(&before.golden.values, found),
+            orders: order_changes(&before.values, found, &differences),
+            seconds,
+            arrows: arrows(&before.values, found),
         }
     }
 }
@@ -206,52 +196,6 @@ pub(crate) fn compare_states(
     (found, notes)
 }
 
-/// What differs in the inputs of cases of the same label, the most cases first. A label may tell the input that
-/// changed: cases without a partner of that label are paired with the one whose inputs differ least.
-fn input_changes(
-    before: Option<&BTreeMap<String, Inputs>>,
-    after: Option<&BTreeMap<String, Inputs>>,
-) -> Vec<InputChange> {
-    let (Some(before), Some(after)) = (before, after) else { return Vec::new() };
-    let mut counts: BTreeMap<(&str, &str, &str), usize> = BTreeMap::new();
-    for (label, old) in before {
-        let Some(new) = after.get(label).or_else(|| nearest(old, after, before)) else { continue };
-        for key in old.keys().chain(new.keys()).collect::<BTreeSet<_>>() {
-            let value = |inputs: &'_ Inputs| inputs.get(key).map_or("", String::as_str).to_owned();
-            if value(old) != value(new) {
-                let text = |inputs| <BTreeMap<String, String>>::get(inputs, key).map_or("", String::as_str);
-                *counts.entry((key, text(old), text(new))).or_default() += 1;
-            }
-        }
-    }
-    let change = |((key, before, after), cases): ((&str, &str, &str), usize)| InputChange {
-        key: key.to_owned(),
-        before: before.to_owned(),
-        after: after.to_owned(),
-        cases,
-    };
-    let mut changes: Vec<InputChange> = counts.into_iter().map(change).collect();
-    changes.sort_by(|a, b| b.cases.cmp(&a.cases).then_with(|| a.key.cmp(&b.key)));
-    changes
-}
-
-/// Inputs of the case that differs in the fewest keys, of those whose label is new.
-fn nearest<'a>(
-    inputs: &Inputs,
-    cases: &'a BTreeMap<String, Inputs>,
-    known: &BTreeMap<String, Inputs>,
-) -> Option<&'a Inputs> {
-    let unlike = |other: &Inputs| {
-        let keys: BTreeSet<&String> = inputs.keys().chain(other.keys()).collect();
-        keys.into_iter().filter(|key| inputs.get(*key) != other.get(*key)).count()
-    };
-    cases
-        .iter()
-        .filter(|(label, _)| !known.contains_key(*label))
-        .map(|(_, case)| case)
-        .min_by_key(|case| unlike(case))
-}
-
 /// Every case that has point updates and an error in both states: the error of the pressure, or of the first quantity
 /// there is, at its last time.
 fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<Arrow> {
@@ -281,19 +225,18 @@ fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<
 mod tests {
     use super::*;
     use crate::golden::GoldenFile;
+    use crate::golden::inputs::CaseInputs;
 
     fn state(values: &[(&str, f64)], modulus: &str) -> StudyState {
         let values: BTreeMap<String, f64> =
             values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        let inputs = |case: &str| {
-            let pairs = [("material.youngs_modulus", modulus), ("cells", &case[6..])];
-            (case.to_owned(), pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).into())
+        let own = |case: &str| (case.to_owned(), [("cells".to_owned(), case[6..].to_owned())].into());
+        let inputs = CaseInputs {
+            shared: [("youngs_modulus".to_owned(), modulus.to_owned())].into(),
+            own: ["cells=4", "cells=8"].map(own).into(),
         };
-        StudyState {
-            golden: GoldenFile { values, ..GoldenFile::of("s", &[], "-") },
-            inputs: Some(["cells=4", "cells=8"].map(inputs).into()),
-            seconds: BTreeMap::new(),
-        }
+        let golden = GoldenFile { values, inputs, ..GoldenFile::of("s", &[], "-") };
+        StudyState::of_golden(golden)
     }
 
     const BEFORE: [(&str, f64); 4] = [
@@ -338,28 +281,15 @@ mod tests {
     }
 
     #[test]
-    fn inputs_that_differ_are_named_with_the_number_of_their_cases() {
-        let found = StudyComparison::of("s", &state(&BEFORE, "1e6"), &state(&BEFORE, "1.1e6"));
-        let expected = InputChange {
-            key: "material.youngs_modulus".to_owned(),
-            before: "1e6".to_owned(),
-            after: "1.1e6".to_owned(),
-            cases: 2,
-        };
-        assert_eq!(found.inputs, [expected]);
-    }
-
-    #[test]
-    fn a_case_whose_label_changed_is_compared_with_the_nearest_new_one() {
-        let mut after = state(&BEFORE, "1e6");
-        let mut renamed = after.inputs.take().expect("inputs");
-        let mut finer = renamed.remove("cells=8").expect("a case");
-        finer.insert("cells".to_owned(), "16".to_owned());
-        renamed.insert("cells=16".to_owned(), finer);
-        after.inputs = Some(renamed);
+    fn a_case_whose_label_tells_another_input_is_compared_with_its_nearest() {
+        let mut after = state(&BEFORE, "1.1e6");
+        let finer = after.golden.inputs.own.remove("cells=8").expect("a case");
+        after.golden.inputs.own.insert("cells=9".to_owned(), [("cells".to_owned(), "9".to_owned())].into());
+        assert_ne!(finer, after.golden.inputs.own["cells=9"]);
+        after.golden.values = BEFORE.map(|(name, value)| (name.replace("cells=8", "cells=9"), value)).into();
         let found = StudyComparison::of("s", &state(&BEFORE, "1e6"), &after);
-        let told: Vec<_> =
-            found.inputs.iter().map(|one| (&*one.key, &*one.before, &*one.after, one.cases)).collect();
-        assert_eq!(told, [("cells", "8", "16", 1)]);
+        let told: Vec<String> = found.inputs.iter().map(InputChange::sentence).collect();
+        assert_eq!(told, ["youngs_modulus 1e6 → 1.1e6 in 2 cases", "cells 8 → 9 in 1 case"]);
+        assert_eq!((found.unpaired, found.is_regression(), found.has_changed()), (0, false, true));
     }
 }

@@ -1,8 +1,8 @@
 //! One state of studies: their values, and the inputs that they belong to.
 
-use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::golden::GoldenFile;
+use crate::golden::inputs::CaseInputs;
 use crate::golden::references::REFERENCES;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::Record;
@@ -13,16 +13,11 @@ use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Inputs of a case by their keys, numbers as the shortest decimal.
-pub(crate) type Inputs = BTreeMap<String, String>;
-
 /// A study in one state.
 #[derive(Clone, Debug)]
 pub(crate) struct StudyState {
-    /// Errors and work counters with their tolerances.
+    /// Inputs, errors and work counters with their tolerances.
     pub golden: GoldenFile,
-    /// Inputs of its cases by label; `None` where they are not known.
-    pub inputs: Option<BTreeMap<String, Inputs>>,
     /// Processor seconds of every run of each case by label, where they were measured.
     pub seconds: BTreeMap<String, Vec<f64>>,
 }
@@ -114,11 +109,13 @@ impl State {
         for (path, name) in golden {
             let read = texts.get(&object(path)).map(|text| GoldenFile::from_text(text));
             match read {
-                Some(Ok(golden)) => {
-                    let source = study_of(name).and_then(|path| Some((path, texts.get(&object(path))?)));
-                    let inputs = source.and_then(|(path, text)| inputs_of_study(path, text));
-                    let study = StudyState { inputs, ..StudyState::of_golden(golden) };
-                    state.studies.insert(name.to_owned(), study);
+                Some(Ok(mut golden)) => {
+                    if golden.inputs.is_unknown() {
+                        let source = study_of(name).and_then(|path| Some((path, texts.get(&object(path))?)));
+                        let inputs = source.and_then(|(path, text)| inputs_of_study(path, text));
+                        golden.inputs = inputs.unwrap_or_default();
+                    }
+                    state.studies.insert(name.to_owned(), StudyState::of_golden(golden));
                 }
                 Some(Err(reason)) => state.notes.push(unreadable(&commit, path, &reason)),
                 None => {}
@@ -132,24 +129,19 @@ impl State {
 }
 
 impl StudyState {
-    /// The state of golden values, whose inputs are not known.
+    /// The state of golden values, which nobody timed.
     pub fn of_golden(golden: GoldenFile) -> Self {
-        Self { golden, inputs: None, seconds: BTreeMap::new() }
+        Self { golden, seconds: BTreeMap::new() }
     }
 
     /// The state of records.
     pub fn of_records(study: &str, records: &[Record]) -> Self {
-        let inputs = records.iter().map(|record| (record.case.label(), inputs_of(&record.case)));
         let timed = records.iter().filter(|record| !record.wall.is_empty());
         let seconds = timed.map(|record| {
             let runs = record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds));
             (record.case.label(), runs.collect())
         });
-        Self {
-            golden: GoldenFile::of(study, records, "records"),
-            inputs: Some(inputs.collect()),
-            seconds: seconds.collect(),
-        }
+        Self { golden: GoldenFile::of(study, records, "records"), seconds: seconds.collect() }
     }
 }
 
@@ -165,32 +157,7 @@ pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &str) -> String {
 }
 
 /// The inputs of the cases of a study as it stood then; `None` where this program refuses it.
-fn inputs_of_study(path: &str, text: &str) -> Option<BTreeMap<String, Inputs>> {
+fn inputs_of_study(path: &str, text: &str) -> Option<CaseInputs> {
     let study = Study::check(&StudySource { name: path.to_owned(), text: text.to_owned() }).ok()?;
-    Some(study.cases(Tier::Full).into_iter().map(|case| (case.label(), inputs_of(case))).collect())
-}
-
-/// The inputs of a case, nested tables by dotted keys.
-fn inputs_of(case: &Case) -> Inputs {
-    fn flatten(prefix: &str, value: serde_json::Value, inputs: &mut Inputs) {
-        match value {
-            serde_json::Value::Object(table) => {
-                for (key, value) in table {
-                    let key = if prefix.is_empty() { key } else { format!("{prefix}.{key}") };
-                    flatten(&key, value, inputs);
-                }
-            }
-            serde_json::Value::String(word) => {
-                inputs.insert(prefix.to_owned(), word);
-            }
-            other => {
-                inputs.insert(prefix.to_owned(), other.to_string());
-            }
-        }
-    }
-    let mut inputs = Inputs::new();
-    if let Ok(value) = serde_json::to_value(case) {
-        flatten("", value, &mut inputs);
-    }
-    inputs
+    Some(CaseInputs::of(study.cases(Tier::Full)))
 }

@@ -3,6 +3,7 @@
 
 use crate::case::{Case, Norm};
 use crate::golden::compare::{Difference, compare};
+use crate::golden::inputs::{CaseInputs, InputChange, Pairing};
 use crate::golden::{GoldenFile, measure_name, values_of};
 use crate::judge::paths::{grouped, level_size, paths};
 use crate::measure::fields::{exact_samples, largest_contribution};
@@ -50,6 +51,8 @@ pub struct Explanation {
     pub carriers: Vec<Carrier>,
     /// Series of the first carrier's error, one an axis that the study refines.
     pub levels: Vec<LevelSeries>,
+    /// Inputs of this case that are not those of its golden values.
+    pub inputs: Vec<InputChange>,
     /// Differences from the golden values of this case.
     pub differences: Vec<Difference>,
     /// Golden values of this case that agree.
@@ -58,7 +61,8 @@ pub struct Explanation {
     pub has_golden: bool,
 }
 
-/// Explains a record. `focus` puts the carrier of a golden value's name first.
+/// Explains a record. `focus` puts the carrier of a golden value's name first. Golden values are those beside the cases of
+/// the study ([`GoldenFile::beside`]).
 ///
 /// # Errors
 /// When a reference refuses the case.
@@ -78,7 +82,10 @@ pub fn explain(
         _ => Vec::new(),
     };
     let (differences, agreeing) = golden.map_or((Vec::new(), 0), |golden| differences_of(record, golden));
-    Ok(Explanation { carriers, levels, differences, agreeing, has_golden: golden.is_some() })
+    let inputs = golden.map_or(Vec::new(), |golden| {
+        Pairing::of(&golden.inputs.only(&record.case.label()), &CaseInputs::of([&record.case])).changes
+    });
+    Ok(Explanation { carriers, levels, inputs, differences, agreeing, has_golden: golden.is_some() })
 }
 
 /// Whether two names are of one quantity and place, whatever norm and time.

@@ -5,6 +5,7 @@ use crate::case::Tier;
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
+use crate::golden::inputs::{CaseInputs, InputChange};
 use crate::golden::references::{REFERENCES, reference_values};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::judge::attached_diagnosis::diagnoses;
@@ -39,6 +40,8 @@ pub struct StudyCheck {
     pub unsound: Vec<CaseNote>,
     /// Verdicts on expectations.
     pub judgements: Vec<Judgement>,
+    /// Inputs that are not those of the golden values, the most cases first.
+    pub inputs: Vec<InputChange>,
     /// Differences from the golden values, or why golden values are missing.
     pub golden: Result<Vec<Difference>, GoldenError>,
     /// The differences by kind, with what those of a kind have in common.
@@ -61,7 +64,7 @@ pub enum CheckEnd {
     Failed,
     /// A case failed.
     CaseFailed,
-    /// A golden value is missing or stale.
+    /// A golden value is missing or stale, or of other inputs.
     Golden,
 }
 
@@ -74,7 +77,10 @@ impl StudyCheck {
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
         let absent = Absent::among(records);
-        let golden = golden.map(|golden| absent.without(golden));
+        let inputs = CaseInputs::of(records.iter().map(|record| &record.case));
+        let golden = golden.map(|golden| absent.without(golden).beside(&inputs));
+        let changes = golden.as_ref().map(|(_, pairing)| pairing.changes.clone()).unwrap_or_default();
+        let golden = golden.map(|(golden, _)| golden);
         let slow = golden.as_ref().ok().and_then(|golden| slowness(golden, seconds_of(records)));
         // Of a study without golden values none is compared.
         let values = golden.as_ref().map_or_else(|_| BTreeMap::new(), |_| values_of(records));
@@ -93,6 +99,7 @@ impl StudyCheck {
                 failure.map(ToString::to_string).into_iter().collect()
             }),
             // Partial results of a failed run are not judged.
+            inputs: changes,
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
                 Status::Ok if !study.is_race => soundness::complaints(record),
@@ -160,6 +167,7 @@ impl StudyCheck {
             failed_cases: Vec::new(),
             unsound: Vec::new(),
             judgements: Vec::new(),
+            inputs: Vec::new(),
             agreeing: values.len() - changed,
             groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),
@@ -184,14 +192,14 @@ impl StudyCheck {
     }
 
     /// How the check came out, the worst first: a verdict, an unsound record or a value that moved,
-    /// a failed case, a golden value that is missing or stale.
+    /// a failed case, a golden value that is missing, stale, or of other inputs.
     pub fn end(&self) -> CheckEnd {
         let unmet = self.judgements.iter().any(|judgement| !judgement.verdict.pass);
         if unmet || !self.unsound.is_empty() || self.has_moved() {
             CheckEnd::Failed
         } else if !self.failed_cases.is_empty() {
             CheckEnd::CaseFailed
-        } else if self.golden.is_err() || !self.differences().is_empty() {
+        } else if self.golden.is_err() || !self.differences().is_empty() || !self.inputs.is_empty() {
             CheckEnd::Golden
         } else {
             CheckEnd::Pass

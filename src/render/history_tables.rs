@@ -7,7 +7,7 @@ use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::render::tables::golden_changes::summary;
+use crate::render::tables::golden_changes::{input_cells, summary};
 use oedometer_soil::elementary;
 use oedometer_soil::wording::{count_of, short};
 
@@ -109,19 +109,10 @@ fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
 
 /// The inputs that differ; none where none does.
 fn inputs_table(found: &[&StudyComparison]) -> Option<Table> {
-    let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
     let rows: Vec<Vec<Cell>> = found
         .iter()
         .flat_map(|one| one.inputs.iter().map(move |input| (one, input)))
-        .map(|(one, input)| {
-            vec![
-                Cell::Code(one.study.clone()),
-                Cell::Code(input.key.clone()),
-                value(&input.before),
-                value(&input.after),
-                Cell::Count(input.cases as u64),
-            ]
-        })
+        .map(|(one, input)| [vec![Cell::Code(one.study.clone())], input_cells(input)].concat())
         .collect();
     let header = "study | input | before | after | > cases";
     (!rows.is_empty()).then(|| Table::of("inputs that differ", columns(header), rows))

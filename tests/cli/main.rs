@@ -12,6 +12,7 @@ mod foreign;
 mod gate;
 mod gone;
 mod impossible_results;
+mod inputs_first;
 mod manufactured;
 mod mapping;
 mod over_time;

@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     refuse_failing(&studies, &records, arguments.despite_failing)?;
     let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
     if arguments.references {
-        keep(&GoldenFile::of_references(reason)?, &folder_of(REFERENCES))?;
+        keep(GoldenFile::of_references(reason)?, &folder_of(REFERENCES))?;
     }
     let mut perturbed = Vec::new();
     for digit in LastDigit::ALL {
@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let golden = GoldenFile::of(&study.name, &records[number], reason);
         let others: Vec<_> = perturbed.iter().map(|records| values_of(&records[number])).collect();
         let spread = spread_by_group(&golden.values, &others);
-        keep(&golden.widened_by(spread), &folder_of(&study.name))?;
+        keep(golden.widened_by(spread), &folder_of(&study.name))?;
     }
     Ok(Exit::Pass)
 }
@@ -113,7 +113,13 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn keep(golden: &GoldenFile, folder: &Path) -> anyhow::Result<()> {
+/// Writes golden values; those that agree with what is there stay as they are.
+fn keep(golden: GoldenFile, folder: &Path) -> anyhow::Result<()> {
+    let golden = match GoldenFile::read(folder, &golden.study) {
+        Ok(older) => golden.keeping(&older),
+        // What is missing or damaged is written anew.
+        Err(_) => golden,
+    };
     let path = golden.write(folder)?;
     say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
     Ok(())

@@ -12,6 +12,7 @@ use crate::cli::progress::StudyBar;
 use crate::cli::stream::{print_data, say};
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
+use crate::golden::inputs::InputChange;
 use crate::golden::references::REFERENCES;
 use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
@@ -209,6 +210,7 @@ struct CheckJson<'a> {
     unsound_records: &'a [CaseNote],
     golden_values_that_agree: usize,
     golden_problem: Option<String>,
+    inputs_that_differ: &'a [InputChange],
     groups: &'a [DifferenceGroup],
     differences: &'a [Difference],
     accuracy_and_cost: &'a [CaseChange],
@@ -242,6 +244,7 @@ impl<'a> CheckJson<'a> {
             unsound_records: &check.unsound,
             golden_values_that_agree: check.agreeing,
             golden_problem: check.golden.as_ref().err().map(ToString::to_string),
+            inputs_that_differ: &check.inputs,
             groups: &check.groups,
             differences: check.differences(),
             accuracy_and_cost: &check.changes,

@@ -11,6 +11,7 @@ use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::stream::{print_data, say};
 use crate::golden::GoldenError;
+use crate::golden::inputs::CaseInputs;
 use crate::judge::explanation::explain;
 use crate::record::Record;
 use crate::record::store::RecordStore;
@@ -52,7 +53,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (study, case) = the_one(&studies, description)?;
     let record = record_of(study, case, &arguments.records)?;
     let golden = match golden_of(arguments.golden.as_deref(), &study.name, &chosen) {
-        Ok(golden) => Some(golden),
+        Ok(golden) => Some(golden.beside(&CaseInputs::of(study.cases(Tier::Ci))).0),
         Err(GoldenError::Missing(_)) => None,
         Err(error) => return Err(Ended::with(Exit::Golden, error.to_string())),
     };

@@ -152,6 +152,7 @@ mod tests {
             study: "study".to_owned(),
             failed_cases: (0..failures).map(note).collect(),
             unsound: Vec::new(),
+            inputs: Vec::new(),
             judgements: Vec::new(),
             golden: Ok(Vec::new()),
             groups: Vec::new(),

@@ -16,6 +16,7 @@ use std::fmt::Write;
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
 pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     let mut text = wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
+    text += &text_of_inputs(check);
     text += &text_of_failures(check);
     text += &text_of_changes(check);
     if let Some(table) = uncertainties::table_of(&check.judgements) {
@@ -43,6 +44,9 @@ pub fn markdown_of(
     let (sound, unsound): (Vec<_>, Vec<_>) = checks.iter().partition(|check| check.end() == CheckEnd::Pass);
     for check in unsound.into_iter().chain(sound) {
         let _ = write!(text, "\n### {}: {}\n", check.study, headline(check));
+        for input in &check.inputs {
+            let _ = write!(text, "\nInput changed: {}\n", input.sentence());
+        }
         for group in &check.groups {
             let _ = write!(text, "\n{}\n", golden_changes::sentence(group));
         }
@@ -75,7 +79,7 @@ pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
         (Some(group), _) if group.change == Change::Moved => explain(&group.worst.name),
         (_, Some(failure)) => explain(failure.subject),
         _ if !unmet.is_empty() => Some(format!("oedometer report {file}")),
-        (None, _) if check.golden.is_ok() => None,
+        (None, _) if check.golden.is_ok() && check.inputs.is_empty() => None,
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
     }
 }
@@ -90,7 +94,7 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
             row.insert(0, check.study.as_str().into());
             whole.rows.push(row);
         }
-        let agrees = check.golden.is_ok() && check.differences().is_empty();
+        let agrees = check.golden.is_ok() && check.differences().is_empty() && check.inputs.is_empty();
         let (mood, word) = if agrees { (Mood::Pass, "pass") } else { (Mood::Fail, "fail") };
         whole.rows.push(vec![
             check.study.as_str().into(),
@@ -231,6 +235,12 @@ fn text_of_failures(check: &StudyCheck) -> String {
         section(title, items)
     });
     sections.collect()
+}
+
+/// Inputs that are not those of the golden values.
+fn text_of_inputs(check: &StudyCheck) -> String {
+    let inputs = check.inputs.iter().map(|one| wrapped(&one.sentence(), "  ", "    ")).collect();
+    section("inputs that changed since the golden values were taken", inputs)
 }
 
 /// Golden values that differ: kinds, the worst values, and cases.

@@ -5,12 +5,19 @@ use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
 use crate::record::{Record, Status};
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::render::tables::golden_changes::differences_table;
+use crate::render::tables::golden_changes::{differences_table, input_cells};
 use crate::render::tables::runs::attached_notes;
 
 /// Places of the errors, levels and changes of a case.
 pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
-    let mut tables = vec![carriers_table(record, &explanation.carriers)];
+    let mut tables = Vec::new();
+    if !explanation.inputs.is_empty() {
+        let header = columns("input | golden | now");
+        // The last cell counts cases: this one.
+        let rows = explanation.inputs.iter().map(|input| input_cells(input).into_iter().take(3).collect());
+        tables.push(Table::of("inputs that differ from those of the golden values", header, rows));
+    }
+    tables.push(carriers_table(record, &explanation.carriers));
     if let Some(first) = explanation.carriers.first() {
         tables.extend(explanation.levels.iter().map(|series| levels_table(first, series)));
     }

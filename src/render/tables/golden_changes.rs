@@ -1,6 +1,7 @@
 //! Golden values that changed, in words and as tables, the worst first.
 
 use crate::golden::compare::{CaseChange, Change, Difference, DifferenceGroup};
+use crate::golden::inputs::InputChange;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_convergence::ParetoChange;
@@ -82,6 +83,13 @@ pub(crate) fn changes_table(changes: &[CaseChange]) -> Table {
         ),
         rows,
     )
+}
+
+/// An input that differs: key, values before and after, cases.
+pub(crate) fn input_cells(input: &InputChange) -> Vec<Cell> {
+    let value = |text: &str| if text.is_empty() { Cell::missing("not given") } else { text.into() };
+    let key = Cell::Code(input.key.clone());
+    vec![key, value(&input.before), value(&input.after), Cell::Count(input.cases as u64)]
 }
 
 /// Values that differ from their golden ones.

@@ -1,0 +1,263 @@
+//! Inputs of the cases that golden values are of, and what differs in them: a value that moved because its input did
+//! is told by its input first.
+
+use crate::case::Case;
+use crate::case::keys::Key;
+use crate::study::inputs::unit_of;
+use oedometer_soil::wording::count_of;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Inputs of a case by their keys in a study file (`youngs_modulus`, `points.jitter`), as a study may give them: numbers
+/// with their unit.
+pub type Inputs = BTreeMap<String, String>;
+
+/// Inputs of the cases of a study: those that all cases share once, and the others by the label of their case.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct CaseInputs {
+    /// Equal in all cases. Empty where no inputs are known, for all cases of a study have a scene.
+    pub shared: Inputs,
+    /// What differs between the cases.
+    #[serde(skip)]
+    pub own: BTreeMap<String, Inputs>,
+}
+
+impl CaseInputs {
+    /// The inputs of cases.
+    pub fn of<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Self {
+        let mut own: BTreeMap<String, Inputs> =
+            cases.into_iter().map(|case| (case.label(), inputs_of(case))).collect();
+        let mut shared = own.values().next().cloned().unwrap_or_default();
+        shared.retain(|key, value| own.values().all(|inputs| inputs.get(key) == Some(value)));
+        for inputs in own.values_mut() {
+            inputs.retain(|key, _| !shared.contains_key(key));
+        }
+        Self { shared, own }
+    }
+
+    /// Those of one case.
+    #[must_use]
+    pub fn only(&self, label: &str) -> Self {
+        let own = self.own.iter().filter(|(other, _)| *other == label);
+        Self { own: own.map(|(label, own)| (label.clone(), own.clone())).collect(), ..self.clone() }
+    }
+
+    /// Whether none are known.
+    pub fn is_unknown(&self) -> bool {
+        self.shared.is_empty()
+    }
+
+    /// All inputs of every case by its label.
+    fn whole(&self) -> BTreeMap<&str, BTreeMap<&str, &str>> {
+        fn borrowed(inputs: &Inputs) -> impl Iterator<Item = (&str, &str)> {
+            inputs.iter().map(|(key, value)| (key.as_str(), value.as_str()))
+        }
+        let case = |own| borrowed(&self.shared).chain(borrowed(own)).collect();
+        self.own.iter().map(|(label, own)| (label.as_str(), case(own))).collect()
+    }
+}
+
+/// The inputs of a case; what solves it by its name.
+fn inputs_of(case: &Case) -> Inputs {
+    fn flatten(prefix: &str, value: Value, inputs: &mut Inputs) {
+        let key = prefix.rsplit('.').next().unwrap_or(prefix);
+        let text = match value {
+            Value::Null => return,
+            Value::Object(table) => {
+                for (key, value) in table {
+                    // The tables whose keys a sweep takes by their own name.
+                    let is_plain = ["", "column", "material", "settings"].contains(&prefix);
+                    let key = if is_plain { key } else { format!("{prefix}.{key}") };
+                    flatten(&key, value, inputs);
+                }
+                return;
+            }
+            Value::String(word) => word,
+            Value::Number(number) if number.is_f64() => {
+                let number = shortest(number.as_f64().unwrap_or(f64::NAN));
+                unit_of(key).map_or(number.clone(), |unit| format!("{number} {unit}"))
+            }
+            other => other.to_string(),
+        };
+        inputs.insert(prefix.to_owned(), text);
+    }
+    let mut inputs = Inputs::new();
+    if let Ok(Value::Object(mut table)) = serde_json::to_value(case) {
+        for key in ["method", "time_step"].into_iter().filter_map(|name| Key::named(name, "sweep")) {
+            table.insert(key.name.to_owned(), key.get(case).to_string().into());
+        }
+        flatten("", Value::Object(table), &mut inputs);
+    }
+    inputs
+}
+
+/// A number as short as it can be typed: `0.25`, `1e6`, `2650`.
+fn shortest(value: f64) -> String {
+    let (plain, power) = (format!("{value}"), format!("{value:e}"));
+    if power.len() < plain.len() { power } else { plain }
+}
+
+/// An input that differs in the same way in some cases of a study.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct InputChange {
+    /// Key, `youngs_modulus`.
+    pub key: String,
+    /// Value before; empty where it was not given.
+    pub before: String,
+    /// Value after.
+    pub after: String,
+    /// Cases in which it differs so.
+    pub cases: usize,
+}
+
+impl InputChange {
+    /// What differs, and in how many cases: `youngs_modulus 1e6 Pa → 1.1e6 Pa in 24 cases`.
+    pub fn sentence(&self) -> String {
+        let value = |text: &str| if text.is_empty() { "not given".to_owned() } else { text.to_owned() };
+        format!(
+            "{} {} → {} in {}",
+            self.key,
+            value(&self.before),
+            value(&self.after),
+            count_of(self.cases, "case", "cases")
+        )
+    }
+}
+
+/// How the cases of two states belong together.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pairing {
+    /// Label before and after, of cases that have another label now.
+    renamed: BTreeMap<String, String>,
+    /// What differs, the most cases first.
+    pub changes: Vec<InputChange>,
+}
+
+impl Pairing {
+    /// Pairs cases of equal label, and of those that are left the ones whose inputs differ least: a label may tell the
+    /// input that changed. Nothing where one side does not know its inputs.
+    pub fn of<'a>(before: &'a CaseInputs, after: &'a CaseInputs) -> Self {
+        if before.is_unknown() || after.is_unknown() || before == after {
+            return Self::default();
+        }
+        let (old, new) = (before.whole(), after.whole());
+        let renamed = nearest(&old, &new);
+        let mut counts: BTreeMap<(&str, &str, &str), usize> = BTreeMap::new();
+        for (label, old) in &old {
+            let Some(new) = new.get(renamed.get(label).unwrap_or(label)) else { continue };
+            for key in unlike(old, new) {
+                let value =
+                    |inputs: &BTreeMap<&'a str, &'a str>| inputs.get(key).copied().unwrap_or_default();
+                *counts.entry((key, value(old), value(new))).or_default() += 1;
+            }
+        }
+        let change = |((key, before, after), cases): ((&str, &str, &str), usize)| InputChange {
+            key: key.to_owned(),
+            before: before.to_owned(),
+            after: after.to_owned(),
+            cases,
+        };
+        let mut changes: Vec<InputChange> = counts.into_iter().map(change).collect();
+        changes.sort_by(|a, b| b.cases.cmp(&a.cases).then_with(|| a.key.cmp(&b.key)));
+        let owned = |(before, after): (&str, &str)| (before.to_owned(), after.to_owned());
+        Self { renamed: renamed.into_iter().map(owned).collect(), changes }
+    }
+
+    /// What stands by the name of a value or the label of a case, that of cases with another label now under that label.
+    pub fn rename<T>(&self, all: BTreeMap<String, T>) -> BTreeMap<String, T> {
+        let name = |name: String| {
+            let (label, measure) =
+                name.split_once(" | ").map_or((&*name, None), |(label, rest)| (label, Some(rest)));
+            match (self.renamed.get(label), measure) {
+                (Some(label), Some(measure)) => format!("{label} | {measure}"),
+                (Some(label), None) => label.clone(),
+                (None, _) => name,
+            }
+        };
+        all.into_iter().map(|(one, value)| (name(one), value)).collect()
+    }
+}
+
+/// Keys whose values differ.
+fn unlike<'a>(
+    one: &'a BTreeMap<&'a str, &'a str>,
+    other: &'a BTreeMap<&'a str, &'a str>,
+) -> impl Iterator<Item = &'a str> {
+    let keys: BTreeSet<&str> = one.keys().chain(other.keys()).copied().collect();
+    keys.into_iter().filter(|key| one.get(key) != other.get(key))
+}
+
+/// For the labels that only one side has, each with at most one partner, the pairs that differ in the fewest keys.
+fn nearest<'a>(
+    before: &BTreeMap<&'a str, BTreeMap<&'a str, &'a str>>,
+    after: &BTreeMap<&'a str, BTreeMap<&'a str, &'a str>>,
+) -> BTreeMap<&'a str, &'a str> {
+    let gone = || before.iter().filter(|(label, _)| !after.contains_key(*label));
+    let new = || after.iter().filter(|(label, _)| !before.contains_key(*label));
+    let mut pairs: Vec<(usize, &str, &str)> = gone()
+        .flat_map(|(label, old)| new().map(move |(other, new)| (unlike(old, new).count(), *label, *other)))
+        .collect();
+    pairs.sort_unstable();
+    let mut found = BTreeMap::new();
+    let mut taken = BTreeSet::new();
+    for (_, label, other) in pairs {
+        if !found.contains_key(label) && taken.insert(other) {
+            found.insert(label, other);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    fn inputs(material: &str, cells: &str) -> CaseInputs {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n{material}\n[[sweep]]\n\
+             method = [\"MPM\", \"GIMP\"]\nintegrator = [\"implicit\"]\ncells = {cells}\n"
+        );
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        CaseInputs::of(study.cases(crate::case::Tier::Full))
+    }
+
+    fn told(before: &CaseInputs, after: &CaseInputs) -> Vec<String> {
+        Pairing::of(before, after).changes.iter().map(InputChange::sentence).collect()
+    }
+
+    #[test]
+    fn what_all_cases_share_is_kept_once_and_numbers_have_their_unit() {
+        let found = inputs("material.youngs_modulus = 1.5e6", "[4, 8]");
+        assert_eq!(found.shared["youngs_modulus"], "1.5e6 Pa");
+        assert_eq!(found.shared["scene"], "terzaghi");
+        assert_eq!(found.own.len(), 4);
+        let keys: Vec<&str> =
+            found.own["MPM implicit cells=4 points=2 growth=0.05"].keys().map(String::as_str).collect();
+        assert_eq!(keys, ["cells", "method"]);
+    }
+
+    #[test]
+    fn an_input_that_changed_is_told_with_the_number_of_its_cases() {
+        let before = inputs("material.youngs_modulus = 1e6", "[4, 8]");
+        let after = inputs("material.youngs_modulus = 1.1e6", "[4, 8]");
+        assert_eq!(told(&before, &after), ["youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases"]);
+        assert_eq!(told(&before, &before), [""; 0]);
+        assert_eq!(told(&CaseInputs::default(), &after), [""; 0], "what is not known differs in nothing");
+    }
+
+    #[test]
+    fn a_case_without_partner_is_paired_with_its_nearest_and_each_has_at_most_one() {
+        let before = inputs("", "[4, 8]");
+        let after = inputs("", "[4, 16]");
+        assert_eq!(told(&before, &after), ["cells 8 → 16 in 2 cases"]);
+        let value = |label: &str| BTreeMap::from([(format!("{label} | steps"), 1.0)]);
+        let pairing = Pairing::of(&before, &after);
+        let renamed = pairing.rename(value("GIMP implicit cells=8 points=2 growth=0.05"));
+        assert_eq!(renamed, value("GIMP implicit cells=16 points=2 growth=0.05"));
+        assert_eq!(told(&before, &inputs("", "[4]")), [""; 0], "a case that is gone has no partner");
+    }
+}
