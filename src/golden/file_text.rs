@@ -228,7 +228,7 @@ mod tests {
             .into(),
         };
         let (values, spread) = (owned(&values), owned(&spread));
-        GoldenFile { reason, inputs, values, spread, ..GoldenFile::of("s", &[], "-") }
+        GoldenFile { reason, inputs, spread, values, ..GoldenFile::of("s", &[], "-") }
     }
 
     #[test]

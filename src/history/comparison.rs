@@ -235,7 +235,7 @@ mod tests {
             shared: [("youngs_modulus".to_owned(), modulus.to_owned())].into(),
             own: ["cells=4", "cells=8"].map(own).into(),
         };
-        let golden = GoldenFile { values, inputs, ..GoldenFile::of("s", &[], "-") };
+        let golden = GoldenFile { inputs, values, ..GoldenFile::of("s", &[], "-") };
         StudyState::of_golden(golden)
     }
 
