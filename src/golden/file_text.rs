@@ -1,6 +1,6 @@
 //! The text of a golden file: a header and a table. The format is told in [`crate::golden`].
 
-use crate::golden::{GoldenFile, parts};
+use crate::golden::{GoldenFile, SCHEMA, WITHOUT_INPUTS, parts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What stands before every line of the header.
@@ -142,6 +142,12 @@ impl GoldenFile {
             let before = error.span().map_or("", |span| header.get(..span.start).unwrap_or_default());
             format!("line {}: {}", before.matches('\n').count() + 1, error.message())
         })?;
+        if ![SCHEMA, WITHOUT_INPUTS].contains(&golden.schema) {
+            return Err(format!(
+                "it is of layout {}, and this program reads {WITHOUT_INPUTS} and {SCHEMA}",
+                golden.schema
+            ));
+        }
         let mut reader =
             csv::ReaderBuilder::new().comment(Some(HEADER_MARK as u8)).from_reader(text.as_bytes());
         let titles = reader.headers().map_err(|error| error.to_string())?.clone();
@@ -286,6 +292,8 @@ mod tests {
         assert!(told.starts_with(&format!("line {}: ", line_of("absolute_tolerance"))), "{told}");
         let told = refused("# study = ", "# steady = ");
         assert!(told.starts_with("line ") && told.contains("steady"), "{told}");
+        let told = refused("# schema = 3", "# schema = 9");
+        assert_eq!(told, "it is of layout 9, and this program reads 2 and 3");
         assert!(refused("case,T_v", "cases,T_v").contains("`case`, `T_v`"));
         let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused");
         assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));

@@ -189,13 +189,20 @@ fn unlike<'a>(
     keys.into_iter().filter(|key| one.get(key) != other.get(key))
 }
 
-/// For the labels that only one side has, each with at most one partner, the pairs that differ in the fewest keys.
+/// Pairs of cases that are tried: a study of thousands of other labels takes no minutes to compare.
+const MOST_PAIRS: usize = 1_000_000;
+
+/// For the labels that only one side has, each with at most one partner, the pairs that differ in the fewest keys; none where there
+/// are too many to try.
 fn nearest<'a>(
     before: &BTreeMap<&'a str, BTreeMap<&'a str, &'a str>>,
     after: &BTreeMap<&'a str, BTreeMap<&'a str, &'a str>>,
 ) -> BTreeMap<&'a str, &'a str> {
     let gone = || before.iter().filter(|(label, _)| !after.contains_key(*label));
     let new = || after.iter().filter(|(label, _)| !before.contains_key(*label));
+    if gone().count().saturating_mul(new().count()) > MOST_PAIRS {
+        return BTreeMap::new();
+    }
     let mut pairs: Vec<(usize, &str, &str)> = gone()
         .flat_map(|(label, old)| new().map(move |(other, new)| (unlike(old, new).count(), *label, *other)))
         .collect();
