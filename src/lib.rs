@@ -59,11 +59,10 @@
 //! | 28 | neo-Hookean stress | `crates/soil/src/law.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `crates/mpm/src/forced_body.rs:update_forced_pressure`, `crates/mpm/src/explicit/stresses.rs:middle_gradient` |
 //! | 30 | shape functions of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/operators/corners.rs:follow` |
-//! | 31 | cell-averaged projection of a confined soil | `crates/mpm/src/probation/confined_points.rs:share_out`, `crates/mpm/src/probation/cell_averaged.rs:spread_over_points` |
 //! | 32 | forces of cells with one rate | `crates/mpm/src/double_point/water_pressure.rs:add_cell_forces`, `crates/mpm/src/double_point/water_pressure.rs:keep_cell_rates` |
 //! | 33 | velocities with their gradients (APIC) | `crates/mpm/src/explicit/apic.rs:add_velocity_gradients` |
-//! | 34 | lines that pressures fade to | `crates/mpm/src/probation/pressure_lines.rs:fade_beyond_lines` |
-//! | 35 | slopes of stresses | `crates/mpm/src/probation/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/probation/stress_slopes.rs:fit` |
+//! | 34 | lines that pressures fade to | `crates/mpm/src/double_point/pressure_lines.rs:fade_beyond_lines` |
+//! | 35 | slopes of stresses | `crates/mpm/src/explicit/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/explicit/stress_slopes.rs:fit` |
 //!
 //! # The step
 //!

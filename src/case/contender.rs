@@ -3,7 +3,9 @@
 use crate::case::Case;
 use crate::case::keys::{Key, Value};
 use crate::case::solver::Solver;
-use oedometer_mpm::method::{Basis, Configuration, Method, PressureIntegration, Recovery, StrainGradient};
+use oedometer_mpm::method::{
+    Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
+};
 use oedometer_mpm::scene::SceneKind;
 use std::sync::LazyLock;
 
@@ -39,7 +41,7 @@ const fn operators(
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 27] = {
+const LINES: [(&str, Option<Method>, Inputs); 26] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};
@@ -63,7 +65,6 @@ const LINES: [(&str, Option<Method>, Inputs); 27] = {
         ("GIMP-SRI-patch-soils", None, &[]),
         ("CPDI-SRI-patch", None, &[]),
         ("CE-SRI-patch", None, &[]),
-        ("GC-SRI-patch-cells", None, &[]),
         ("CE-SRI-patch-cells", None, &[]),
         ("TL-GIMP-SRI-patch", None, &[]),
         ("TL-GC-SRI-patch", None, &[]),
@@ -85,12 +86,13 @@ pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
 });
 
 impl Contender {
-    /// Its method in a scene. Where nothing moves, shape functions are those of the initial configuration anyway: a
-    /// method with the prefix `TL-` is the one without it.
+    /// Its method in a scene. Where nothing moves, shape functions are those of the initial configuration anyway, and the
+    /// points of a cell stay its own: a method with the prefix `TL-` or the suffix `-cells` is the one without it.
     pub fn method_in(&self, scene: SceneKind) -> Solver {
         let is_plain = scene.configuration() == Configuration::Frozen;
         let configuration = self.method.configuration.filter(|_| !is_plain);
-        Solver::Own(Method { configuration, ..self.method })
+        let memory = if is_plain { Memory::Points } else { self.method.memory };
+        Solver::Own(Method { configuration, memory, ..self.method })
     }
 
     /// Its value of an input in a scene, where it has one of its own.
@@ -125,11 +127,13 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_moves_a_total_method_is_the_plain_one() {
+    fn where_nothing_moves_a_total_method_and_one_with_cells_are_the_plain_ones() {
         let of = |name: &str, scene| {
             CONTENDERS.iter().find(|one| one.name == name).map(|one| one.method_in(scene))
         };
         assert_eq!(of("TL-GC-SRI-patch", SceneKind::Terzaghi), of("GC-SRI-patch", SceneKind::Terzaghi));
         assert_ne!(of("TL-GC-SRI-patch", SceneKind::XieLeo), of("GC-SRI-patch", SceneKind::XieLeo));
+        assert_eq!(of("CE-SRI-patch-cells", SceneKind::Terzaghi), of("CE-SRI-patch", SceneKind::Terzaghi));
+        assert_ne!(of("CE-SRI-patch-cells", SceneKind::XieLeo), of("CE-SRI-patch", SceneKind::XieLeo));
     }
 }

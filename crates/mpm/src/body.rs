@@ -1,16 +1,15 @@
 //! The discretised body: points, nodes and the operators that join them.
 
+use crate::explicit::stress_slopes::StressPlanes;
 use crate::forcing::{Forced, Forcing};
 use crate::loaded_body::RigidPlate;
 use crate::method::{Configuration, Method, Recovery};
+use crate::operators::cell_averaged::CellAverages;
 use crate::operators::corners::{Domains, build_corners, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
 use crate::operators::strain_gradient::StrainOperator;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
-use crate::probation::cell_averaged::CellAverages;
-use crate::probation::confined_points::ConfinedPoints;
-use crate::probation::stress_slopes::StressPlanes;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;
 use crate::state::nodes::{Nodes, Support};
@@ -213,12 +212,6 @@ impl<const D: usize> Body<D> {
             * material.grain_density;
         let sites = site_places(method, &grid, count);
         let domains = Domains::of(method, configuration, &points);
-        let strains_vertically =
-            load_shape == LoadShape::Uniform && plate_load.is_none() && forcing.is_none() && soils.len() == 1;
-        // Domains that turn have lengths of their own.
-        let confined = (strains_vertically && domains.is_none())
-            .then(|| ConfinedPoints::of(&points, &material, method.domains_follow()))
-            .flatten();
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
@@ -236,7 +229,7 @@ impl<const D: usize> Body<D> {
             velocity_gradients: Vec::new(),
             stress_planes: None,
             strain: StrainOperator::of(method.strain, count),
-            cell_averages: CellAverages::new(&grid, confined),
+            cell_averages: CellAverages::new(&grid),
             support,
             splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),

@@ -6,7 +6,7 @@
 //! nothing moves; `double_point` puts the water into points of its own; `implicit` takes steps of any size on the same
 //! operators, with the linear systems of `direct_solver`; `run` drives any of them from output to output. `drag` is the
 //! drag of a point, of a node, and what it allows as a step. `forcing` is what acts on every point from outside.
-//! `probation` holds own inventions that have to prove themselves. Loops over points and dense fronts run in the widest
+//! Loops over points and dense fronts run in the widest
 //! registers that `wide` finds. `scene` describes the physical problems and names the exact solutions that hold for each;
 //! the solver itself uses neither.
 //!
@@ -28,7 +28,6 @@ pub mod implicit;
 mod loaded_body;
 pub mod method;
 pub mod operators;
-mod probation;
 pub mod run;
 pub mod scene;
 pub mod state;

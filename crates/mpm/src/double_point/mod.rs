@@ -3,21 +3,24 @@
 //! The skeleton is a [`Body`] whose points carry no water: its grid, shape functions, strains, load and nodal fields.
 //! [`DoublePoint`] puts the water beside it and takes the explicit step of [`Body::kick_and_drift`], each phase on its
 //! own points. `water_points` are the water's state and domains, `water_pressure` its continuity and what its pressure
-//! does to the nodes, `samples` what a snapshot tells. Balances of momentum, kicks and the skeleton's strain are those of a
+//! does to the nodes, `pressure_lines` what its points forget, `sliver_nodes` the nodes that the surface has all but
+//! left, `samples` what a snapshot tells. Balances of momentum, kicks and the skeleton's strain are those of a
 //! single set of points.
 
+mod pressure_lines;
 mod samples;
+mod sliver_nodes;
 mod water_points;
 mod water_pressure;
 
 use crate::body::Body;
+use crate::double_point::sliver_nodes::SliverNodes;
 use crate::double_point::water_points::WaterPoints;
 use crate::drag::drag_of_point;
 use crate::explicit::{ExplicitSettings, Motion};
 use crate::method::{PressureIntegration, Recovery};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
-use crate::probation::sliver_nodes::SliverNodes;
 use crate::run::profile::{Phase, enter};
 use crate::state::cells::Cells;
 use crate::state::points::Points;

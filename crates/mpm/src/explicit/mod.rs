@@ -6,6 +6,7 @@ mod apic;
 mod nodes_to_points;
 mod points_to_nodes;
 pub mod scheme;
+pub(crate) mod stress_slopes;
 pub(crate) mod stresses;
 
 pub use crate::drag::Drag;

@@ -1,7 +1,8 @@
 //! The operators of a method, each sparse between points, nodes and cell centres: shape functions, strain gradient,
-//! divergence, recovery, surface load.
+//! divergence, recovery, surface load; and what cells remember.
 
 pub mod basis;
+pub mod cell_averaged;
 pub mod corners;
 pub mod projection;
 pub mod recovery;

@@ -1,4 +1,4 @@
-//! Stress slopes. On probation: own invention, kept only if the fair race shows a situation where it is best.
+//! Stress slopes. Own invention; the best of the race in a box of shear in the plane (docs/methods.md).
 //!
 //! ```text
 //! f_i = Σ_p ∫_Ωp [τ_p + g_c·(x − x_p)]·∇N_i dx,   τ = p I − σ'

@@ -1,5 +1,5 @@
-//! Sliver nodes of double-point MPM, which the surface of the soil has all but left: they take part in the node below. On
-//! probation: own invention, kept only if the fair race shows a situation where it is best.
+//! Sliver nodes of double-point MPM, which the surface of the soil has all but left: they take part in the node below. Own
+//! invention; without it a column ends in the middle of its consolidation (docs/methods.md).
 //!
 //! Just above a node that the surface has passed, the next one keeps next to no mass and its whole share of load,
 //! stress and pressure. With one set of points these three balance, for their domains end together; with two the pressure's come
