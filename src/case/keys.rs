@@ -239,6 +239,8 @@ keys! {
         case.column.points.jitter = case.column.points.jitter.abs();
     }; "Largest shift of a row of points up or down, in spacings of the points"
     filling in &["sweep", "points"], FILLING, "", [column.points.filling]; "Share of the top cell that is filled"
+    alternating in &["sweep", "points"], Kind::Flag, "", [column.points.alternating];
+        "Whether every second cell of a column has one point more"
     sets in &["sweep", "points"], Kind::Count(2), "", [column.points.sets], then |case| {
         // One set has no points of the water's own.
         case.column.points.water_per_cell *= usize::from(case.column.points.sets == 2);

@@ -74,7 +74,8 @@ impl Case {
         .into_iter()
         .filter(|(value, usual, _)| value != usual)
         .map(|(value, _, what)| format!("{what} {value}"));
-        sets.into_iter().chain(places).collect()
+        let unequal = points.alternating.then(|| "one point more in every second cell".to_owned());
+        sets.into_iter().chain(places).chain(unequal).collect()
     }
 
     /// Parameters that maps of the critical step sweep, where they are not the seed's.

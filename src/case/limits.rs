@@ -100,6 +100,12 @@ impl Case {
                 "leave `offset` out, or take `self_weight = false`",
             ),
             when(
+                "alternating",
+                points.alternating && column.dimensions > 1,
+                "cells with unequal numbers of points are those of a column in one dimension",
+                "leave `alternating` out, or take a column with `dimensions = 1`",
+            ),
+            when(
                 "sets",
                 two && !is_explicit,
                 "double-point MPM is integrated explicitly only",

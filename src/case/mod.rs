@@ -191,7 +191,7 @@ impl Case {
     /// Points there are to be, in all sets: cells times points a cell, in every direction.
     pub fn expected_points(&self) -> usize {
         let of_set = |per_cell: usize| {
-            let along = self.column.cells_up(self.cells) * per_cell;
+            let along = self.column.points.points_up(self.column.cells_up(self.cells), per_cell);
             match self.column.dimensions {
                 1 => along,
                 _ => along * self.column.cells_across(self.cells).unwrap_or(1) * per_cell,
@@ -331,7 +331,7 @@ mod tests {
             Shape::Square { motion, pressure: 1.0 }
         }
         let mut hashes = vec![seed().hash()];
-        let changes: [fn(&mut Case); 49] = [
+        let changes: [fn(&mut Case); 50] = [
             |case| case.task = Task::Stability,
             |case| case.scene = SceneKind::XieLeo,
             |case| case.column.height = 2.0,
@@ -348,6 +348,7 @@ mod tests {
             |case| case.column.points.offset = 0.1,
             |case| case.column.points.jitter = 0.1,
             |case| case.column.points.filling = 0.5,
+            |case| case.column.points.alternating = true,
             |case| case.column.points.sets = 2,
             |case| case.column.points.water_per_cell = 3,
             |case| case.material.law = Law::LogLinear,

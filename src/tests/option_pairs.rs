@@ -35,7 +35,7 @@ fn options() -> Vec<(&'static str, Vec<&'static str>)> {
         ("task", Task::ALL.map(Task::name).to_vec()),
         ("base", Base::ALL.map(Base::name).to_vec()),
         ("load", vec!["at once", "while it grows", "after it has grown"]),
-        ("points", vec!["regular", "shifted", "jittered", "top cell part filled"]),
+        ("points", vec!["regular", "shifted", "jittered", "top cell part filled", "unequal"]),
         ("sets", vec!["one", "two"]),
         ("weight", vec!["none", "own"]),
         ("water", vec!["seed", "softer", "stiffer"]),
@@ -144,6 +144,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         (points.offset != 0.0, "shifted"),
         (points.jitter != 0.0, "jittered"),
         (points.filling != 1.0, "top cell part filled"),
+        (points.alternating, "unequal"),
     ];
     choices.extend(arranged.iter().filter(|(is, _)| *is).map(|(_, word)| ("points", *word)));
     if arranged.iter().all(|(is, _)| !is) {
@@ -189,6 +190,7 @@ fn study_with(pair: [Choice; 2], scene: &str, integrator: &str, pressure: &str) 
         Some("shifted") => "points.offset = 0.25\n",
         Some("jittered") => "points.jitter = 0.25\n",
         Some("top cell part filled") => "points.filling = 0.5\n",
+        Some("unequal") => "points.alternating = true\n",
         _ => "",
     };
     if asked("sets") == Some("two") {

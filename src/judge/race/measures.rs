@@ -11,6 +11,7 @@ use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::Classification;
 use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::elementary;
 
 /// The runs of a contender: one path over the mesh, and one of its meshes again with another step.
@@ -47,15 +48,19 @@ impl<'a> Runs<'a> {
         })
     }
 
-    /// The class of the pressure's series at the output of its largest error on the finest mesh.
+    /// The class of the pressure's series, of a footing of its load's, at the output of its largest error on the finest mesh.
     pub fn classified(&self) -> Option<Classification> {
         let finest = *self.path.last()?;
         let reference = finest.references.first()?.name.as_str();
-        let error = |time: f64| first_error(finest, Quantity::Pressure, Sample::Points, reference, time);
+        let (quantity, sample) = match finest.case.scene {
+            SceneKind::Footing => (Quantity::LoadFactor, Sample::Surface),
+            _ => (Quantity::Pressure, Sample::Points),
+        };
+        let error = |time: f64| first_error(finest, quantity, sample, reference, time);
         let times = finest.case.time_factors.iter().copied().filter(|time| error(*time).is_some());
         let time = times.max_by(|a, b| error(*a).unwrap_or(0.0).total_cmp(&error(*b).unwrap_or(0.0)))?;
         let path = Path { axis: Axis::Cells, records: self.path.clone() };
-        let measure = first_measure(Quantity::Pressure, Sample::Points, reference, time);
+        let measure = first_measure(quantity, sample, reference, time);
         Some(path.summary(&measure).classification)
     }
 
@@ -78,7 +83,7 @@ impl<'a> Runs<'a> {
 }
 
 /// Largest errors over the outputs, of pressure and effective stress at the points and of the settlement; of a plane, of
-/// the displacement at the nodes.
+/// the displacement at the nodes; of a footing, of its load.
 pub fn errors_of(record: &Record) -> [Option<f64>; 3] {
     let Some(reference) = record.references.first().filter(|_| record.status == Status::Ok) else {
         return [None; 3];
@@ -91,7 +96,9 @@ pub fn errors_of(record: &Record) -> [Option<f64>; 3] {
     [
         largest_of(Quantity::Pressure, Sample::Points),
         largest_of(Quantity::EffectiveStress, Sample::Points),
-        settlement.or_else(|| largest_of(Quantity::Displacement, Sample::Nodes)),
+        settlement
+            .or_else(|| largest_of(Quantity::Displacement, Sample::Nodes))
+            .or_else(|| largest_of(Quantity::LoadFactor, Sample::Surface)),
     ]
 }
 

@@ -21,7 +21,7 @@ const STEP_COUNTS: f64 = 0.05;
 const ADJOINT: f64 = 1e-10;
 
 /// Words for the groups of situations.
-const GROUPS: [(&str, &str); 8] = [
+const GROUPS: [(&str, &str); 9] = [
     ("column", "columns at small strain"),
     ("points", "points out of place"),
     ("waves", "waves and explicit steps"),
@@ -30,6 +30,7 @@ const GROUPS: [(&str, &str); 8] = [
     ("plane", "large strain in the plane"),
     ("rest", "rest under weight"),
     ("soil", "soils with jumps and yielding"),
+    ("footing", "a footing at collapse"),
 ];
 
 /// The matrix with its switch, and the sentences.
@@ -44,7 +45,7 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     let target = |row: usize| links(&rows[row].study.name);
     let errors = view(&|row, contender| error_cell(&grid, row, &rows[row].contenders[contender], contender, target(row)))
         .note(format!(
-            "Largest error of pressure, effective stress and settlement (of a plane, displacement), in %, on the finest mesh \
+            "Largest error of pressure, effective stress and settlement (of a plane, displacement; of a footing, load), in %, on the finest mesh \
              that every contender ran; at rest the largest velocity over the conductivity; for the critical step the observed one over the formula's. \
              Shades: as good as the best of the row, within a factor of 2, within 10, beyond, no usable result (an error of \
              100 % and more, or ✗ a run that failed); n/a what the method cannot do by its definition. Columns by mean rank over the \

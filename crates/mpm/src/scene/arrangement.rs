@@ -13,6 +13,9 @@ pub struct Arrangement {
     pub jitter: f64,
     /// Share of the top cell that is filled; its points share it.
     pub filling: f64,
+    /// Whether every second cell has one point more, from the second on; in columns of one dimension.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alternating: bool,
     /// Point sets: 1 carries skeleton and water, 2 are one of each (double-point MPM).
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub sets: usize,
@@ -38,7 +41,7 @@ fn is_zero(count: &usize) -> bool {
 impl Default for Arrangement {
     /// The regular lattice, every cell full, in one set.
     fn default() -> Self {
-        Self { offset: 0.0, jitter: 0.0, filling: 1.0, sets: 1, water_per_cell: 0 }
+        Self { offset: 0.0, jitter: 0.0, filling: 1.0, alternating: false, sets: 1, water_per_cell: 0 }
     }
 }
 
@@ -72,9 +75,25 @@ impl Arrangement {
         height / ((cells - 1) as f64 + self.filling)
     }
 
+    /// Points over a height of `cells` cells that have `per_cell` of them, or one more; none where they have none.
+    pub fn points_up(&self, cells: usize, per_cell: usize) -> usize {
+        cells * per_cell + if self.alternating && per_cell > 0 { cells / 2 } else { 0 }
+    }
+
+    /// The points of `extent` cells of a size, m, at their places.
+    pub fn points<const D: usize>(&self, cell_size: f64, extent: [usize; D], per_cell: usize) -> Points<D> {
+        let mut points = if self.alternating {
+            alternating(cell_size, extent, per_cell)
+        } else {
+            Points::lattice(cell_size, extent, per_cell)
+        };
+        self.arrange(&mut points, cell_size, extent[D - 1]);
+        points
+    }
+
     /// Moves the points of a full lattice of `cells` cells to their places; what a shift would take out of the body
     /// stays on its edge.
-    pub fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
+    fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
         if self.is_lattice() {
             return;
         }
@@ -98,6 +117,25 @@ impl Arrangement {
     }
 }
 
+/// Cells that have `per_cell` points and one more, in turn: those of a lattice of the larger number, of which every other
+/// cell drops one.
+fn alternating<const D: usize>(cell_size: f64, extent: [usize; D], per_cell: usize) -> Points<D> {
+    let more = per_cell + 1;
+    let full = Points::lattice(cell_size, extent, more);
+    let kept: Vec<usize> =
+        (0..full.len()).filter(|point| point / more % 2 == 1 || point % more < per_cell).collect();
+    let mut points = full.select(&kept);
+    for (point, of_full) in kept.into_iter().enumerate().filter(|(_, of_full)| of_full / more % 2 == 0) {
+        let (cell, number) = ((of_full / more) as f64, (of_full % more) as f64);
+        let place = [(cell + (number + 0.5) / per_cell as f64) * cell_size; D];
+        points.initial_position[point] = place;
+        points.position[point] = place;
+        points.half_length[point] = [0.5 * cell_size / per_cell as f64; D];
+        points.initial_volume[point] = cell_size / per_cell as f64;
+    }
+    points
+}
+
 /// Row of a point of the full lattice: a number that every point of the row shares.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a height above the base")]
 fn row_of(height: f64, spacing: f64) -> u64 {
@@ -118,9 +156,7 @@ mod tests {
 
     fn arranged(arrangement: Arrangement, cells: usize, per_cell: usize) -> (f64, Points<1>) {
         let cell_size = arrangement.cell_size(1.0, cells);
-        let mut points = Points::lattice(cell_size, [cells], per_cell);
-        arrangement.arrange(&mut points, cell_size, cells);
-        (cell_size, points)
+        (cell_size, arrangement.points(cell_size, [cells], per_cell))
     }
 
     #[test]
@@ -135,6 +171,24 @@ mod tests {
         for i in 1..10 {
             assert!((bottoms[i] - tops[i - 1]).abs() < 1e-14, "domains tile the column");
         }
+    }
+
+    #[test]
+    fn every_second_cell_has_one_point_more_and_domains_tile_the_column() {
+        let arrangement = Arrangement { alternating: true, ..Arrangement::default() };
+        let (cell_size, points) = arranged(arrangement, 5, 2);
+        assert_eq!(points.len(), arrangement.points_up(5, 2));
+        let in_cell = |cell: usize| {
+            points.position.iter().filter(|place| (place[0] / cell_size) as usize == cell).count()
+        };
+        assert_eq!((0..5).map(in_cell).collect::<Vec<_>>(), [2, 3, 2, 3, 2]);
+        let mut base = 0.0;
+        for (point, (place, half)) in points.position.iter().zip(&points.half_length).enumerate() {
+            assert!((place[0] - half[0] - base).abs() < 1e-15);
+            assert!((points.initial_volume[point] - 2.0 * half[0]).abs() < 1e-15);
+            base = place[0] + half[0];
+        }
+        assert!((base - 1.0).abs() < 1e-15);
     }
 
     #[test]

@@ -141,8 +141,7 @@ pub fn column_problem<const D: usize>(
         initial_gradient[D - 1][D - 1] = start.vertical_gradient;
     }
     let set_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
-        let mut points = Points::lattice(cell_size, extent, per_cell);
-        column.points.arrange(&mut points, cell_size, cells);
+        let mut points = column.points.points(cell_size, extent, per_cell);
         if method.quadrature == Quadrature::Moments {
             fit_volumes(&mut points, cell_size, extent, column.height);
         }

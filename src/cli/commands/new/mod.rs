@@ -13,11 +13,12 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Texts of new studies by their scenes, the default first; `{name}` stands for the name.
-const STARTERS: [(&str, &str); 4] = [
+const STARTERS: [(&str, &str); 5] = [
     ("terzaghi", include_str!("starter.toml")),
     ("xie-leo", include_str!("starter-large.toml")),
     ("cosine-layer", include_str!("starter-plane.toml")),
     ("layered", include_str!("starter-layered.toml")),
+    ("footing", include_str!("starter-footing.toml")),
 ];
 
 /// Arguments of `new`.
@@ -31,7 +32,7 @@ pub struct Arguments {
     #[arg(value_name = "SOLVER")]
     solver: Option<PathBuf>,
     /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane,
-    /// layered for several soils
+    /// layered for several soils, footing for a plate on soil that yields
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
     /// Language of the adapter
