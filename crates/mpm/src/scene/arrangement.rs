@@ -125,7 +125,9 @@ fn alternating<const D: usize>(cell_size: f64, extent: [usize; D], per_cell: usi
     let kept: Vec<usize> =
         (0..full.len()).filter(|point| point / more % 2 == 1 || point % more < per_cell).collect();
     let mut points = full.select(&kept);
-    for (point, of_full) in kept.into_iter().enumerate().filter(|(_, of_full)| of_full / more % 2 == 0) {
+    for (point, of_full) in
+        kept.into_iter().enumerate().filter(|(_, of_full)| (of_full / more).is_multiple_of(2))
+    {
         let (cell, number) = ((of_full / more) as f64, (of_full % more) as f64);
         let place = [(cell + (number + 0.5) / per_cell as f64) * cell_size; D];
         points.initial_position[point] = place;
@@ -178,8 +180,9 @@ mod tests {
         let arrangement = Arrangement { alternating: true, ..Arrangement::default() };
         let (cell_size, points) = arranged(arrangement, 5, 2);
         assert_eq!(points.len(), arrangement.points_up(5, 2));
-        let in_cell = |cell: usize| {
-            points.position.iter().filter(|place| (place[0] / cell_size) as usize == cell).count()
+        let in_cell = |cell: u32| {
+            let cell = f64::from(cell) * cell_size..f64::from(cell + 1) * cell_size;
+            points.position.iter().filter(|place| cell.contains(&place[0])).count()
         };
         assert_eq!((0..5).map(in_cell).collect::<Vec<_>>(), [2, 3, 2, 3, 2]);
         let mut base = 0.0;
