@@ -30,61 +30,17 @@ pub struct PointState {
 
 /// A stress–strain law at a point.
 ///
-/// A law of one's own is one type: here Drucker & Prager's (1952), whose strength grows with the compression by a friction
-/// `μ` and whose flow keeps the volume. The test shears it under a confining stress.
-///
-/// ```
-/// use oedometer_soil::law::Stiffness;
-/// use oedometer_soil::plasticity::{Components, PointLaw, PointState, Tangent, contraction, deviator, mean};
-///
-/// #[derive(Debug)]
-/// struct DruckerPrager {
-///     stiffness: Stiffness,
-///     cohesion: f64,
-///     friction: f64,
-/// }
-///
-/// impl PointLaw for DruckerPrager {
-///     fn update(&self, state: &PointState, strain: &Components) -> (PointState, Tangent) {
-///         let (trial, elastic) = self.stiffness.update(state, strain);
-///         let (shear, mean) = (deviator(&trial.stress), mean(&trial.stress));
-///         let size = contraction(&shear, &shear).sqrt();
-///         let most = 2.0_f64.sqrt() * (self.cohesion - self.friction * mean).max(0.0);
-///         if size <= most {
-///             return (trial, elastic);
-///         }
-///         let direction = shear.map(|component| component / size);
-///         let unit = [1.0, 1.0, 1.0, 0.0];
-///         let stress = std::array::from_fn(|i| most * direction[i] + mean * unit[i]);
-///         let mut tangent = self.stiffness.tangent(most / size, most / size, &direction);
-///         if most > 0.0 {
-///             let growth = -2.0_f64.sqrt() * self.friction * self.stiffness.bulk();
-///             for i in 0..4 {
-///                 for j in 0..4 {
-///                     tangent[i][j] += growth * direction[i] * unit[j];
-///                 }
-///             }
-///         }
-///         (PointState { stress, ..trial }, tangent)
-///     }
-/// }
-///
-/// let stiffness = Stiffness { lame: 6e6, shear: 4e6 };
-/// let sand = DruckerPrager { stiffness, cohesion: 1e3, friction: 0.5 };
-/// let confined = PointState { stress: [-2e4, -2e4, -2e4, 0.0], ..PointState::default() };
-/// let (sheared, tangent) = sand.update(&confined, &[0.0, 0.0, 0.0, 1e-2]);
-/// assert!((sheared.stress[3] - (1e3 + 0.5 * 2e4)).abs() < 1e-6);
-/// // Sheared further it bears no more; compressed, it does: the consistent tangent by differences.
-/// assert!(tangent[3][3].abs() < 1e-3);
-/// let (squeezed, _) = sand.update(&confined, &[-1e-7, 0.0, 0.0, 1e-2]);
-/// let difference = (squeezed.stress[3] - sheared.stress[3]) / -1e-7;
-/// assert!((tangent[3][0] / difference - 1.0).abs() < 1e-3);
-/// ```
+/// A law of one's own is one type; docs/laws.md has a whole one, Drucker & Prager's.
 pub trait PointLaw: Debug + Send + Sync {
     /// Takes an accepted state through a strain increment; the new state, and the derivative of its stress by the
     /// increment (the consistent tangent of Simo & Taylor 1985), with which Newton's iteration converges quadratically.
     fn update(&self, state: &PointState, strain: &Components) -> (PointState, Tangent);
 }
+
+/// The page on laws, whose example is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/laws.md")]
+struct LawsOfOnesOwn;
 
 /// `a : b`.
 #[inline]
