@@ -1,83 +1,66 @@
-//! Measurements of other programs on the seed column, and errors that they pin in tests of their own; `peers.csv` and
-//! `peer_series.csv` say what was measured and how.
+//! Measurements of other programs on the seed column, by `examples/adapters/run.py`, and errors that they pin in tests of their
+//! own, in `peer_series.csv`.
 
 use crate::case::{Quantity, Sample};
 use crate::judge::comparison::work_precision::TimedRun;
 use crate::judge::paths::{first_error, grouped};
-use crate::measure::statistics::largest;
 use oedometer_convergence::{Classification, Context, ErrorSeries, Undefined, classify, pair_orders};
 use oedometer_exact::ReferenceKind;
-use oedometer_soil::wording::words;
+use serde::Deserialize;
 use std::sync::LazyLock;
 
 /// Time factors of the comparison.
 pub const TIME_FACTORS: [f64; 3] = [0.05, 0.2, 1.0];
 
-/// Where a number that stands beside ours comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Evidence {
-    /// A closed form or a series with a bound on its error.
-    Exact,
-    /// A numerical solution that was refined until it no longer changed.
-    ConvergedReference,
-    /// The output of another program, as we ran it.
-    OtherProgram,
-    /// A published figure.
-    ReadOffAFigure,
-}
-
-words!(
-    Evidence:
-    Exact "exact", ConvergedReference "converged reference", OtherProgram "other program",
-    ReadOffAFigure "read off a figure",
-);
-
-/// Another program.
-#[derive(Clone, Debug, PartialEq)]
+/// Another program on a mesh, as `examples/adapters/run.py` measured it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Peer {
-    /// Its name.
+    /// Its name and version.
+    #[serde(rename = "program")]
     pub name: String,
     /// What it is.
+    #[serde(rename = "what it is")]
     pub kind: String,
-    /// Cells over the height, where they are known.
-    pub cells: Option<usize>,
+    /// Cells over the height.
+    pub cells: usize,
     /// Where its errors were sampled.
     pub samples: String,
     /// How it steps through time.
+    #[serde(rename = "time scheme")]
     pub time_scheme: String,
-    /// Errors at the time factors, where they were measured.
-    pub errors: [Option<f64>; 3],
-    /// CPU seconds, where the run ended.
-    pub seconds: Option<f64>,
-    /// Wall seconds, where they were taken.
-    pub wall_seconds: Option<f64>,
-    /// Where its numbers come from.
-    pub evidence: Evidence,
+    #[serde(rename = "error at T_v=0.05")]
+    early: f64,
+    #[serde(rename = "error at T_v=0.2")]
+    middle: f64,
+    #[serde(rename = "error at T_v=1")]
+    late: f64,
+    /// The smaller of the processor time of the whole run and the wall time that the program reports for its solution, s.
+    pub seconds: f64,
+    /// Day of the measurement.
+    #[serde(rename = "measured on")]
+    pub day: String,
 }
 
 impl Peer {
-    /// The worst of its errors, where it has all of them.
-    pub fn worst_error(&self) -> Option<f64> {
-        largest(self.errors.into_iter().collect::<Option<Vec<f64>>>()?)
+    /// Errors at the time factors.
+    pub fn errors(&self) -> [f64; 3] {
+        [self.early, self.middle, self.late]
+    }
+
+    /// The worst of its errors.
+    pub fn worst_error(&self) -> f64 {
+        self.errors().into_iter().fold(0.0, f64::max)
     }
 }
 
 /// Every program that was measured.
-pub static PEERS: LazyLock<Vec<Peer>> =
-    LazyLock::new(|| read(include_str!("peers.csv")).expect("a test reads the table of the sources"));
+pub static PEERS: LazyLock<Vec<Peer>> = LazyLock::new(|| {
+    let text = include_str!("../../../examples/adapters/results.csv");
+    read(text).expect("a test reads the table of the sources")
+});
 
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
-    type Number = Option<f64>;
-    type Columns =
-        (String, String, Option<usize>, String, String, Number, Number, Number, Number, Number, Evidence);
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
-    let peer = |columns: Result<Columns, csv::Error>| {
-        let (name, kind, cells, samples, time_scheme, early, middle, late, seconds, wall_seconds, evidence) =
-            columns?;
-        let errors = [early, middle, late];
-        Ok(Peer { name, kind, cells, samples, time_scheme, errors, seconds, wall_seconds, evidence })
-    };
-    reader.deserialize().map(peer).collect()
+    csv::Reader::from_reader(text.as_bytes()).deserialize().collect()
 }
 
 /// The errors of a convergence test of another program, from coarse to fine.
@@ -123,7 +106,7 @@ fn read_series(text: &str) -> Result<Vec<PeerSeries>, csv::Error> {
 
 /// Errors of a run at the places and times of the peers' errors, where it has them.
 pub fn comparable_errors(run: &TimedRun<'_>) -> [Option<f64>; 3] {
-    let reference = ReferenceKind::TerzaghiIncompressible.name();
+    let reference = ReferenceKind::Terzaghi.name();
     TIME_FACTORS.map(|factor| first_error(run.record, Quantity::Pressure, Sample::Points, reference, factor))
 }
 
@@ -144,8 +127,7 @@ pub struct Comparison<'a, 'b> {
 /// Each peer with the first of the runs, the cheapest first, that is nowhere worse.
 pub fn compare<'a, 'b>(runs: &'b [TimedRun<'a>]) -> Vec<Comparison<'a, 'b>> {
     let is_nowhere_worse = |peer: &Peer, errors: &[Option<f64>; 3]| {
-        let mut pairs = peer.errors.iter().zip(errors);
-        pairs.all(|(theirs, own)| theirs.is_none_or(|theirs| own.is_some_and(|own| own <= theirs)))
+        peer.errors().iter().zip(errors).all(|(theirs, own)| own.is_some_and(|own| own <= *theirs))
     };
     let ahead_of = |peer: &Peer| {
         let mut all = runs.iter().map(|run| (run, comparable_errors(run)));
@@ -179,18 +161,15 @@ mod tests {
 
     #[test]
     fn the_table_is_read_and_a_broken_one_is_refused_with_its_line() {
-        assert_eq!(PEERS.len(), 12);
-        let errors = |name: &str| PEERS.iter().find(|peer| peer.name == name).expect("a peer").errors;
-        assert_eq!(errors("GeoTaichi"), [Some(0.065), None, None]);
-        assert!(
-            PEERS.iter().all(|peer| peer.errors.iter().flatten().all(|error| (0.0..1.0).contains(error)))
-        );
-        let broken = read("# a note\na,b,c,d,e,f,g,h,i,j,k\nx,y,10,,,many,,,,,exact\n")
-            .expect_err("no number")
-            .to_string();
-        assert!(broken.contains("line: 3"), "{broken}");
-        // No number without a label.
-        assert!(read("a,b,c,d,e,f,g,h,i,j,k\nx,y,10,,,0.1,,,,,guessed\n").is_err());
+        let kratos = PEERS.iter().find(|peer| peer.name.starts_with("Kratos") && peer.cells == 10);
+        let ogs = PEERS.iter().find(|peer| peer.name.starts_with("OpenGeoSys") && peer.cells == 10);
+        let (kratos, ogs) = (kratos.expect("Kratos"), ogs.expect("OpenGeoSys"));
+        assert_eq!(kratos.errors(), ogs.errors(), "the same elements in the same steps");
+        let is_one = |error: &f64| (0.0..1.0).contains(error);
+        assert!(PEERS.iter().all(|peer| peer.errors().iter().all(is_one) && peer.seconds > 0.0));
+        let text = include_str!("../../../examples/adapters/results.csv");
+        let broken = read(&text.replacen(",10,", ",many,", 1)).expect_err("no number").to_string();
+        assert!(broken.contains("line: 2"), "{broken}");
     }
 
     #[test]
@@ -214,12 +193,14 @@ mod tests {
             .into_iter()
             .filter_map(|comparison| comparison.ahead.map(|(_, errors)| (comparison.peer, errors)))
             .collect();
-        assert!(ahead.iter().any(|(peer, _)| peer.name == "OpenSees quadUP"), "{ahead:?}");
+        assert!(ahead.iter().any(|(peer, _)| peer.name.starts_with("OpenSees")), "{ahead:?}");
         for (peer, errors) in ahead {
-            assert!(peer.errors.iter().zip(errors).all(|(theirs, own)| match (theirs, own) {
-                (Some(theirs), Some(own)) => own <= *theirs,
-                (theirs, _) => theirs.is_none(),
-            }));
+            assert!(
+                peer.errors()
+                    .into_iter()
+                    .zip(errors)
+                    .all(|(theirs, own)| own.is_some_and(|own| own <= theirs))
+            );
         }
         // Large strain has no error against Terzaghi's solution, so nothing to hold theirs against.
         let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");

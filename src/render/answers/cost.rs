@@ -54,12 +54,11 @@ fn on_cells(precision: &WorkPrecision<'_>, cells: usize) -> Option<[Option<f64>;
 /// Where the other programs are ahead on the same number of cells and with a time scheme of the same kind.
 fn equal_cells(precision: &WorkPrecision<'_>) -> String {
     let ahead = peers::PEERS.iter().filter(|peer| peer.time_scheme.starts_with("SDIRK")).filter_map(|peer| {
-        let cells = peer.cells?;
-        let pairs = peer.errors.into_iter().zip(on_cells(precision, cells)?).zip(peers::TIME_FACTORS);
+        let cells = peer.cells;
+        let pairs = peer.errors().into_iter().zip(on_cells(precision, cells)?).zip(peers::TIME_FACTORS);
         let better = pairs.filter_map(|((theirs, own), time)| {
-            let (theirs, own) = (theirs?, own?);
-            (theirs < own)
-                .then(|| format!("{} against {} at T_v = {time}", number::error(theirs), number::error(own)))
+            let own = own.filter(|own| theirs < *own)?;
+            Some(format!("{} against {} at T_v = {time}", number::error(theirs), number::error(own)))
         });
         let better = better.collect::<Vec<_>>().join(", ");
         (!better.is_empty()).then(|| format!("{}, {} on {cells} cells: {better}", peer.name, peer.kind))
