@@ -138,7 +138,7 @@ fn history_marks_the_step_and_compare_tells_it() {
     let told = call(at, &["compare", "good", "HEAD", "--page", "compare.html"]);
     assert_eq!(told.code, 1, "{}", told.err);
     let words = told.words();
-    assert!(words.contains("regressed") && words.contains("material.porosity"), "{}", told.out);
+    assert!(words.contains("regressed") && words.contains("porosity"), "{}", told.out);
     assert!(words.contains("0.3") && words.contains("0.45"), "{}", told.out);
     assert!(fs::read_to_string(at.join("compare.html")).expect("a page").contains("<svg"));
     fs::remove_file(at.join("compare.html")).expect("removed");
