@@ -41,11 +41,11 @@ const fn operators(
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 26] = {
+const LINES: [(&str, Option<Method>, Inputs); 28] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};
-    use StrainGradient::Standard;
+    use StrainGradient::{Bbar, Standard};
     [
         ("MPM", None, &[]),
         ("GIMP", None, &[]),
@@ -68,8 +68,10 @@ const LINES: [(&str, Option<Method>, Inputs); 26] = {
         ("CE-SRI-patch-cells", None, &[]),
         ("TL-GIMP-SRI-patch", None, &[]),
         ("TL-GC-SRI-patch", None, &[]),
+        ("TL-GC-Bbar-patch", None, &[]),
         ("B2", Some(operators(Bspline2, Standard, Points, Constant)), &[]),
         ("B2-SRI-patch", Some(operators(Bspline2, Standard, Sri, Patch)), &[]),
+        ("B2-Bbar-patch", Some(operators(Bspline2, Bbar, Sri, Patch)), &[]),
         ("B3-SRI-patch", Some(operators(Bspline3, Standard, Sri, Patch)), &[]),
         ("TL-MPM-SRI-patch-moments", None, &[]),
         ("GIMP-SRI-patch-slopes", Some(operators(Cpgimp, Standard, Sri, Patch)), SLOPES),
