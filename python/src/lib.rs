@@ -26,6 +26,7 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, &bytes)
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "it stands in `map_err`, which hands over the error")]
 fn refused(why: impl ToString) -> PyErr {
     PyValueError::new_err(why.to_string())
 }
@@ -81,6 +82,7 @@ fn exact<'py>(
 
 /// The score of samples as JSON; `lists` are in the order of the fields of `Samples`.
 #[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "Python hands over owned lists")]
 fn score(
     py: Python<'_>,
     scene: &str,
@@ -121,6 +123,7 @@ fn score(
 
 /// Names and scores of files as JSON, one per mesh.
 #[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "Python hands over owned lists")]
 fn score_files(
     py: Python<'_>,
     scene: &str,
