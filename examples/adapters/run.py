@@ -3,8 +3,8 @@
 
     python3 examples/adapters/run.py [NAME …] [--environments DIR] [--oedometer PROGRAM] [--wrong-k] [--write]
 
-Each program has an environment of its own in DIR (default target/adapters). `--write` keeps the table as results.csv, which
-the report of oedometer shows. `--wrong-k` lets OpenGeoSys take a conductivity 2 % too large and expects to see it caught.
+Each program has an environment of its own in DIR (default target/adapters). `--write` keeps the table of all programs, where all is
+met, as results.csv, which the report of oedometer shows. `--wrong-k` lets OpenGeoSys take a conductivity 2 % too large and expects to see it caught.
 """
 
 import argparse
@@ -150,7 +150,7 @@ def main():
     print(*rows[0], sep=" | ")
     for row in rows:
         print(*row.values(), sep=" | ")
-    if arguments.write:
+    if arguments.write and all_met and not arguments.names:
         with open(HERE / "results.csv", "w", newline="") as table:
             writer = csv.DictWriter(table, rows[0], lineterminator="\n")
             writer.writeheader()
