@@ -1,6 +1,6 @@
 //! From the records of a study to its paths and their series of errors.
 
-use crate::case::{Case, Norm, Quantity, Sample, step_label};
+use crate::case::{Norm, Quantity, Sample, step_label};
 use crate::judge::explanation::place_of_attached;
 use crate::measure::fields::relative_error;
 use crate::record::Record;
@@ -63,7 +63,7 @@ impl<'a> StudyPaths<'a> {
 /// Paths of the records along an axis: every group of at least two levels.
 pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> Vec<Path<'a>> {
     // By a number for what cases share, so that thousands of cases are not compared pairwise.
-    let groups = grouped(records, |record| what_is_shared(&record.case, axis));
+    let groups = grouped(records, |record| axis.what_is_shared(&record.case));
     let path = |(_, mut records): (u64, Vec<&'a Record>)| {
         records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
         Path { axis, records }
@@ -87,20 +87,6 @@ pub(crate) fn grouped<T, K: Clone + Eq + Hash>(
         }
     }
     groups
-}
-
-/// A hash of everything but the axis and the time factors: equal for cases that differ along the axis alone.
-fn what_is_shared(case: &Case, axis: Axis) -> u64 {
-    case.number_with(|case| {
-        case.time_factors.clear();
-        match axis {
-            Axis::Cells => case.cells = 0,
-            // Rules of one kind are steps of one path; of different kinds they are different schemes.
-            Axis::TimeStep => case.time_step = case.time_step.with_number(0.0),
-            Axis::PointsPerCell => case.points_per_cell = 0,
-            Axis::WaterBulkModulus => case.material.water_bulk_modulus = 0.0,
-        }
-    })
 }
 
 /// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
@@ -261,6 +247,7 @@ pub fn first_error(
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::case::Case;
 
     /// Whether two cases differ along an axis at most, compared input by input.
     fn alike(a: &Case, b: &Case, axis: Axis) -> bool {

@@ -14,6 +14,7 @@ use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_soil::wording::typed;
 use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::fmt;
 
 /// What is refined along a series.
@@ -39,6 +40,29 @@ words!(
 impl Axis {
     /// Those along which a discretisation gets finer.
     pub const REFINEMENTS: [Self; 3] = [Self::Cells, Self::TimeStep, Self::PointsPerCell];
+
+    /// A hash of everything but the axis and the time factors: equal for cases that differ along the axis alone.
+    pub fn what_is_shared(self, case: &Case) -> u64 {
+        case.number_with(|case| {
+            case.time_factors.clear();
+            match self {
+                Self::Cells => case.cells = 0,
+                // Rules of one kind are steps of one path; of different kinds they are different schemes.
+                Self::TimeStep => case.time_step = case.time_step.with_number(0.0),
+                Self::PointsPerCell => case.points_per_cell = 0,
+                Self::WaterBulkModulus => case.material.water_bulk_modulus = 0.0,
+            }
+        })
+    }
+
+    /// The most levels that cases have along the axis, alike in everything else.
+    pub fn levels<'a>(self, cases: impl IntoIterator<Item = &'a Case>) -> usize {
+        let mut counts: HashMap<u64, usize> = HashMap::new();
+        for case in cases {
+            *counts.entry(self.what_is_shared(case)).or_default() += 1;
+        }
+        counts.into_values().max().unwrap_or(0)
+    }
 }
 
 /// The reference that needs no theory: the same run at the next finer level. Differences of

@@ -14,14 +14,19 @@ use crate::study::expectation::{
 use crate::study::file::{ExpectCaseTable, ExpectTable, LevelTable, RangeTable};
 use crate::study::inputs::Inputs;
 use crate::study::reading::{Placed, Typed};
-use oedometer_convergence::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
+use oedometer_convergence::{Class, ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::wording::count_of;
 use std::ops::Range;
 
 /// Half-width of an order's band where an expectation names none.
 const DEFAULT_BAND: f64 = 0.1;
+/// Levels of the shortest series.
+const LEVELS_OF_A_SERIES: usize = 2;
+/// Levels of the shortest series with an order, its finest window.
+const LEVELS_OF_AN_ORDER: usize = 3;
 /// Values that a complaint lists.
 const MOST_LISTED: usize = 12;
 
@@ -410,12 +415,73 @@ impl Checker<'_> {
         };
         let place = table.time_factor.as_ref().map_or(table.span(), Placed::span);
         self.time_is_kept(&cases, time_factor, place);
+        self.series_is_long_enough(table, selection, time_factor, planned);
         let wanted = table.at.as_ref().and_then(|level| level.cells.as_ref());
         let Some(wanted) = wanted.filter(|_| table.axis == Axis::Cells) else { return };
         if !cases.iter().any(|case| i64::try_from(case.cells) == Ok(**wanted)) {
             let levels = listed(cases.iter().map(|case| case.cells.to_string()));
             let message = format!("no case that the expectation names has {} cells", **wanted);
             self.complain(wanted.span(), message, format!("they have {levels}"));
+        }
+    }
+
+    /// Complains where no series has the levels that an expectation needs, with the axis along which one has; and of an
+    /// order of the time step that would be held against an exact solution.
+    fn series_is_long_enough(
+        &mut self,
+        table: &Placed<ExpectTable>,
+        selection: &Selection,
+        time_factor: f64,
+        planned: &[PlannedCase],
+    ) {
+        let is_next_finer = table.reference.as_deref().is_some_and(|word| word == NEXT_FINER);
+        let needs_order = table.order.is_some() || table.uncertainty.is_some();
+        // A path of one level at a time has an error there all the same.
+        let is_kept = |case: &Case| !needs_order || case.time_factors.contains(&time_factor);
+        let levels_along = |axis: Axis| {
+            let cases = planned.iter().map(|planned| &planned.case);
+            axis.levels(cases.filter(|case| selection.fits_along(axis.name(), case) && is_kept(case)))
+        };
+        let needed = if needs_order { LEVELS_OF_AN_ORDER } else { LEVELS_OF_A_SERIES };
+        let levels = levels_along(table.axis);
+        // None at all has a complaint of its own.
+        if levels == 0 || table.class == Some(Class::NotEvaluable) {
+            return;
+        }
+        if levels < needed + usize::from(is_next_finer) {
+            let enough = |axis: &Axis| levels_along(*axis) >= needed;
+            let help = match Axis::REFINEMENTS
+                .iter()
+                .filter(|axis| **axis != table.axis)
+                .find(|one| enough(one))
+            {
+                Some(Axis::TimeStep) => {
+                    format!(
+                        "what is refined is the step: add `axis = \"time_step\"` and `reference = \"{NEXT_FINER}\"`"
+                    )
+                }
+                Some(axis) => format!("what is refined is another key: add `axis = \"{}\"`", axis.name()),
+                None => format!(
+                    "add values of `{}` to the sweep, or bound single cases with `[[expect_case]]`",
+                    table.axis.name()
+                ),
+            };
+            let message = format!(
+                "the expectation is judged along `{}` and needs {}: its cases have {levels}",
+                table.axis.name(),
+                count_of(needed + usize::from(is_next_finer), "level", "levels")
+            );
+            self.complain(table.span(), message, help);
+        } else if table.axis == Axis::TimeStep
+            && table.order.is_some()
+            && table.class.is_none()
+            && table.reference.is_none()
+        {
+            self.complain(
+                table.span(),
+                "an order of the time step cannot be read off errors against an exact solution: they end at that of the mesh",
+                format!("add `reference = \"{NEXT_FINER}\"`, the differences from the next finer step"),
+            );
         }
     }
 

@@ -253,3 +253,48 @@ mod results {
         }
     }
 }
+
+mod expectations_that_cannot_be_judged {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    /// A study of meshes or of steps with an expectation.
+    fn checked(swept: &str, expected: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\"]\n\
+             integrator = [\"implicit\"]\n{swept}\n\n[[expect]]\ntime_factor = 0.1\n{expected}\n"
+        );
+        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    const STEPS: &str = "cells = [8]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }, { growth = 0.025 }, { growth = 0.0125 }]";
+    const MESHES: &str = "cells = [4, 8, 16]";
+    const ORDER: &str = "order = { value = 1.0 }";
+
+    #[test]
+    fn are_refused_at_their_line_with_the_key_that_is_missing() {
+        for (swept, expected, parts) in [
+            (STEPS, ORDER, &["needs 3 levels: its cases have 1", "axis = \"time_step\"", "next-finer"][..]),
+            (STEPS, "at = { cells = 8, below = 0.5 }", &["needs 2 levels", "axis = \"time_step\""]),
+            (STEPS, "axis = \"time_step\"\norder = { value = 1.0 }", &["that of the mesh", "\"next-finer\""]),
+            (MESHES, "axis = \"time_step\"\norder = { value = 1.0 }", &["have 1", "add `axis = \"cells\"`"]),
+            ("cells = [4, 8]", ORDER, &["needs 3 levels: its cases have 2", "add values of `cells`"]),
+        ] {
+            let error = checked(swept, expected).expect_err(expected);
+            assert!(error.contains("--> t.toml:") && error.contains("[[expect]]"), "{error}");
+            for part in parts {
+                assert!(error.contains(part), "{part}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn are_taken_once_it_is_there() {
+        let next_finer = "axis = \"time_step\"\nreference = \"next-finer\"\norder = { value = 1.0 }";
+        for (swept, expected) in
+            [(STEPS, next_finer), (MESHES, ORDER), ("cells = [4, 8]", "at = { cells = 8, below = 0.5 }")]
+        {
+            checked(swept, expected).expect(expected);
+        }
+    }
+}
