@@ -218,22 +218,22 @@ fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() 
     write("law.inc", "");
     let solver = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[solver]]\nname = \"mine\"\n\
                   command = [\"sh\", \"adapter.sh\", \"{out}\", \"{study}\"]\nresult = \"{out}/result.csv\"\n\
-                  [[sweep]]\nmethod = [\"mine\"]\ncells = [5, 10]\n";
+                  [[sweep]]\nmethod = [\"mine\"]\ncells = [2, 5, 10]\n";
     write("s.toml", solver);
     let runs = || fs::read_to_string(at.join("runs")).map_or(0, |text| text.lines().count());
     let check = |options: &[&str]| {
         let before = runs();
         let told = call(at, &[&["check", "study/s.toml"], options].concat());
-        let taken = told.err.contains("2 of 2 cases taken from out");
+        let taken = told.err.contains("3 of 3 cases taken from out");
         assert_eq!(runs() == before, taken, "{}", told.err);
         (runs() - before, told.out)
     };
     let (started, fresh) = check(&[]);
-    assert_eq!(started, 2, "nothing is there yet");
+    assert_eq!(started, 3, "nothing is there yet");
     let told = call(at, &["run", "study/s.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(check(&[]), (0, fresh.clone()), "the same verdicts without a run");
-    assert_eq!(check(&["--fresh"]), (2, fresh.clone()));
+    assert_eq!(check(&["--fresh"]), (3, fresh.clone()));
     // What is judged is not what is run.
     write(
         "s.toml",
@@ -247,7 +247,7 @@ fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() 
         let kept = study.join(name);
         let before = fs::read_to_string(&kept).ok();
         write(name, text);
-        assert_eq!(check(&[]).0, 2, "{name}");
+        assert_eq!(check(&[]).0, 3, "{name}");
         match before {
             Some(before) => write(name, &before),
             None => fs::remove_file(kept).expect("it was there"),
@@ -257,7 +257,7 @@ fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() 
     // A failed result is run again.
     write("adapter.sh", "echo run >> \"$2/../runs\"; exit 3\n");
     assert_eq!(call(at, &["run", "study/s.toml"]).code, 3);
-    assert_eq!(check(&[]).0, 2);
+    assert_eq!(check(&[]).0, 3);
 }
 
 #[test]

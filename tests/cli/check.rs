@@ -347,14 +347,17 @@ fn a_value_without_a_reference_is_judged_by_what_refinement_tells() {
     let told = Place::golden(&strict, |_| {}).check(&[]);
     assert_eq!(told.code, 1, "{}", told.out);
     assert!(told.words().contains("by least squares not below 2e-5"), "{}", told.out);
-    // Three levels have an index, two have nothing to go by.
+    // Three levels have an index, two have nothing to go by and are refused before anything runs.
     let three = VALUE_STUDY.replace("[4, 8, 16, 32]", "[8, 16, 32]").replace("order = { value = 2.0 }\n", "");
     let told = Place::golden(&three, |_| {}).check(&["--format", "json"]);
     assert_eq!(told.code, 0, "{}", told.out);
     assert!(told.out.contains("grid-convergence-index"), "{}", told.out);
-    let told = Place::golden(&three.replace("[8, 16, 32]", "[16, 32]"), |_| {}).check(&[]);
-    assert_eq!(told.code, 1, "{}", told.out);
-    assert!(told.words().contains("no uncertainty: 2 levels are too few: 3 are needed"), "{}", told.out);
+    let two = Place::with(&three.replace("[8, 16, 32]", "[16, 32]"));
+    for command in ["plan", "check"] {
+        let told = two.call(&[], &[command, "short.toml"]);
+        assert_eq!(told.code, 2, "{}", told.out);
+        assert!(told.err.contains("needs 3 levels: its cases have 2"), "{}", told.err);
+    }
 }
 
 #[test]

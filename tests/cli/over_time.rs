@@ -156,7 +156,7 @@ fn history_marks_the_step_and_compare_tells_it() {
     assert_eq!(told.code, 1, "{}{}", told.out, told.err);
     let found: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
     assert_eq!(found[0]["study"], "gate");
-    assert_eq!(found[0]["inputs"][0]["key"], "material.porosity");
+    assert_eq!(found[0]["inputs"][0]["key"], "porosity");
     assert_eq!(found[0]["cost"], "same");
     assert_eq!(call(at, &["compare", "a", "a"]).code, 0);
 }
