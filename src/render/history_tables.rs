@@ -354,3 +354,57 @@ fn timeline_figure(line: &Timeline) -> Figure {
     let caption = format!("Values moved at {}.", told.join("; "));
     Figure::new(format!("history-{}", line.study), chart, caption)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::golden::GoldenFile;
+    use crate::history::state::StudyState;
+
+    /// A study whose error goes from one value to another.
+    fn study(name: &str, before: f64, after: Option<f64>) -> StudyComparison {
+        let state = |error: Option<f64>| {
+            let measure = |cells: u32| format!("GIMP cells={cells} | pressure points l2 terzaghi T_v=1");
+            let values = [Some((measure(4), 0.5)), error.map(|error| (measure(8), error))];
+            let values = values.into_iter().flatten().collect();
+            StudyState::of_golden(GoldenFile { values, ..GoldenFile::of(name, &[], "-") })
+        };
+        StudyComparison::of(name, &state(Some(before)), &state(after))
+    }
+
+    #[test]
+    fn what_got_worse_comes_first_and_many_that_are_the_same_are_named_below() {
+        let mut found: Vec<StudyComparison> =
+            (0..=MOST_SAME).map(|one| study(&format!("a{one}"), 0.2, Some(0.2))).collect();
+        found.push(study("better", 0.2, Some(0.1)));
+        found.push(study("gone", 0.2, None));
+        found.push(study("much-worse", 0.2, Some(0.4)));
+        found.push(study("worse", 0.2, Some(0.3)));
+        let rows = |table: &Table| -> Vec<String> {
+            table.rows.iter().map(|row| format!("{:?} {:?} {:?}", row[0], row[1], row[5])).collect()
+        };
+        let tables = comparison_tables(&found, ["A", "B"]);
+        let told = rows(&tables[0]);
+        let names = ["much-worse", "worse", "gone", "better"];
+        assert_eq!(told.len(), names.len(), "{told:?}");
+        for (row, name) in told.iter().zip(names) {
+            assert!(row.contains(&format!("Code(\"{name}\")")), "{name}: {told:?}");
+        }
+        assert!(told[2].contains("Count(1)"), "one value is gone: {told:?}");
+        assert!(tables[0].notes.iter().any(|note| note.starts_with("11 studies are the same: a0, a1")));
+        assert_eq!(comparison_rows(&found, ["A", "B"]).rows.len(), found.len(), "programs get every study");
+        assert_eq!(rows(&comparison_tables(&found[..3], ["A", "B"])[0]).len(), 3, "few have a row each");
+    }
+
+    #[test]
+    fn arrows_are_drawn_of_what_moved_visibly() {
+        let page = comparison_page(&[study("worse", 0.2, Some(0.3))], ["A", "B"]);
+        assert_eq!(page.lead, "1 of 1 studies got worse.");
+        let sections: Vec<&str> = page.sections.iter().map(|section| section.id.as_str()).collect();
+        assert_eq!(
+            sections,
+            ["changes", "details"],
+            "without point updates there is no plane of cost and error"
+        );
+    }
+}
