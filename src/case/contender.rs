@@ -41,7 +41,7 @@ const fn operators(
 }
 
 /// The lines: a name, its operators where the name is not that of a method, and its other inputs.
-const LINES: [(&str, Option<Method>, Inputs); 28] = {
+const LINES: [(&str, Option<Method>, Inputs); 29] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp};
     use PressureIntegration::{Points, Sri};
     use Recovery::{Constant, Patch};
@@ -59,6 +59,7 @@ const LINES: [(&str, Option<Method>, Inputs); 28] = {
         ("GIMP-SRI-patch", None, &[]),
         ("uGIMP-SRI-patch", None, &[]),
         ("GC-SRI-patch", None, &[]),
+        ("VP-Bbar", None, &[]),
         ("GIMP-Bbar", None, &[]),
         ("GIMP-Bbar-patch", None, &[]),
         ("GC-Bbar-patch", None, &[]),

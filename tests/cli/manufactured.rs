@@ -76,7 +76,6 @@ fn what_a_motion_cannot_have_is_refused_in_sentences() {
             "the critical step with stress slopes is not predicted",
         ),
         (&["manufactured-box", "--integrator", "semi-implicit"], "at times of their own"),
-        (&["manufactured-box", "--method", "GIMP-Bbar-patch"], "B-bar changes the strain of a point"),
         (
             &["manufactured-box", "--set", "material.conductivity_mean=chord"],
             "the chord mean belongs to a flux",

@@ -38,7 +38,7 @@ pub enum StrainGradient {
     CmpmEnds,
     /// The gradient of the basis with its trace replaced by the method's own volumetric rate, the
     /// one that drives the pressure: B-bar by cells (Hughes 1980), in the rate form F-bar (de Souza
-    /// Neto et al. 1996; Coombs et al. 2018 for material points).
+    /// Neto et al. 1996; Coombs et al. 2018 for material points; with means at the nodes Zhao, Jiang & Choo 2023).
     Bbar,
     /// The composite gradient with its trace replaced so.
     CmpmBbar,
@@ -271,7 +271,7 @@ fn is_whole(thousandths: &u32) -> bool {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 19] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 20] = {
     use Basis::{Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
     use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp, PppMonotone, PppStep};
@@ -293,6 +293,7 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 19] 
         ("PPP", Cpgimp, Standard, Points, Ppp),
         ("PPP-step", Cpgimp, Standard, Points, PppStep),
         ("PPP-monotone", Cpgimp, Standard, Points, PppMonotone),
+        ("VP-Bbar", Cpgimp, Bbar, Points, Nodal),
         ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
         ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
         ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),

@@ -151,12 +151,7 @@ impl Checker<'_> {
                 "take a method of this program",
             )
         } else if let Some(why) = method.own().and_then(|method| scene.refuses_method(method)) {
-            let help = if scene.is_manufactured() {
-                "take \"GIMP-SRI-patch\", \"TL-GIMP-SRI-patch\", or another method of this program without B-bar"
-            } else {
-                "take \"GIMP-SRI-patch\", or another method without `TL-`"
-            };
-            (why, help)
+            (why, "take \"GIMP-SRI-patch\", or another method without `TL-`")
         } else {
             return Some(method);
         };

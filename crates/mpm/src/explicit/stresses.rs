@@ -48,13 +48,14 @@ impl<const D: usize> Body<D> {
         let (stride, laws, following) = (*self.grid.node_stride(), &self.stress_laws[..], self.following());
         let deforms = self.configuration.deforms();
         let (field, points) = (&self.nodes.solid_velocity, &mut self.points);
-        let has_dilation = self.method.strain.is_bbar() && !self.material.law.is_hyperelastic();
+        let has_dilation = self.method.strain.is_bbar();
         let mut none = History::default();
         for point in 0..points.len() {
             let mut gradient = stencils.gradient(&stride, point, field);
             if self.configuration == Configuration::Total {
                 gradient = product(&gradient, &points.inverse_deformation[point]);
             }
+            let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
             // A motion compared with exact fields is followed at the middle of the step, to second order.
             if self.forcing.is_some() {
                 gradient = middle_gradient(&gradient, dt);
@@ -70,7 +71,6 @@ impl<const D: usize> Body<D> {
             let mut dilation = 0.0;
             if has_dilation {
                 // Of the kinematics only the volume goes the way of the water's.
-                let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
                 dilation = dt * (self.dilation_rates[point] - trace);
                 for d in 0..D {
                     increment[d][d] += dilation / D as f64;
@@ -87,7 +87,14 @@ impl<const D: usize> Body<D> {
             }
             let history = points.history.get_mut(point).unwrap_or(&mut none);
             let law = &laws[usize::from(points.soil[point])];
-            law.update(stress, history, &strain, || inverse(&points.inverse_deformation[point]).0);
+            law.update(stress, history, &strain, || {
+                let (deformation, per_volume) = inverse(&points.inverse_deformation[point]);
+                if has_dilation {
+                    assumed(&deformation, points.volume_ratio[point] * per_volume)
+                } else {
+                    deformation
+                }
+            });
         }
     }
 
@@ -121,6 +128,15 @@ fn deform<const D: usize>(points: &mut Points<D>, point: usize, following: Follo
     if following.inverse {
         points.inverse_deformation[point] = relaxed(&points.inverse_deformation[point], increment);
     }
+}
+
+/// `F̄ = (J̄/J)^(1/3) F` of F-bar (de Souza Neto et al. 1996; Coombs et al. 2018 for material points), from `F` and `J̄/J`: the
+/// deformation gradient with the volume of the method's own divergence, shared by three directions, as [`StrainIncrement::components`]
+/// shares it, also by those in which nothing is displaced.
+#[inline]
+fn assumed<const D: usize>(deformation: &Tensor<D>, volume_share: f64) -> Tensor<D> {
+    let stretch = elementary::powf(volume_share, 1.0 / 3.0);
+    deformation.map(|row| row.map(|component| stretch * component))
 }
 
 /// Strains so small that four terms of their exponential are exact to round-off.
@@ -194,6 +210,40 @@ mod tests {
         for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
             assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
         }
+    }
+
+    #[test]
+    fn the_rate_form_of_b_bar_is_f_bar_step_by_step() {
+        // Steps exp(A) of a motion, and the volumes exp(a) that a divergence makes of them: F-bar multiplies
+        // (exp(a)/det exp(A))^(1/3) exp(A), B-bar adds (a − tr A)/3 to the diagonal of A and a − tr A to ln J.
+        let exponential = |a: &Tensor<2>| inverse(&relaxed(&identity(), a)).0;
+        let (mut motion, mut f_bar, mut log_volume) = (identity::<2>(), identity::<2>(), 0.0);
+        for step in 0..20 {
+            let size = 1e-4 * f64::from(step - 7);
+            let increment = [[size, -0.7 * size], [0.4 * size, -0.3 * size]];
+            let volume = 0.5 * size;
+            let stretch = exponential(&increment);
+            motion = product(&stretch, &motion);
+            let share = volume.exp() / inverse(&stretch).1;
+            let of_step = stretch.map(|row| row.map(|one| share.cbrt() * one));
+            f_bar = product(&of_step, &f_bar);
+            log_volume += volume;
+            let mut b_bar = increment;
+            let dilation = volume - inverse(&stretch).1.ln();
+            (b_bar[0][0], b_bar[1][1]) = (b_bar[0][0] + dilation / 3.0, b_bar[1][1] + dilation / 3.0);
+            for (got, exact) in exponential(&b_bar).as_flattened().iter().zip(of_step.as_flattened()) {
+                assert!((got - exact).abs() < 1e-9, "{got} for {exact}");
+            }
+        }
+        let (_, volume) = inverse(&motion);
+        let share = log_volume.exp() / volume;
+        let at_once = assumed(&motion, share);
+        for (got, exact) in at_once.as_flattened().iter().zip(f_bar.as_flattened()) {
+            assert!((got - exact).abs() < 1e-13, "{got} for {exact}");
+        }
+        let volume = share.cbrt() * inverse(&at_once).1;
+        assert!((volume / log_volume.exp() - 1.0).abs() < 1e-13, "its volume is the divergence's");
+        assert_eq!(assumed(&motion, 1.0), motion, "no correction without a difference of volumes");
     }
 
     #[test]

@@ -269,12 +269,6 @@ impl SceneKind {
 
     /// Why the scene cannot take a method, where it cannot.
     pub fn refuses_method(self, method: Method) -> Option<&'static str> {
-        if self.is_manufactured() && method.strain.is_bbar() {
-            return Some(
-                "B-bar changes the strain of a point by its volume alone, and a manufactured motion is followed by \
-                 the whole gradient at mid step",
-            );
-        }
         if self == Self::Footing && method.has_projection() {
             return Some(
                 "a pressure projection has unknown pressures at the nodes, and the footing's follow from displacements",
