@@ -46,7 +46,7 @@ pub fn judge_paths(study: &Study, records: &[Record], paths: &StudyPaths<'_>, ti
 }
 
 /// One judgement for each path that the expectation selects; where it selects none, one that fails.
-fn judge_expectation(expectation: &SeriesExpectation, all: &[Path<'_>]) -> Vec<Judgement> {
+pub(super) fn judge_expectation(expectation: &SeriesExpectation, all: &[Path<'_>]) -> Vec<Judgement> {
     let SeriesExpectation { measure, demand, selection, axis, line, .. } = expectation;
     let judge_path = |path: &Path<'_>, series: ErrorSeries| {
         let context = path.context(measure);

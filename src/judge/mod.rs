@@ -10,6 +10,7 @@ pub mod explanation;
 pub mod judgement;
 pub mod path_context;
 pub mod paths;
+pub mod proposals;
 pub mod race;
 pub mod scatter;
 pub mod score;

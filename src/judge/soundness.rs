@@ -2,6 +2,7 @@
 //! reference no more accurate than the result, invalidates any verdict.
 
 use crate::case::Quantity;
+use crate::judge::proposals;
 use crate::measure::record_checks;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -36,6 +37,10 @@ pub fn complaints(record: &Record) -> Vec<String> {
 /// fit into memory: fields and history, and where no expectation selects the record its errors and balances too.
 /// Records with complaints and those of attached solvers stay whole.
 pub fn thin(study: &Study, record: &mut Record) {
+    // What is proposed to a study without expectations comes from its errors and fields.
+    if proposals::are_wanted(study) {
+        return;
+    }
     let has_complaints = || !complaints(record).is_empty();
     if record.status != Status::Ok || record.attached.is_some() || has_complaints() {
         return;

@@ -11,6 +11,8 @@ use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, va
 use crate::judge::attached_diagnosis::diagnoses;
 use crate::judge::explanation::place_of_attached;
 use crate::judge::judgement::{Absent, Judgement, differing_repeats, judge_study};
+use crate::judge::paths::StudyPaths;
+use crate::judge::proposals::proposals;
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -42,6 +44,8 @@ pub struct StudyCheck {
     pub judgements: Vec<Judgement>,
     /// Inputs that are not those of the golden values, the most cases first.
     pub inputs: Vec<InputChange>,
+    /// Expectations that the records meet, as TOML, for a study that has none.
+    pub proposals: Vec<String>,
     /// Differences from the golden values, or why golden values are missing.
     pub golden: Result<Vec<Difference>, GoldenError>,
     /// The differences by kind, with what those of a kind have in common.
@@ -100,6 +104,7 @@ impl StudyCheck {
             }),
             // Partial results of a failed run are not judged.
             inputs: changes,
+            proposals: proposals(study, &StudyPaths::of(records)),
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
                 Status::Ok if !study.is_race => soundness::complaints(record),
@@ -168,6 +173,7 @@ impl StudyCheck {
             unsound: Vec::new(),
             judgements: Vec::new(),
             inputs: Vec::new(),
+            proposals: Vec::new(),
             agreeing: values.len() - changed,
             groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),

@@ -24,6 +24,7 @@ mod portable;
 mod presets;
 mod problems;
 mod program;
+mod proposed;
 mod readme;
 mod report_rules;
 mod report_tables;

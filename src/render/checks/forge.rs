@@ -153,6 +153,7 @@ mod tests {
             failed_cases: (0..failures).map(note).collect(),
             unsound: Vec::new(),
             inputs: Vec::new(),
+            proposals: Vec::new(),
             judgements: Vec::new(),
             golden: Ok(Vec::new()),
             groups: Vec::new(),

@@ -22,6 +22,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
     }
+    text += &text_of_proposals(check, file);
     for warning in &check.warnings {
         text += &wrapped(&format!("warning: {warning}"), "  ", "    ");
     }
@@ -55,6 +56,9 @@ pub fn markdown_of(
         }
         for table in tables_of(check) {
             let _ = write!(text, "\n{}\n", table.to_markdown()?);
+        }
+        if !check.proposals.is_empty() {
+            let _ = write!(text, "\n{PROPOSED}\n\n```toml\n{}```\n", check.proposals.join("\n"));
         }
         for warning in &check.warnings {
             let _ = write!(text, "\nWarning: {warning}\n");
@@ -241,6 +245,26 @@ fn text_of_failures(check: &StudyCheck) -> String {
 fn text_of_inputs(check: &StudyCheck) -> String {
     let inputs = check.inputs.iter().map(|one| wrapped(&one.sentence(), "  ", "    ")).collect();
     section("inputs that changed since the golden values were taken", inputs)
+}
+
+/// What stands above proposed expectations.
+pub(crate) const PROPOSED: &str = "The study expects nothing yet. These results meet the lines below, with room for half as \
+                                   much error again and a quarter of an order: paste those that should hold from now on.";
+
+/// Expectations to paste into the file of a study; the report has those that are only counted.
+fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> String {
+    if check.proposals.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n{}\n", wrapped(PROPOSED, "", ""));
+    text += &check.proposals.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join("\n");
+    let rest = check.proposals.len().saturating_sub(MOST);
+    if rest > 0 {
+        let whole = file
+            .map_or(String::new(), |file| format!(": `oedometer check {file} --format markdown` has all"));
+        let _ = writeln!(text, "\nand {rest} more{whole}");
+    }
+    text
 }
 
 /// Golden values that differ: kinds, the worst values, and cases.

@@ -58,6 +58,8 @@ pub struct Section {
 pub enum Block {
     /// Running text, lightly marked.
     Paragraph(String),
+    /// Lines to be copied as they are.
+    Code(String),
     /// A smaller heading.
     Heading(String),
     /// Points, each lightly marked.

@@ -120,6 +120,9 @@ fn html_callout(mood: Mood, text: &str) -> String {
 fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
     match block {
         Block::Paragraph(text) => out.push_str(&html_text(text)),
+        Block::Code(text) => {
+            let _ = writeln!(out, "<pre><code>{}</code></pre>", escape::plain_html(text));
+        }
         Block::Heading(text) => {
             let _ = writeln!(out, "<h3>{}</h3>", escape::html(text));
         }
@@ -260,6 +263,7 @@ fn markdown_callout(mood: Mood, text: &str) -> String {
 fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, RenderError> {
     Ok(match block {
         Block::Paragraph(text) => markdown_text(text),
+        Block::Code(text) => format!("```\n{}\n```", text.trim_end()),
         Block::Heading(text) => format!("### {}", escape::markdown(text)),
         Block::List(points) => {
             let point = |point: &String| format!("- {}", to_markdown(&paragraphs(point).join(" ")));

@@ -2,7 +2,8 @@
 
 use crate::judge::attached_diagnosis::diagnoses;
 use crate::judge::judgement::Judgement;
-use crate::render::checks::verdicts::judgements_table;
+use crate::judge::proposals::proposals;
+use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
     StudyResults, checks, cost, footing, layer, maps, race, refinement, survival, theory_lines,
@@ -15,6 +16,9 @@ use std::fmt::Write;
 
 /// Reasons in the red box before the rest is only counted.
 const MOST_REASONS: usize = 5;
+
+/// Proposed expectations that stand open on the page.
+const MOST_OPEN: usize = 4;
 
 /// The page of a study.
 ///
@@ -92,6 +96,16 @@ fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     let failing = failing(results);
     if !failing.is_empty() {
         blocks.push(Block::Table(judgements_table("Expectations that are not met", &failing)));
+    }
+    let proposed = proposals(results.study, &results.paths);
+    if !proposed.is_empty() {
+        blocks.push(Block::Paragraph(PROPOSED.to_owned()));
+        let whole = Block::Code(proposed.join("\n"));
+        blocks.push(if proposed.len() > MOST_OPEN {
+            Block::Details { summary: format!("The {} expectations", proposed.len()), blocks: vec![whole] }
+        } else {
+            whole
+        });
     }
     if !results.judgements.is_empty() {
         let all: Vec<_> = results.judgements.iter().collect();

@@ -1,0 +1,170 @@
+//! Expectations that today's results meet, for a study that has none: proposed, to be pasted into its file, never demanded.
+//!
+//! Every series along an axis that is refined gets one: the order, where its class has one, and the error at the finest
+//! level. The room is less than what a worse solver takes: half an order, or twice the error.
+
+use crate::case::keys::{KEYS, Key, Value};
+use crate::case::{Case, Quantity, Sample, Tier};
+use crate::judge::judgement::judge_expectation;
+use crate::judge::paths::{Path, StudyPaths, first_measure};
+use crate::study::check::Study;
+use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
+use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};
+use oedometer_mpm::method::Method;
+use oedometer_mpm::run::TimeStepRule;
+
+/// Room about an order: less than the half order that it is to catch.
+const ROOM_OF_ORDER: f64 = 0.25;
+/// Room over an error: less than the factor of two that it is to catch, with two digits of the bound.
+const ROOM_OF_ERROR: f64 = 1.5;
+/// More cases than a person reads expectations of; records of more are not kept whole for them.
+const MOST_CASES: usize = 1000;
+
+/// Whether expectations are proposed for a study: it has none, and no race expects any.
+pub fn are_wanted(study: &Study) -> bool {
+    let expects = !study.expectations.is_empty() || !study.case_expectations.is_empty();
+    !expects && !study.is_race && study.planned.len() <= MOST_CASES
+}
+
+/// The expectations as TOML, one `[[expect]]` each, in the order of the study; none where it has some already.
+pub fn proposals(study: &Study, paths: &StudyPaths<'_>) -> Vec<String> {
+    if !are_wanted(study) {
+        return Vec::new();
+    }
+    let all = Axis::REFINEMENTS.into_iter().flat_map(|axis| paths.along(axis));
+    all.filter_map(|path| proposal(study, path)).map(|one| to_toml(study, &one)).collect()
+}
+
+/// The strictest expectation that a series meets.
+fn proposal(study: &Study, path: &Path<'_>) -> Option<SeriesExpectation> {
+    let selection = Selection(selection_of(study, path)?);
+    let meets = |(measure, demand): (Measure, SeriesDemand)| {
+        let selection = selection.clone();
+        let tier = tier_of(study, path);
+        let one =
+            SeriesExpectation { selection, measure, reference: None, axis: path.axis, demand, tier, line: 0 };
+        let judged = judge_expectation(&one, std::slice::from_ref(path));
+        (!judged.is_empty() && judged.iter().all(|judgement| judgement.verdict.pass)).then_some(one)
+    };
+    let measures = measures_of(study, path);
+    let with_order = measures.iter().filter_map(|measure| demand_of(path, measure, true));
+    let with_error = measures.iter().filter_map(|measure| demand_of(path, measure, false));
+    with_order.chain(with_error).find_map(meets)
+}
+
+/// What may be judged, the latest time first: against the scene's own solution, or along steps against the next finer
+/// one, whose differences do not end at the error of the mesh.
+fn measures_of(study: &Study, path: &Path<'_>) -> Vec<Measure> {
+    let own = study.references.first().map(|kind| kind.name());
+    let reference = if path.axis == Axis::TimeStep { Some(NEXT_FINER) } else { own };
+    let quantity = |time: f64, (quantity, sample)| {
+        Some(path.own_measure(&first_measure(quantity, sample, reference?, time)))
+    };
+    let times = path.records[0].case.time_factors.iter().rev();
+    let panels = [
+        (Quantity::Pressure, Sample::Points),
+        (Quantity::LoadFactor, Sample::Surface),
+        (Quantity::Settlement, Sample::Surface),
+    ];
+    panels.iter().flat_map(|panel| times.clone().filter_map(|time| quantity(*time, *panel))).collect()
+}
+
+/// The measured order and error of a series with their room; `None` where they are not what is asked for.
+fn demand_of(path: &Path<'_>, measure: &Measure, with_order: bool) -> Option<(Measure, SeriesDemand)> {
+    let found = path.summary(measure);
+    let finest = found.series.levels().last()?;
+    let below = format!("{:.1e}", ROOM_OF_ERROR * finest.positive_error().ok()?).parse().ok()?;
+    let order = found.classification.order.filter(|_| found.classification.class == Class::Asymptotic);
+    let band = |order: f64| OrderBand {
+        value: (100.0 * order).round() / 100.0,
+        minus: ROOM_OF_ORDER,
+        plus: ROOM_OF_ORDER,
+    };
+    let order = if with_order { Some(band(order?)) } else { None };
+    let at = Some(ErrorBound { size: finest.size, below, above: 0.0 });
+    Some((measure.clone(), SeriesDemand { order, at, ..SeriesDemand::default() }))
+}
+
+/// The inputs that tell the series from the others of its study, the method first; `None` where a file has no word for
+/// one of them.
+fn selection_of(study: &Study, path: &Path<'_>) -> Option<Vec<(&'static Key, Value)>> {
+    let case = &path.records[0].case;
+    let differs = |key: &Key| study.planned.iter().any(|other| key.get(&other.case) != key.get(case));
+    let keys = KEYS.iter().filter(|key| key.tables.contains(&"sweep") && key.name != path.axis.name());
+    let named = keys.filter(|key| key.name == "method" || key.counts_for(case) && differs(key));
+    named.map(|key| toml_of(key.get(case)).map(|_| (key, key.get(case)))).collect()
+}
+
+fn tier_of(study: &Study, path: &Path<'_>) -> Tier {
+    let is_of = |case: &Case| path.records.iter().any(|record| record.case == *case);
+    let tiers = study.planned.iter().filter(|planned| is_of(&planned.case)).map(|planned| planned.tier);
+    tiers.max().unwrap_or(Tier::Ci)
+}
+
+/// A value as a study file has it.
+fn toml_of(value: Value) -> Option<String> {
+    Some(match value {
+        Value::Method(method) => {
+            let name = method.to_string();
+            if method.own().is_some() && Method::named(&name).is_none() {
+                return None;
+            }
+            format!("{name:?}")
+        }
+        Value::TimeStep(TimeStepRule::Stable(share)) => format!("{{ stable = {share:?} }}"),
+        Value::TimeStep(TimeStepRule::Courant(share)) => format!("{{ courant = {share:?} }}"),
+        Value::TimeStep(TimeStepRule::Seconds(seconds)) => format!("{{ seconds = {seconds:?} }}"),
+        Value::TimeStep(TimeStepRule::Growth(growth)) => format!("{{ growth = {growth:?} }}"),
+        Value::TimeStep(TimeStepRule::Tolerance(tolerance)) => format!("{{ tolerance = {tolerance:?} }}"),
+        Value::Word(word) => format!("{word:?}"),
+        Value::Flag(flag) => flag.to_string(),
+        Value::Count(count) => count.to_string(),
+        Value::Number(number) => format!("{number:?}"),
+        Value::Absent => return None,
+    })
+}
+
+/// An expectation as a study file has it.
+fn to_toml(study: &Study, one: &SeriesExpectation) -> String {
+    let mut lines = vec!["[[expect]]".to_owned()];
+    let inputs = one.selection.0.iter().filter_map(|(key, value)| Some((key.name, toml_of(*value)?)));
+    lines.extend(inputs.map(|(name, value)| format!("{name} = {value}")));
+    let measure = &one.measure;
+    lines.push(format!("quantity = \"{}\"", measure.quantity.name()));
+    if !measure.quantity.is_of_surface() {
+        lines.push(format!("sample = \"{}\"", measure.sample.name()));
+    }
+    if one.axis != Axis::Cells {
+        lines.push(format!("axis = \"{}\"", one.axis.name()));
+    }
+    if study.references.first().is_none_or(|kind| kind.name() != measure.reference) {
+        lines.push(format!("reference = \"{}\"", measure.reference));
+    }
+    lines.push(format!("time_factor = {:?}", measure.time_factor));
+    if let Some(OrderBand { value, minus, plus }) = one.demand.order {
+        lines.push(format!("order = {{ value = {value:?}, minus = {minus:?}, plus = {plus:?} }}"));
+    }
+    if let Some(at) = one.demand.at {
+        lines.push(format!("at = {{ {}, below = {:e} }}", level_of(study, one, at.size), at.below));
+    }
+    if one.tier == Tier::Full {
+        lines.push("tier = \"full\"".to_owned());
+    }
+    lines.join("\n") + "\n"
+}
+
+/// A level of a series in the words of its axis.
+fn level_of(study: &Study, one: &SeriesExpectation, size: f64) -> String {
+    let cases = || study.planned.iter().map(|planned| &planned.case);
+    let of_series = |case: &&Case| one.selection.fits_along(one.axis.name(), case);
+    match one.axis {
+        Axis::Cells => {
+            let is_level = |case: &&Case| (case.cell_size() - size).abs() <= 1e-9 * size;
+            let cells = cases().filter(of_series).find(is_level).map_or(0, |case| case.cells);
+            format!("cells = {cells}")
+        }
+        Axis::TimeStep => format!("seconds = {size:?}"),
+        Axis::PointsPerCell => format!("points_per_cell = {}", (1.0 / size).round()),
+        Axis::WaterBulkModulus => format!("water_bulk_modulus = {:?}", 1.0 / size),
+    }
+}
