@@ -4,6 +4,7 @@
 use crate::program::{Told, call, call_with};
 use oedometer::api::exact::exact;
 use oedometer::{GoldenFile, RunOptions, Study, StudySource, Tier, run_study};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
