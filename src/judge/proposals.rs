@@ -73,7 +73,13 @@ fn measures_of(study: &Study, path: &Path<'_>) -> Vec<Measure> {
 fn demand_of(path: &Path<'_>, measure: &Measure, with_order: bool) -> Option<(Measure, SeriesDemand)> {
     let found = path.summary(measure);
     let finest = found.series.levels().last()?;
-    let below = format!("{:.1e}", ROOM_OF_ERROR * finest.positive_error().ok()?).parse().ok()?;
+    let error = finest.positive_error().ok()?;
+    // What is off by all of the load is no result to hold.
+    let is_result = error < 1.0;
+    if !is_result {
+        return None;
+    }
+    let below = format!("{:.1e}", ROOM_OF_ERROR * error).parse().ok()?;
     let order = found.classification.order.filter(|_| found.classification.class == Class::Asymptotic);
     let band = |order: f64| OrderBand {
         value: (100.0 * order).round() / 100.0,

@@ -1,13 +1,14 @@
 //! The answer page: what a reader asks of the records of all studies. Each question has a sentence, a short table or a
 //! figure, and a link to the study that shows it.
 //!
-//! Every sentence is made from records. A question that the records do not answer says what would.
+//! Every sentence is made from records. A question that the records do not answer is not put.
 
 mod audit;
 mod changes;
 mod converges;
 mod cost;
 mod double_point;
+mod locking;
 pub(crate) mod paper;
 mod race;
 mod regime;
@@ -107,24 +108,15 @@ struct Question {
     id: &'static str,
 }
 
-/// The answer of the records to a question.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Answer {
-    /// A section: a sentence first, then a short table or figures.
-    Told(Section),
-    /// No answer: the question, and what the records lack, lightly marked.
-    Open(String),
-}
+/// The answer of the records to a question: a section, a sentence first, then a short table or figures. `None` where they
+/// have none: what was not asked is not answered.
+pub(crate) type Answer = Option<Section>;
 
 impl Question {
     fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Answer {
         shown.insert(0, Block::Paragraph(sentence.into()));
         let (heading, id) = (self.heading.to_owned(), self.id.to_owned());
-        Answer::Told(Section { heading, id, mood: None, blocks: shown })
-    }
-
-    fn open(self, needed: &str) -> Answer {
-        Answer::Open(format!("**{}** {needed}.", self.heading))
+        Some(Section { heading, id, mood: None, blocks: shown })
     }
 }
 
@@ -158,6 +150,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let (small, large) = (regime::small_strain(results), regime::large_strain(results));
     let all = [
         race::answer(answers.race, &links),
+        locking::answer(results, &links)?,
         converges::answer(results, small.as_ref(), large.as_ref(), &links),
         paper::answer(results, &links)?,
         cost::answer(results, &links),
@@ -165,23 +158,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         double_point::answer(results, &links),
         changes::answer(answers.changes, answers.against),
     ];
-    let mut sections = Vec::new();
-    let mut open = Vec::new();
-    for answer in all {
-        match answer {
-            Answer::Told(section) => sections.push(section),
-            Answer::Open(needed) => open.push(needed),
-        }
-    }
-    if !open.is_empty() {
-        let lead = "These questions need other studies than those of this report:";
-        sections.push(Section {
-            heading: "Not in these records".to_owned(),
-            id: "open".to_owned(),
-            mood: None,
-            blocks: vec![Block::Paragraph(lead.to_owned()), Block::List(open)],
-        });
-    }
+    let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
     let few = match results.len() {
         1..=FEW_STUDIES => {

@@ -37,7 +37,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
         .collect();
     if runs.is_empty() {
-        return Ok(QUESTION.open(&format!("`{PAPERS}` on {QUOTED_CELLS} cells of the paper's column")));
+        return Ok(None);
     }
     let mut figures = Vec::new();
     let mut sentences = Vec::new();
@@ -152,7 +152,7 @@ mod tests {
             let records = records_of(&text);
             let results = [StudyResults::new(&study, &records, Tier::Full)];
             let links = |study: &str| format!("{study}.html");
-            matches!(answer(&results, &links).expect("an answer"), Answer::Told(_))
+            matches!(answer(&results, &links).expect("an answer"), Some(_))
         };
         assert!(answered("terzaghi", ""));
         assert!(answered("xie-leo", "[column]\nload = 200e3"));

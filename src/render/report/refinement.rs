@@ -43,7 +43,8 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
     let Some(shown) = times.get(times.len().saturating_sub(1) / 2).copied() else { return Vec::new() };
     let mut blocks = vec![Block::Heading(heading(axis).to_owned())];
     let mut references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
-    if axis == Axis::TimeStep && results.asks_for(NEXT_FINER) {
+    let expects_nothing = results.study.expectations.is_empty();
+    if axis == Axis::TimeStep && (expects_nothing || results.asks_for(NEXT_FINER)) {
         references.insert(0, NEXT_FINER);
     }
     let own = references.first().copied().unwrap_or_default();

@@ -1,0 +1,107 @@
+//! Which method locks, from which Poisson's ratio, and by how much? Answered where a study sweeps it in the plane.
+
+use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweepRow, SweptStiffness};
+use crate::render::answers::{Answer, Links, Question, link};
+use crate::render::page::Block;
+use crate::render::report::StudyResults;
+use crate::render::table::{Cell, Mood, Table, columns};
+use oedometer_exact::exact_error::ExactError;
+use oedometer_soil::wording::{count_of, short, typed};
+
+const QUESTION: Question = Question { heading: "Who locks?", id: "locking" };
+
+/// A method keeps its result where displacement and pressure are off by less than this.
+const KEPT: f64 = 0.1;
+
+/// The study that sweeps Poisson's ratio with the most methods.
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, ExactError> {
+    let mut widest: Option<(&StudyResults<'_>, StiffnessSweep)> = None;
+    for one in results.iter().filter(|one| one.study.scene.shows_locking() && !one.study.is_race) {
+        let sweep = StiffnessSweep::of(one.study, one.records, SweptStiffness::Skeleton)?;
+        let is_wider = |sweep: &StiffnessSweep| {
+            widest.as_ref().is_none_or(|(_, other)| sweep.rows.len() > other.rows.len())
+        };
+        if let Some(sweep) = sweep.filter(is_wider) {
+            widest = Some((one, sweep));
+        }
+    }
+    let Some((one, sweep)) = widest else { return Ok(None) };
+    let Some(time) = sweep.time_factors.last().copied() else { return Ok(None) };
+    let rows: Vec<&SweepRow> = sweep.at(time).collect();
+    let sentence = format!("{} Evidence: {}.", sentence(&sweep, &rows, time), link(links, &one.study.name));
+    Ok(QUESTION.told(sentence, vec![Block::Table(table(&sweep, &rows))]))
+}
+
+/// Errors of displacement and pressure at a value of the sweep.
+fn errors(row: &SweepRow, place: usize) -> [Option<f64>; 2] {
+    let [displacement, pressure, _] = row.found[place];
+    [displacement, pressure]
+}
+
+/// The first value of the sweep at which the result is lost; nothing where it is kept at all of them.
+fn lost_from(row: &SweepRow) -> Option<usize> {
+    let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
+    (0..row.found.len()).find(|place| !errors(row, *place).into_iter().all(is_kept))
+}
+
+fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
+    let names = |of: &dyn Fn(&SweepRow) -> bool| {
+        let named = rows.iter().filter(|row| of(row)).map(|row| format!("`{}`", row.method));
+        named.collect::<Vec<_>>().join(", ")
+    };
+    let largest = sweep.values.last().copied().unwrap_or_default();
+    let kept = rows.iter().filter(|row| lost_from(row).is_none()).count();
+    let mut text = format!(
+        "Of {} on {} cells, at T_v = {}, {kept} keep displacement and pressure within {} % up to ν = {}",
+        count_of(rows.len(), "method", "methods"),
+        sweep.cells,
+        typed(time),
+        short(100.0 * KEPT),
+        typed(largest)
+    );
+    if kept > 0 {
+        text += &format!(": {}", names(&|row| lost_from(row).is_none()));
+    }
+    for (place, value) in sweep.values.iter().enumerate() {
+        let lost = names(&|row| lost_from(row) == Some(place));
+        if !lost.is_empty() {
+            text += &format!("; lost from ν = {} on: {lost}", typed(*value));
+        }
+    }
+    text + "."
+}
+
+/// One row for each method, those that keep their result first.
+fn table(sweep: &StiffnessSweep, rows: &[&SweepRow]) -> Table {
+    let last = sweep.values.len() - 1;
+    let mut rows = rows.to_vec();
+    rows.sort_by_key(|row| std::cmp::Reverse(lost_from(row).unwrap_or(usize::MAX)));
+    let cells = rows.into_iter().map(|row| {
+        let verdict = match lost_from(row) {
+            None => Cell::Verdict(Mood::Pass, "kept".to_owned()),
+            Some(place) => Cell::Verdict(Mood::Fail, format!("lost from ν = {}", typed(sweep.values[place]))),
+        };
+        let error =
+            |place: usize, which: usize| Cell::of(errors(row, place)[which], Cell::Error, "no result");
+        vec![
+            Cell::Code(row.method.to_string()),
+            verdict,
+            error(0, 0),
+            error(last, 0),
+            error(0, 1),
+            error(last, 1),
+        ]
+    });
+    let [first, last] = [sweep.values[0], sweep.values[last]].map(typed);
+    let header = format!(
+        "method | result | > displacement, ν = {first} | > ν = {last} | > pressure, ν = {first} | > ν = {last}"
+    );
+    Table::of("Errors over Poisson's ratio", columns(&header), cells).note(format!(
+        "relative L2 errors of the nodal displacement and of the pressure at the points on {} cells; kept: both below {}",
+        sweep.cells,
+        short(KEPT)
+    ))
+}
