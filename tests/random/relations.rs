@@ -98,8 +98,9 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             // B-bar shares a volume out among the directions that there are, cells that remember fit their parabolas
             // over them: other methods in each dimension.
             let is_same = !(deforms && (base.method.contains("Bbar") || base.method.ends_with("-cells")));
-            // Off the lattice a cell of the plane feels more of its pressures than one of a line.
-            let is_same = is_same && (is_lattice || !base.method.ends_with("null-space"));
+            // Off the lattice, where points move too, a cell of the plane beside another feels slopes of its pressures
+            // along the height, by forces across it: one of a line does not, and filters them.
+            let is_same = is_same && ((is_lattice && is_small) || !base.method.ends_with("null-space"));
             // One point integrates no shear of a plane's cell: without it nodes go to and fro beside each other, and where
             // points move a lattice does not stay one.
             let is_held = base.points_per_cell > 1 || (is_lattice && is_small);
@@ -207,7 +208,6 @@ fn tolerance(related: &Related) -> f64 {
         Relation::Units | Relation::Load => 1e-8,
         // Strains of 1e-6 over the share of a stiff skeleton's shear, and Newton's tolerance in every step.
         Relation::TotalAndFrozen => 1e-3 + round_off,
-        Relation::Dimensions if related.base.scene == "xie-leo" => 1e-4 + round_off,
         _ => round_off,
     }
 }

@@ -168,11 +168,8 @@ impl Store {
                 values: Vec::new(),
             };
             if is_wanted(&array.name) {
-                let from =
-                    usize::try_from(member.byte_offset).map_err(|_| "a field lies outside its record")?;
                 for record in bytes.chunks_exact((size as usize).max(1)) {
-                    let field = record.get(from..).and_then(|rest| rest.get(..scalar.size()));
-                    let field = field.ok_or("a field lies outside its record")?;
+                    let field = field_of(record, member.byte_offset, scalar.size())?;
                     array.values.extend(scalar.decode(field, is_little));
                 }
             }
@@ -220,6 +217,13 @@ fn product(shape: &[u64]) -> Result<u64, String> {
     all.ok_or_else(|| "its shape has more numbers than any file".to_owned())
 }
 
+/// The bytes of a field that begins so many bytes behind the start of its record.
+fn field_of(record: &[u8], from: u64, size: usize) -> Result<&[u8], String> {
+    let behind = usize::try_from(from).ok().and_then(|from| record.get(from..));
+    let field = behind.and_then(|rest| rest.get(..size));
+    field.ok_or_else(|| "a field lies outside its record".to_owned())
+}
+
 fn damaged(error: &hdf5_pure::Error) -> String {
     format!("its HDF5 is damaged: {error}")
 }
@@ -256,5 +260,45 @@ mod tests {
         let frame = store.frame(0, Wanted(&names)).expect("a state");
         let values: Vec<&[f64]> = frame.arrays.iter().map(|array| &array.values[..]).collect();
         assert_eq!(values, [[-1.0, 2.0], [5.0, 6.0], [0.5, 1.5]]);
+    }
+
+    #[test]
+    fn a_field_that_begins_or_ends_beyond_what_can_be_counted_is_outside_its_record() {
+        let record = [1, 2, 3, 4];
+        assert_eq!(field_of(&record, 2, 2), Ok(&record[2..]));
+        for from in [3, 4, 5, u64::from(u32::MAX), usize::MAX as u64 - 1, u64::MAX] {
+            assert!(field_of(&record, from, 2).is_err_and(|why| why.contains("outside")), "{from}");
+        }
+    }
+
+    #[test]
+    fn a_shape_with_more_numbers_than_can_be_counted_is_refused() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.h5");
+        let mut builder = FileBuilder::new();
+        builder.create_dataset("p").with_f64_data(&[0.5; 15]).with_shape(&[3, 5]);
+        builder.write(&path).expect("a file");
+        let sound = std::fs::read(&path).expect("a file");
+        let shape_of = |[rows, columns]: [u64; 2]| [rows.to_le_bytes(), columns.to_le_bytes()].concat();
+        let places: Vec<usize> =
+            (0..sound.len() - 16).filter(|place| sound[*place..place + 16] == shape_of([3, 5])).collect();
+        assert!(!places.is_empty(), "the shape stands in the file");
+        let names = BTreeSet::from(["p".to_owned()]);
+        let read = |shape| {
+            let mut bytes = sound.clone();
+            for place in &places {
+                bytes[*place..place + 16].copy_from_slice(&shape_of(shape));
+            }
+            std::fs::write(&path, bytes).expect("a file");
+            let mut store = Store::open(&path)?;
+            store.numbers("p", None)?;
+            store.frame(0, Wanted(&names)).map(|frame| frame.arrays[0].values.len())
+        };
+        assert_eq!(read([3, 5]), Ok(15));
+        // Numbers beyond 2⁶⁴, bytes beyond 2⁶⁴, and bytes beyond any memory.
+        for shape in [[u64::MAX, 2], [1 << 33, 1 << 32], [1 << 61, 1], [1 << 60, 7], [1 << 40, 1]] {
+            let refused = read(shape);
+            assert!(refused.as_ref().is_err_and(|why| !why.is_empty()), "{shape:?}: {refused:?}");
+        }
     }
 }

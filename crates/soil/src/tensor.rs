@@ -115,20 +115,34 @@ pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
     (inverse, determinant)
 }
 
-/// Strain between two deformation gradients: `2 (F₁ − F₀)(F₁ + F₀)⁻¹` (Hughes & Winget 1980), the
-/// logarithmic strain to third order in the increment, with its trace made the logarithm of the
-/// volume ratio. In one dimension it is the logarithmic strain.
+/// Logarithm of the deformation `F₁ F₀⁻¹` between two deformation gradients in one dimension or the plane, whose symmetric
+/// part is the strain: exact where the stretch keeps its axes, so that a column strains alike in both.
+///
+/// From the Cayley transform `X = (F₁ − F₀)(F₁ + F₀)⁻¹` of Hughes & Winget (1980), which is half the logarithm to third
+/// order: `ln F₁ F₀⁻¹ = 2 artanh X`. The trace of it is the logarithm of the volume ratio; for the rest, `Y = X − tr(X)/2`,
+/// `Y² = s²` (Cayley & Hamilton) leaves `Y artanh(z)/s` with `z = 2 s/(1 + s² − tr(X)²/4)`, a series in `z²`.
 #[inline]
 pub fn strain_between<const D: usize>(before: &Tensor<D>, after: &Tensor<D>, log_volume: f64) -> Tensor<D> {
     if D == 1 {
         return [[log_volume; D]; D];
     }
     let difference = std::array::from_fn(|i| std::array::from_fn(|j| after[i][j] - before[i][j]));
-    let mean = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (after[i][j] + before[i][j])));
-    let mut strain = product(&difference, &inverse(&mean).0);
-    let trace: f64 = (0..D).map(|d| strain[d][d]).sum();
+    let sum = std::array::from_fn(|i| std::array::from_fn(|j| after[i][j] + before[i][j]));
+    let mut strain = product(&difference, &inverse(&sum).0);
+    let mean = (0..D).map(|d| strain[d][d]).sum::<f64>() / D as f64;
     for d in 0..D {
-        strain[d][d] += (log_volume - trace) / D as f64;
+        strain[d][d] -= mean;
+    }
+    let square = (0..D).map(|j| strain[0][j] * strain[j][0]).sum::<f64>();
+    let per_half = 2.0 / (1.0 + square - mean * mean);
+    let z_squared = square * per_half * per_half;
+    let series = [1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];
+    let factor = per_half * series.iter().fold(0.0, |sum, term| sum * z_squared + term);
+    for i in 0..D {
+        for j in 0..D {
+            strain[i][j] *= factor;
+        }
+        strain[i][i] += log_volume / D as f64;
     }
     strain
 }
@@ -167,6 +181,15 @@ mod tests {
     fn the_strain_is_logarithmic() {
         let strain = strain_between(&[[0.9]], &[[0.8]], (0.8_f64 / 0.9).ln());
         assert!((strain[0][0] - (0.8_f64 / 0.9).ln()).abs() < 1e-15);
+        // In the plane all of it is in the direction that strains, and shears beside it are those of the matrix logarithm.
+        for step in [0.5_f64, 0.9, 0.99] {
+            let log = step.ln();
+            let strain = strain_between(&[[1.0, 0.0], [0.0, 0.8]], &[[1.0, 0.0], [0.0, 0.8 * step]], log);
+            let off = (strain[0][0].abs() + (strain[1][1] - log).abs()) / log.abs();
+            assert!(off < (0.55 * log.abs()).powi(10) + 1e-13, "{step}: {strain:?}");
+            let sheared = strain_between(&identity(), &[[1.0, 0.1 * (step - 1.0)], [0.0, step]], log);
+            assert!((sheared[0][1] - 0.1 * log).abs() < 1e-4 * log.abs().powi(8), "{step}: {sheared:?}");
+        }
         // A rotation strains nothing.
         let (sine, cosine) = 0.01_f64.sin_cos();
         let turned = strain_between(&identity(), &[[cosine, -sine], [sine, cosine]], 0.0);

@@ -107,3 +107,48 @@ fn sum_of<const D: usize>(
     }
     energy
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Body;
+    use crate::explicit::{Drag, ExplicitSettings};
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    /// Kinetic and stored energy and work, J, at the start of the run and after many steps of a column without drag.
+    fn on_the_way<const D: usize>(soil: &Material) -> [Energy; 2] {
+        let column = Column { dimensions: D, height: 2.3, load: 37.0, ..Column::default() }.with_extent(0.92);
+        let method = Method::named("GIMP-SRI").expect("a known method");
+        let problem = column_problem::<D>(SceneKind::DynamicColumn, &column, soil, method, 5, 2);
+        let problem = problem.expect("a column");
+        let limit = crate::critical_step::formula::combined_limit(soil, problem.grid.cell_size, Drag::Implicit);
+        let (dt, settings) = (
+            0.5 * limit,
+            ExplicitSettings { drag: Drag::Implicit, mapping_back: false, ..ExplicitSettings::default() },
+        );
+        let mut step = AssembledStep::new(&Body::new(problem));
+        step.set_step(dt, &settings);
+        [1, 199].map(|count| {
+            for _ in 0..count {
+                step.kick_and_drift(dt, dt, &settings);
+            }
+            step.energy(dt, false)
+        })
+    }
+
+    #[test]
+    fn without_drag_energy_is_what_loads_have_given() {
+        let soil = Material { porosity: 0.43, hydraulic_conductivity: 1e9, ..Material::default() };
+        for [first, last] in [on_the_way::<1>(&soil), on_the_way::<2>(&soil)] {
+            let free = |energy: Energy| energy.kinetic + energy.stored - energy.work;
+            let moved = last.kinetic + last.stored;
+            let gained = free(last) - free(first);
+            assert!(moved > 10.0 * (first.kinetic + first.stored) && last.work != 0.0, "{first:?} {last:?}");
+            assert!(gained.abs() < 1e-9 * moved, "{gained:e} of {moved:e}");
+        }
+    }
+}

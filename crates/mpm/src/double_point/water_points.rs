@@ -229,6 +229,33 @@ mod tests {
         assert!(water.volume[0] / water.volume[9] > 1.15, "{:?}", water.volume);
     }
 
+    #[test]
+    fn a_point_above_the_surface_leaves_with_all_that_is_its_own() {
+        let mut double = moving_column::<1>("GIMP", [2, 2], 1.0, &Material::default());
+        for point in 0..double.water.len() {
+            // No two masses and velocities are alike.
+            double.water.mass[point] *= 1.0 + 1e-3 * point as f64;
+            double.water.velocity[point] = [point as f64];
+        }
+        let (masses, whole) = (double.water.mass.clone(), double.water.mass.iter().sum::<f64>());
+        let height = double.body.grid.cell_size * 5.0;
+        double.water.position[3] = [height + double.water.half_length[3][0]];
+        double.follow_water();
+        let water = &double.water;
+        assert_eq!(water.len(), masses.len() - 1);
+        assert!((water.left_mass - masses[3]).abs() < 1e-12 * masses[3], "{}", water.left_mass);
+        let stay: Vec<usize> = (0..masses.len()).filter(|point| *point != 3).collect();
+        let is_their_own = |(here, before): (usize, &usize)| {
+            water.mass[here] == masses[*before] && water.velocity[here] == [*before as f64]
+        };
+        assert!(stay.iter().enumerate().all(is_their_own), "{:?} {:?}", water.mass, water.velocity);
+        assert!((water.mass.iter().sum::<f64>() + water.left_mass - whole).abs() < 1e-12 * whole);
+        let places = [&water.position, &water.half_length, &water.slope, &water.place, &water.reach];
+        assert!(places.iter().all(|field| field.len() == water.len()));
+        let numbers = [&water.pressure, &water.porosity, &water.volume, &water.share];
+        assert!(numbers.iter().all(|field| field.len() == water.len()));
+    }
+
     /// Water domains keep their axes. That is right where those of the skeleton do: in the only scene in which two
     /// sets move, a column.
     #[test]
