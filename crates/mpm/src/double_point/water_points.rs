@@ -239,7 +239,7 @@ mod tests {
         }
         let (masses, whole) = (double.water.mass.clone(), double.water.mass.iter().sum::<f64>());
         let height = double.body.grid.cell_size * 5.0;
-        double.water.position[3] = [height + double.water.half_length[3][0]];
+        double.water.position[3] = [height + 3.0 * double.water.half_length[3][0]];
         double.follow_water();
         let water = &double.water;
         assert_eq!(water.len(), masses.len() - 1);

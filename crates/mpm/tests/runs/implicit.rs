@@ -506,7 +506,7 @@ fn the_two_surfaces_differ_by_what_the_composite_gradient_gives_the_last_half_le
     // domain, a quarter of a cell from its point, whose parabola bends by the second difference over four.
     for (method, share) in [("GIMP-SRI-patch", 0.0), ("CPDI-SRI-patch", 0.0), ("GC-SRI-patch", 1.0 / 16.0)] {
         let (moved, still) = (settled(method), settled(&format!("TL-{method}")));
-        let [below, middle, top] = *moved.nodes.displacement.last_chunk().expect("three nodes");
+        let [below, middle, top] = *still.nodes.displacement.last_chunk().expect("three nodes");
         assert!((still.settlement / -top - 1.0).abs() < 1e-5, "{method}: {} {top}", still.settlement);
         let expected = -top - share * (top - 2.0 * middle + below);
         let ratio = moved.settlement / expected;

@@ -6,6 +6,7 @@
 
 use crate::run;
 use oedometer_exact::parameters::Base;
+use oedometer_mpm::critical_step::observed::Probe;
 use oedometer_mpm::explicit::{Drag, ExplicitSettings};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
@@ -129,4 +130,7 @@ fn the_predicted_step_of_a_plane_is_the_observed_one_where_growth_begins_slowly(
     let found = problem.critical_step(&settings, 0.0, 0, &|_, _| true).expect("nobody stops it");
     let deviation = found.deviation().expect("a step that fails");
     assert!(found.probes_agree() && deviation.abs() < 0.03, "{found:?}");
+    // What the eigenvalues say of the probes themselves: a doubling in ten thousand steps beyond the limit alone.
+    let grows = |probe: &Probe| probe.predicted_growth.map(|growth| growth > 1.0 + 6.9e-5);
+    assert!(found.probes.iter().all(|probe| grows(probe) == Some(probe.share > 1.0)), "{found:?}");
 }
