@@ -135,3 +135,22 @@ impl Tally {
         self.left += other.left;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tallies_are_joined_count_by_count() {
+        let tally = |by: usize| Tally {
+            recorded: 13 * by,
+            failed: 7 * by,
+            unforeseen: 5 * by,
+            held_back: 3 * by,
+            left: 2 * by,
+        };
+        let mut all = tally(1);
+        all.join(tally(10));
+        assert_eq!(all, tally(11));
+    }
+}

@@ -219,6 +219,29 @@ mod tests {
     use crate::study::solver::PRESETS;
 
     #[test]
+    fn a_pressure_that_the_load_cannot_cause_is_told_wherever_it_stands() {
+        let text = "title = 't'\nscene = 'terzaghi'\ncolumn.load = 37.0\n[[sweep]]\ncells = [2]\n".to_owned();
+        let source = crate::study::file::StudySource { name: "t.toml".to_owned(), text };
+        let study = crate::study::check::Study::check(&source).expect("sound");
+        let mut case = study.planned[0].case.clone();
+        let told = |case: &Case, pressure: [f64; 3]| {
+            beyond_the_load(case, &SampledState { pressure: pressure.to_vec(), ..SampledState::default() })
+        };
+        let most = 37.0 * IMPOSSIBLE;
+        for place in 0..3 {
+            for wrong in [1.01 * most, -1.01 * most] {
+                let mut pressure = [0.99 * most; 3];
+                assert_eq!(told(&case, pressure), None);
+                pressure[place] = wrong;
+                let sentence = told(&case, pressure).expect("too much");
+                assert!(sentence.contains(&format!("{wrong:.3e}")), "{sentence}");
+            }
+        }
+        case.column.self_weight = true;
+        assert_eq!(told(&case, [2.0 * most; 3]), None, "the weight may");
+    }
+
+    #[test]
     fn the_presets_of_study_files_are_those_of_the_import() {
         let known: Vec<&str> = Preset::value_variants().iter().map(|preset| preset.name).collect();
         assert_eq!(known, PRESETS);

@@ -303,6 +303,16 @@ mod tests {
         GoldenFile { values, ..GoldenFile::of("study", &[], "test") }
     }
 
+    #[test]
+    fn a_value_has_grown_from_the_double_on_and_a_balance_never() {
+        let growth = |name: &str, golden: f64, found: f64| difference(name, golden, found).growth();
+        assert_eq!(growth("a | pressure points l2", 2e-3, 7e-3), Some(3.5));
+        assert_eq!(growth("a | pressure points l2", 2e-3, -4e-3), Some(2.0));
+        assert_eq!(growth("a | pressure points l2", 2e-3, 3.99e-3), None);
+        assert_eq!(growth("a | pressure points l2", 0.0, 1.0), None, "no share of nothing");
+        assert_eq!(growth("a | water balance", 1e-9, 1e-3), None, "a share already");
+    }
+
     fn changes(golden: &GoldenFile, found: &[(&str, f64)]) -> Vec<(String, Change)> {
         let found = found.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         compare(golden, &found).into_iter().map(|difference| (difference.name, difference.change)).collect()

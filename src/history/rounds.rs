@@ -74,3 +74,29 @@ impl State {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    #[test]
+    fn a_round_adds_its_times_to_those_of_the_first_and_tells_values_that_differ() {
+        let mut records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\ncells = [2]\n\
+             integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
+        );
+        let mut state = State { name: "now".to_owned(), studies: BTreeMap::new(), notes: Vec::new() };
+        let mut round = |records: &[Record]| {
+            state.add_round("t", records);
+            let times: usize = state.studies["t"].seconds.values().map(Vec::len).sum();
+            (times, state.notes.len())
+        };
+        let (once, _) = round(&records);
+        assert!(once > 0);
+        assert_eq!(round(&records), (2 * once, 0));
+        records[0].errors[0].value *= 2.0;
+        records[0].errors[0].absolute *= 2.0;
+        assert_eq!(round(&records), (3 * once, 1));
+    }
+}

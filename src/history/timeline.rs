@@ -144,3 +144,21 @@ fn mean_ratio(before: &GoldenFile, after: &GoldenFile, is_meant: impl Fn(&str) -
     let (sum, count) = ratios.fold((0.0, 0_u32), |(sum, count), ratio| (sum + ratio, count + 1));
     if count == 0 { 1.0 } else { elementary::exp(sum / f64::from(count)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_ratio_is_that_of_later_to_earlier_values_of_what_both_have() {
+        let golden = |values: &[(&str, f64)]| GoldenFile {
+            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..GoldenFile::of("study", &[], "test")
+        };
+        let before = golden(&[("a", 2.0), ("b", -5.0), ("c", 1.0), ("gone", 3.0), ("zero", 0.0)]);
+        let after = golden(&[("a", 16.0), ("b", 10.0), ("c", 1e3), ("new", 7.0), ("zero", 4.0)]);
+        let found = mean_ratio(&before, &after, |name| name != "c");
+        assert!((found - 4.0).abs() < 1e-14, "8 and 2: {found}");
+        assert_eq!(mean_ratio(&before, &after, |name| name == "gone"), 1.0);
+    }
+}

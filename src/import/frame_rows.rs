@@ -388,3 +388,31 @@ pub fn cells_over_height(frame: &Frame, mapping: &Mapping, height: f64) -> Optio
     levels.dedup_by(|later, earlier| *later - *earlier <= near);
     (levels.len() > 1 && all.is_multiple_of(levels.len())).then(|| levels.len() - 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::file::StudySource;
+    use oedometer_formats::Cells;
+
+    #[test]
+    fn cells_over_the_height_are_the_levels_of_corners_less_one() {
+        let line = |levels: &[f64], types: u8, corners: usize| Frame {
+            coordinates: levels.iter().flat_map(|y| [[0.0, *y, 0.0], [1.0, *y, 0.0]]).collect(),
+            cells: Some(Cells {
+                types: vec![types; levels.len() - 1],
+                ends: (1..levels.len()).map(|cell| corners * cell).collect(),
+                connectivity: (0..levels.len() as u32 - 1)
+                    .flat_map(|cell| [2 * cell, 2 * cell + 1, 2 * cell + 3, 2 * cell + 2])
+                    .collect(),
+            }),
+            ..Frame::default()
+        };
+        let source = StudySource { name: "map.toml".to_owned(), text: String::new() };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let cells = |levels: &[f64]| cells_over_height(&line(levels, 9, 4), &mapping, 2.0);
+        assert_eq!(cells(&[0.0, 0.5, 1.2, 2.0]), Some(3));
+        assert_eq!(cells(&[0.0, 2.0]), Some(1));
+        assert_eq!(cells_over_height(&Frame::default(), &mapping, 2.0), None);
+    }
+}

@@ -180,6 +180,19 @@ mod tests {
     use crate::study::file::StudySource;
     use std::path::Path;
 
+    #[test]
+    fn a_place_is_the_requested_one_to_single_precision_and_no_further() {
+        for requested in [0.0, 0.3, 40.0, -40.0] {
+            let rim = RIM * f64::max(1.0, f64::abs(requested));
+            for side in [-1.0, 1.0] {
+                assert!(is_at(requested + 0.9 * side * rim, requested), "{requested}");
+                assert!(!is_at(requested + 1.1 * side * rim, requested), "{requested}");
+            }
+            assert!(is_at(f64::from(requested as f32), requested) && !is_at(f64::NAN, requested));
+        }
+        assert!(!is_at(0.301, 0.3), "a point beside it");
+    }
+
     fn sample(mapping: &str, row: RawRow) -> SampleRow {
         let source = StudySource { name: "map.toml".to_owned(), text: mapping.to_owned() };
         let mapping = Mapping::read(&source).expect("a mapping");

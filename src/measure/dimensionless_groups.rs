@@ -141,3 +141,27 @@ fn skeleton_inertia(case: &Case) -> f64 {
     elementary::powi(wave_number * soil.coefficient_of_consolidation(), 2) * inertia
         / soil.oedometric_modulus()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    #[test]
+    fn the_inertia_of_the_skeleton_is_what_slows_the_slowest_mode() {
+        let text = "title = 't'\nscene = 'terzaghi'\ncolumn.height = 2.3\nmaterial.hydraulic_conductivity = 1e-3\n\
+                    [[sweep]]\ncells = [8]\n";
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        let case = Study::check(&source).expect("sound").planned[0].case.clone();
+        // The roots of m s² − (γ_w/k) s + κ² E_oed = 0 themselves.
+        let (soil, kappa) = (&case.material, std::f64::consts::FRAC_PI_2 / 2.3);
+        let (grains, drag) = (1.0 - soil.porosity, 1000.0 * 9.81 / 1e-3);
+        let mass = grains * 2650.0 + grains * grains / soil.porosity * 1000.0;
+        let stiffness = kappa * kappa * soil.oedometric_modulus();
+        let slower = 2.0 * stiffness / (drag + (drag * drag - 4.0 * mass * stiffness).sqrt());
+        let expected = slower * drag / stiffness - 1.0;
+        let found = skeleton_inertia(&case);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found:e} for {expected:e}");
+    }
+}

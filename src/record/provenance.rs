@@ -205,6 +205,17 @@ mod tests {
     }
 
     #[test]
+    fn the_main_origin_is_that_of_most_records_wherever_it_stands() {
+        let [one, two] = ["c1", "c2"].map(|commit| Provenance { commit: commit.to_owned(), ..origin() });
+        for all in [[&one, &two, &two], [&two, &one, &two], [&two, &two, &one]] {
+            let all = origins(&all.map(Clone::clone));
+            assert_eq!(all.main(), Some(&two));
+        }
+        assert_eq!(origins(&[one.clone(), two]).main(), Some(&one), "the first of as many");
+        assert_eq!(Origins::default().main(), None);
+    }
+
+    #[test]
     fn one_build_has_no_differences_whatever_its_commit() {
         let other = Provenance { commit: "c2".to_owned(), ..origin() };
         let all = origins(&[origin(), other]);

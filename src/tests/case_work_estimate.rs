@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::case::work_estimate::{
-    MOST_PROBE_STEPS, estimated_seconds, estimated_updates, estimated_work, work_of,
+    MOST_PROBE_STEPS, estimated_seconds, estimated_steps, estimated_updates, estimated_work, work_of,
 };
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -44,5 +44,30 @@ fn an_undrained_start_alone_takes_no_steps_and_a_known_time() {
         );
         let seconds = estimated_seconds(&start[0]);
         assert!(seconds > 0.0 && seconds < 1.0, "{rule}: {seconds} s");
+    }
+}
+
+#[test]
+fn memory_and_steps_of_a_small_case_are_those_counted_by_hand() {
+    let rule = "time_step = [{ seconds = 0.01 }]\ncells = [8]";
+    let [explicit, implicit] = ["explicit", "implicit"].map(|integrator| {
+        cases("output.time_factors = [0.1]", &format!("integrator = [\"{integrator}\"]\n{rule}")).remove(0)
+    });
+    // 16 points of 500 bytes; a row of the solver has a displacement and two pressures, and a band of 36 numbers.
+    assert_eq!(explicit.estimated_bytes(), 16.0 * 500.0);
+    assert_eq!(implicit.estimated_bytes(), 16.0 * 500.0 + 8.0 * 3.0 * 16.0 * 36.0);
+    // T_v = 0.1 is reached after 8.175 s.
+    for case in [&explicit, &implicit] {
+        let steps = estimated_steps(case);
+        assert!((steps - 817.5).abs() <= 1.0, "{steps}");
+    }
+}
+
+#[test]
+fn a_label_names_all_that_is_unusual_about_the_points() {
+    let points = "points = { sets = 2, water_per_cell = 3, offset = 0.25, filling = 0.5 }";
+    let label = cases(points, "cells = [8]")[0].label();
+    for part in ["two point sets, 3 of the water", "points shifted by 0.25", "top cell filled to 0.5"] {
+        assert!(label.contains(part), "{part} in {label}");
     }
 }

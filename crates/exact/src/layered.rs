@@ -514,6 +514,21 @@ mod tests {
     }
 
     #[test]
+    fn the_bound_of_the_tail_covers_the_modes_that_are_left_out() {
+        for (name, layers) in columns() {
+            let column = LayeredColumn::new(1.0, &layers).unwrap();
+            let seconds = 0.02 / column.modes[0].rate;
+            let pressure = |terms, y| State { column: &column, form: Form::Series { terms, seconds } }.pressure(y);
+            for terms in 1..6 {
+                let heights = (0..=40).map(|step| f64::from(step) / 40.0);
+                let left_out = heights.map(|y| (pressure(terms, y) - pressure(MOST_MODES, y)).abs());
+                let (bound, left_out) = (column.tail(seconds, terms), left_out.fold(0.0, f64::max));
+                assert!(left_out <= bound, "{name}: {left_out:e} beyond {terms} modes, at most {bound:e}");
+            }
+        }
+    }
+
+    #[test]
     fn layers_of_one_soil_are_terzaghis_column_at_early_and_late_times() {
         let seed = ColumnParameters { load: 3e3, ..ColumnParameters::default() };
         let terzaghi = Terzaghi::compressible(&seed).unwrap();

@@ -410,6 +410,32 @@ mod tests {
     }
 
     #[test]
+    fn a_slab_is_pressed_together_and_its_pressure_peaks_above_that_of_the_start() {
+        let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
+        let slab = Reference::new(ReferenceKind::Mandel, &column, &[0.1]).unwrap();
+        let strains = [0.0, 0.1, 1.0].map(|time| slab.strain_across(time).unwrap());
+        assert!(0.0 > strains[0] && strains[0] > strains[1] && strains[1] > strains[2], "{strains:?}");
+        assert!(slab.settlement(0.1).unwrap() > 0.0);
+        // The peak is the pressure in the middle at its time, and the highest of all.
+        let middle = |time: f64| slab.fields(time, 1.0).unwrap().pressure;
+        let (time, height) = slab.pressure_peak().expect("it rises before it falls");
+        let ratio = middle(time) / column.load / height;
+        assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+        assert!(middle(0.9 * time) < middle(time) && middle(1.1 * time) < middle(time));
+        let other = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).unwrap();
+        assert_eq!(other.pressure_peak(), None);
+    }
+
+    #[test]
+    fn displacements_are_measured_by_the_settlement_long_after() {
+        let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).unwrap();
+        let expected = column.load / column.soil.oedometric_modulus() * column.height;
+        let found = reference.displacement_scale(100.0).unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found:e} for {expected:e}");
+    }
+
+    #[test]
     fn every_reference_agrees_with_itself() {
         let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let times = [0.05, 0.3, 1.0];

@@ -373,6 +373,19 @@ fn legacy_files_in_text_and_binary_are_one() {
 }
 
 #[test]
+fn metadata_between_arrays_are_passed_over_and_the_time_is_that_of_its_array() {
+    let file = "# vtk DataFile Version 5.1\na\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n2.5\n\
+                METADATA\nINFORMATION 1\nNAME p LOCATION POINT_DATA\nDATA 1 7.0\n\nPOINTS 2 double\n0 0 0 0 1 0\n\
+                METADATA\nINFORMATION 0\n\nPOINT_DATA 2\nSCALARS p double 1\nLOOKUP_TABLE default\n0.5 0.25\n\
+                METADATA\nINFORMATION 0\n\nSCALARS pressure double 1\nLOOKUP_TABLE default\n3 4\n";
+    let frame = legacy_vtk::read(file.as_bytes(), Wanted(&all_names())).expect("a file");
+    assert_eq!(frame.time, Some(2.5));
+    assert_eq!(frame.coordinates, [[0.0; 3], [0.0, 1.0, 0.0]]);
+    let values: Vec<&[f64]> = frame.arrays.iter().map(|array| &array.values[..]).collect();
+    assert_eq!(values, [[0.5, 0.25], [3.0, 4.0]], "{frame:?}");
+}
+
+#[test]
 fn collections_that_name_each_other_are_refused() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let at = |name: &str| folder.path().join(name);

@@ -126,3 +126,26 @@ fn settings_of(case: &Case) -> String {
     let stresses = if settings.stress_slopes { ", stress slopes" } else { "" };
     format!("{} drag{mapping}{slopes}{stresses}{scheme}", settings.drag.name())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    #[test]
+    fn a_map_is_drawn_over_what_takes_most_values_wherever_its_axis_stands() {
+        let axis = |sweep: &str| {
+            let records = records_of(&format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nintegrator = ['implicit']\n\
+                 time_step = [{{ growth = 0.5 }}]\ncells = [2]\n{sweep}"
+            ));
+            widest_axis(&records).map(|axis| axis.label)
+        };
+        let (conductivity, porosity) = ("hydraulic conductivity k (m/s)", "porosity n (–)");
+        let sweep = |k: &str, n: &str| format!("hydraulic_conductivity = [{k}]\nporosity = [{n}]\n");
+        assert_eq!(axis(&sweep("1e-4, 1e-5", "0.3, 0.4, 0.5")), Some(porosity));
+        assert_eq!(axis(&sweep("1e-4, 1e-5, 1e-6", "0.3, 0.4")), Some(conductivity));
+        assert_eq!(axis(&sweep("1e-4", "0.3, 0.4")), Some(porosity));
+        assert_eq!(axis(""), None);
+    }
+}

@@ -168,6 +168,16 @@ mod tests {
     }
 
     #[test]
+    fn the_longest_stretch_is_found_wherever_it_stands() {
+        let mut stretches = [(0.0, 0.1), (0.3, 0.6), (0.7, 0.9)].map(|(from, to)| Bare { from, to }).to_vec();
+        for _ in 0..3 {
+            assert_eq!(longest(stretches.clone()), Some(Bare { from: 0.3, to: 0.6 }));
+            stretches.rotate_left(1);
+        }
+        assert_eq!(longest(Vec::new()), None);
+    }
+
+    #[test]
     fn what_codes_write_has_no_bare_stretch() {
         let nodes: Vec<f64> = (0..=20).map(|node| f64::from(node) / 20.0).collect();
         assert_eq!(bare(&nodes, 1.0), None, "nodes");

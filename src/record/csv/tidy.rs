@@ -123,3 +123,33 @@ fn quickest(samples: &[WallSample]) -> Option<&WallSample> {
     };
     least(true).or_else(|| least(false))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quickest_time_is_the_shortest_alone_wherever_it_stands() {
+        let sample = |seconds, alone| WallSample { seconds, alone, ..WallSample::default() };
+        let mut samples = vec![sample(3.0, true), sample(2.0, true), sample(1.0, false), sample(4.0, true)];
+        for _ in 0..samples.len() {
+            assert_eq!(quickest(&samples).map(|found| found.seconds), Some(2.0));
+            samples.rotate_left(1);
+        }
+        samples.retain(|sample| !sample.alone);
+        assert_eq!(quickest(&samples).map(|found| found.seconds), Some(1.0), "never alone");
+        assert!(quickest(&[]).is_none());
+    }
+
+    #[test]
+    fn times_that_a_case_had_for_itself_are_those_alone() {
+        let mut record = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\ncells = [2]\n\
+             integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
+        )
+        .remove(0);
+        let sample = |(seconds, alone)| WallSample { seconds, alone, ..WallSample::default() };
+        record.wall = [(3.0, true), (1.0, false), (2.0, true)].map(sample).to_vec();
+        assert_eq!(record.wall_alone(), [3.0, 2.0]);
+    }
+}

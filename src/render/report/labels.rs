@@ -245,6 +245,12 @@ mod tests {
     use crate::judge::paths::paths;
     use crate::study::expectation::Axis;
 
+    #[test]
+    fn every_size_has_one_tick_in_rising_order() {
+        let sizes = [0.2, 0.05, 0.1, 0.2, 0.05];
+        assert_eq!(ticks(sizes.into_iter()), [0.05, 0.1, 0.2]);
+    }
+
     fn series_of(sweep: &str) -> (usize, usize, Option<String>) {
         let records = records_of(&format!(
             "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\ncells = [2, 4]\n\

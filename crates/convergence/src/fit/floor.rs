@@ -105,6 +105,17 @@ mod tests {
     }
 
     #[test]
+    fn a_floor_that_bends_a_series_and_does_not_govern_it_is_hidden() {
+        // A tenth of the finest error: the order falls from level to level, and the class is still that of the slope.
+        let hidden = |error: fn(f64) -> f64, formal| hidden_floor(&ErrorSeries::of(&points(error)), formal);
+        for formal in [None, Some(2.0)] {
+            let found = hidden(|h| h * h + 4e-6, formal);
+            assert!((found / 4e-6 - 1.0).abs() < 1e-6, "{formal:?}: {found:e}");
+            assert_eq!(hidden(|h| h * h, formal), 0.0);
+        }
+    }
+
+    #[test]
     fn what_has_no_order_is_undefined() {
         assert_eq!(fit_floor(&points(|h| 1.0 / h)), Err(Undefined::NotDetermined));
         assert_eq!(fit_floor(&points(|_| 1.0)), Err(Undefined::NotDetermined));

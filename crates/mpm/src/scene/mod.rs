@@ -430,6 +430,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_motion_has_the_amplitudes_of_its_kind_and_no_other() {
+        let (one, two) = (["amplitude"], ["amplitude_x", "amplitude_y"]);
+        for scene in SceneKind::ALL {
+            let refused = |names: &[&str]| {
+                let all: Vec<_> = names.iter().map(|name| scene.refuses_input_of_motion(name)).collect();
+                assert!(all.iter().all(|one| one.is_some() == all[0].is_some()), "{}", scene.name());
+                all[0].is_some()
+            };
+            let is_vortex = scene == SceneKind::ManufacturedVortex;
+            let expected = (scene.is_manufactured() && !is_vortex, is_vortex);
+            assert_eq!((refused(&one), refused(&two)), expected, "{}", scene.name());
+            assert_eq!(scene.refuses_input_of_motion("pressure"), None);
+        }
+    }
+
+    #[test]
     fn a_scene_has_one_name_in_files_and_at_the_command_line() {
         for scene in SceneKind::ALL {
             let written = serde_json::to_value(scene).expect("a name");
