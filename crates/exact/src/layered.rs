@@ -518,7 +518,8 @@ mod tests {
         for (name, layers) in columns() {
             let column = LayeredColumn::new(1.0, &layers).unwrap();
             let seconds = 0.02 / column.modes[0].rate;
-            let pressure = |terms, y| State { column: &column, form: Form::Series { terms, seconds } }.pressure(y);
+            let pressure =
+                |terms, y| State { column: &column, form: Form::Series { terms, seconds } }.pressure(y);
             for terms in 1..6 {
                 let heights = (0..=40).map(|step| f64::from(step) / 40.0);
                 let left_out = heights.map(|y| (pressure(terms, y) - pressure(MOST_MODES, y)).abs());

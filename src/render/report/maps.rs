@@ -172,8 +172,13 @@ mod tests {
     #[test]
     fn a_soil_lies_at_its_conductivity_along_and_its_stiffness_up() {
         let none = Vec::new;
-        let soil =
-            MappedSoil { conductivity: 2e-5, stiffness: 3e6, tried: none(), ways: Vec::new(), broken: none() };
+        let soil = MappedSoil {
+            conductivity: 2e-5,
+            stiffness: 3e6,
+            tried: none(),
+            ways: Vec::new(),
+            broken: none(),
+        };
         assert_eq!(place(&soil), (2e-5, 3e6));
     }
 }

@@ -143,7 +143,8 @@ mod tests {
         };
         let [strained, flux] = fields(&before);
         let state = &mut change.state;
-        for (now, last) in [(&mut state.strain_displacement, strained), (&mut state.flux_displacement, flux)] {
+        for (now, last) in [(&mut state.strain_displacement, strained), (&mut state.flux_displacement, flux)]
+        {
             for (now, last) in now.iter_mut().flatten().zip(last.iter().flatten()) {
                 *now -= last;
             }
