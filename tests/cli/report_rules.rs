@@ -140,8 +140,8 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     assert_eq!(words, ["Error, %", "Order", "Cost to 1 %"]);
     let html = render_html(&page).expect("a page");
     assert!(!html.contains("not tried"), "{html}");
-    // Splines hold no plate; each of the three views has their three cells, with the reason.
-    assert_eq!(html.matches(">n/a</a>").count(), 3 * 3);
+    // Splines hold no plate; each of the three views has their four cells, with the reason.
+    assert_eq!(html.matches(">n/a</a>").count(), 3 * 4);
     assert!(html.contains("B2: n/a, a rigid plate holds the nodes of a face"), "{html}");
     assert!(html.contains("href=\"studies/race-plate.html\" title="), "every cell leads to its situation");
     let results = StudyResults::new(&RACE.0, &RACE.1, Tier::Full);
