@@ -69,7 +69,7 @@ fn the_report_shows_them_and_a_study_with_expectations_gets_none() {
     let told = call(folder.path(), &["report", "short.toml", "--out", "report"]);
     assert_eq!(told.code, 0, "{}{}", told.out, told.err);
     let page = fs::read_to_string(folder.path().join("report/studies/short.html")).expect("a page");
-    assert!(page.contains("<pre><code>[[expect]]\nmethod = \"GC-SRI-patch\"\n"), "no lines to paste");
+    assert!(page.contains("<pre><code>[[expect]]\nmethod = &quot;GC-SRI-patch&quot;\n"), "no lines to paste");
     let with_one = study(MESHES) + "\n[[expect_case]]\nstatus = \"ok\"\n";
     assert!(checked(&with_one, |_| {}).proposals.is_empty());
 }

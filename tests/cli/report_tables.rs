@@ -112,7 +112,7 @@ fn making() -> Making {
 }
 
 #[test]
-fn the_answer_page_answers_from_records_and_says_what_they_do_not_answer() {
+fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();

@@ -1,7 +1,7 @@
 //! Which method locks, from which Poisson's ratio, and by how much? Answered where a study sweeps it in the plane.
 
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweepRow, SweptStiffness};
-use crate::render::answers::{Answer, Links, Question, link};
+use crate::render::answers::{self, Answer, Links, Question, link};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, columns};
@@ -32,7 +32,8 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
     let Some(time) = sweep.time_factors.last().copied() else { return Ok(None) };
     let rows: Vec<&SweepRow> = sweep.at(time).collect();
     let sentence = format!("{} Evidence: {}.", sentence(&sweep, &rows, time), link(links, &one.study.name));
-    Ok(QUESTION.told(sentence, vec![Block::Table(table(&sweep, &rows))]))
+    Ok(QUESTION
+        .told(sentence, vec![Block::Table(answers::short(table(&sweep, &rows), "on the page of the study"))]))
 }
 
 /// Errors of displacement and pressure at a value of the sweep.
