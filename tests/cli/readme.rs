@@ -256,7 +256,10 @@ fn every_link_leads_to_a_file_and_a_heading() {
             assert!(path.exists(), "{document} leads to {target}");
             if !heading.is_empty() {
                 let page = fs::read_to_string(&path).expect("a page");
-                let anchors = page.lines().filter_map(|line| line.strip_prefix("## ")).map(anchor);
+                let anchors = page
+                    .lines()
+                    .filter_map(|line| line.strip_prefix("## ").or(line.strip_prefix("### ")))
+                    .map(anchor);
                 assert!(anchors.into_iter().any(|anchor| anchor == heading), "{document} leads to {target}");
             }
             led += 1;
