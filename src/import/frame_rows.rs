@@ -402,7 +402,7 @@ mod tests {
             cells: Some(Cells {
                 types: vec![types; levels.len() - 1],
                 ends: (1..levels.len()).map(|cell| corners * cell).collect(),
-                connectivity: (0..levels.len() as u32 - 1)
+                connectivity: (0..u32::try_from(levels.len()).expect("few") - 1)
                     .flat_map(|cell| [2 * cell, 2 * cell + 1, 2 * cell + 3, 2 * cell + 2])
                     .collect(),
             }),

@@ -181,6 +181,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "single precision is the question")]
     fn a_place_is_the_requested_one_to_single_precision_and_no_further() {
         for requested in [0.0, 0.3, 40.0, -40.0] {
             let rim = RIM * f64::max(1.0, f64::abs(requested));

@@ -74,9 +74,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
         (pairings.len().min(4), levels * common.times.len())
     };
     let best = audited.max_by_key(|(_, pairings, common)| worth(pairings, common));
-    let Some((one, pairings, common)) = best else {
-        return None;
-    };
+    let (one, pairings, common) = best?;
     let figures = vec![over_time(&pairings, &common), over_mesh(&pairings, &common)];
     QUESTION.told(
         format!("{} Evidence: {}.", sentence(&pairings, &common), link(links, &one.study.name)),

@@ -10,9 +10,7 @@ const QUESTION: Question = Question { heading: "What changed?", id: "changes" };
 
 /// The studies that differ, as `oedometer compare` shows them.
 pub fn answer(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
-    let Some(changes) = changes else {
-        return None;
-    };
+    let changes = changes?;
     if changes.is_empty() {
         let text = format!(
             "Nothing: every value that these studies share with {against} agrees within its tolerance."

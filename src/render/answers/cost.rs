@@ -17,9 +17,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
         let precision = WorkPrecision::of(one.records, one.study.references.first()?.name())?;
         Some((one, precision))
     });
-    let Some((one, precision)) = compared.max_by_key(|(_, precision)| precision.runs.len()) else {
-        return None;
-    };
+    let (one, precision) = compared.max_by_key(|(_, precision)| precision.runs.len())?;
     let figure = Figure::new("readme-cost", cost::chart_of(&precision), cost::caption(&precision));
     let mut blocks = vec![Block::Figure(figure)];
     if peers::solve_their_column(&precision.runs) {

@@ -64,12 +64,13 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
         typed(largest)
     );
     if kept > 0 {
-        text += &format!(": {}", names(&|row| lost_from(row).is_none()));
+        text += ": ";
+        text += &names(&|row| lost_from(row).is_none());
     }
     for (place, value) in sweep.values.iter().enumerate() {
         let lost = names(&|row| lost_from(row) == Some(place));
         if !lost.is_empty() {
-            text += &format!("; lost from ν = {} on: {lost}", typed(*value));
+            text += &["; lost from ν = ", &typed(*value), " on: ", &lost].concat();
         }
     }
     text + "."

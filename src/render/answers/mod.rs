@@ -113,6 +113,7 @@ struct Question {
 pub(crate) type Answer = Option<Section>;
 
 impl Question {
+    #[expect(clippy::unnecessary_wraps, reason = "every question ends in an answer, which may be none")]
     fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Answer {
         shown.insert(0, Block::Paragraph(sentence.into()));
         let (heading, id) = (self.heading.to_owned(), self.id.to_owned());
