@@ -220,7 +220,9 @@ mod tests {
 
     #[test]
     fn a_pressure_that_the_load_cannot_cause_is_told_wherever_it_stands() {
-        let text = "title = 't'\nscene = 'terzaghi'\ncolumn.load = 37.0\n[[sweep]]\ncells = [2]\n".to_owned();
+        let text =
+            "title = 't'\nscene = 'terzaghi'\ncolumn.load = 37.0\n[[sweep]]\nmethod = ['MPM']\ncells = [2]\n"
+                .to_owned();
         let source = crate::study::file::StudySource { name: "t.toml".to_owned(), text };
         let study = crate::study::check::Study::check(&source).expect("sound");
         let mut case = study.planned[0].case.clone();

@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn a_round_adds_its_times_to_those_of_the_first_and_tells_values_that_differ() {
         let mut records = records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\ncells = [2]\n\
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\ncells = [2]\n\
              integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
         );
         let mut state = State { name: "now".to_owned(), studies: BTreeMap::new(), notes: Vec::new() };

@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn golden_values_of_a_case_differ_or_agree_and_are_counted_once() {
         let records = records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\ncells = [2, 3]\n\
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\ncells = [2, 3]\n\
              integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
         );
         let mut golden = GoldenFile { values: values_of(&records), ..GoldenFile::of("t", &[], "test") };

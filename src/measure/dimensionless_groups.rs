@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn the_inertia_of_the_skeleton_is_what_slows_the_slowest_mode() {
         let text = "title = 't'\nscene = 'terzaghi'\ncolumn.height = 2.3\nmaterial.hydraulic_conductivity = 1e-3\n\
-                    [[sweep]]\ncells = [8]\n";
+                    [[sweep]]\nmethod = ['MPM']\ncells = [8]\n";
         let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
         let case = Study::check(&source).expect("sound").planned[0].case.clone();
         // The roots of m s² − (γ_w/k) s + κ² E_oed = 0 themselves.

@@ -65,9 +65,11 @@ fn memory_and_steps_of_a_small_case_are_those_counted_by_hand() {
 
 #[test]
 fn a_label_names_all_that_is_unusual_about_the_points() {
-    let points = "points = { sets = 2, water_per_cell = 3, offset = 0.25, filling = 0.5 }";
-    let label = cases(points, "cells = [8]")[0].label();
-    for part in ["two point sets, 3 of the water", "points shifted by 0.25", "top cell filled to 0.5"] {
-        assert!(label.contains(part), "{part} in {label}");
+    for (points, parts) in [
+        ("sets = 2, water_per_cell = 3", &["two point sets, 3 of the water"][..]),
+        ("offset = 0.25, filling = 0.5", &["points shifted by 0.25", "top cell filled to 0.5"]),
+    ] {
+        let label = cases(&format!("points = {{ {points} }}"), "cells = [8]")[0].label();
+        assert!(parts.iter().all(|part| label.contains(part)), "{parts:?} in {label}");
     }
 }

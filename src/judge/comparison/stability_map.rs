@@ -136,7 +136,7 @@ mod tests {
     fn a_map_is_drawn_over_what_takes_most_values_wherever_its_axis_stands() {
         let axis = |sweep: &str| {
             let records = records_of(&format!(
-                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nintegrator = ['implicit']\n\
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\n\
                  time_step = [{{ growth = 0.5 }}]\ncells = [2]\n{sweep}"
             ));
             widest_axis(&records).map(|axis| axis.label)

@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn times_that_a_case_had_for_itself_are_those_alone() {
         let mut record = crate::campaign::runner::records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\ncells = [2]\n\
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\ncells = [2]\n\
              integrator = ['implicit']\ntime_step = [{ growth = 0.5 }]\n",
         )
         .remove(0);
