@@ -240,8 +240,12 @@ pub fn diagnosis(
     // A wrong load shows in everything that a result has; a factor on one quantity alone is something else.
     sentences.retain(|(sentence, columns)| !sentence.contains(inputs::OF_LOAD) || columns.len() == judged);
     let uneven = given.uneven_top(parameters.final_settlement());
-    let told =
-        |(sentence, columns): (String, Vec<&str>)| format!("your {} {sentence}", columns.join(" and your "));
+    let told = |(sentence, columns): (String, Vec<&str>)| match columns.split_last() {
+        Some((last, others)) if !others.is_empty() => {
+            format!("each of your {} and {last} {sentence}", others.join(", "))
+        }
+        _ => format!("your {} {sentence}", columns.concat()),
+    };
     Ok(sentences.into_iter().map(told).chain(uneven).collect())
 }
 

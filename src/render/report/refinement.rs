@@ -294,7 +294,9 @@ fn orders_row(
     let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).into()];
     let levels_run = summary.series.levels().iter();
     row.extend(levels_run.map(|level| Cell::of(level.error, Cell::Error, "no error was measured")));
-    row.resize(2 + levels, Cell::missing("not run"));
+    // The finest level of such a series is what the one before is compared with.
+    let absent = if measure.reference == NEXT_FINER { "no finer level to compare with" } else { "not run" };
+    row.resize(2 + levels, Cell::missing(absent));
     if shows_orders(axis, &measure.reference) {
         let pairs: Vec<String> = summary
             .pairs

@@ -95,7 +95,7 @@ fn every_mistake_is_named_in_good_and_in_mediocre_results() {
         let minutes = told(&states(&TIMES, |time| time / 60.0, off));
         assert_eq!(minutes.len(), 1, "{minutes:?}");
         assert!(
-            minutes[0].starts_with("your p and your effective_stress and your u_y matches")
+            minutes[0].starts_with("each of your p, effective_stress and u_y matches")
                 || minutes[0].contains("60 × the time: are times in min where s is declared?"),
             "{minutes:?}"
         );
@@ -257,7 +257,7 @@ fn another_load_is_named_where_all_fields_have_it() {
                 scale(&mut state.displacement, 2.0);
             }),
             &[
-                "your p and your effective_stress and your u_y is 2 × the exact one: is the load 2 × that of the scene?",
+                "each of your p, effective_stress and u_y is 2 × the exact one: is the load 2 × that of the scene?",
             ],
         );
         only(&changed(off, |state| scale(&mut state.displacement, 2.0)), &[]);
