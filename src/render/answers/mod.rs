@@ -19,6 +19,7 @@ use crate::record::provenance::{Origins, Provenance};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::distinct;
+use crate::render::report::setting;
 use crate::render::table::{Mood, Table};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::count_of;
@@ -167,11 +168,15 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         }
         _ => String::new(),
     };
+    let setting = match results {
+        [one] => setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n"),
+        _ => String::new(),
+    };
     let made = answers.making.words(results);
     Ok(Page {
         title: "Convergence report".to_owned(),
         lead: format!(
-            "**How was it made?** {made}\n\n[All studies, with every table and figure](studies/index.html){few}"
+            "{setting}**How was it made?** {made}\n\n[All studies, with every table and figure](studies/index.html){few}"
         ),
         callout: Some(verdict(results)),
         sections,

@@ -9,6 +9,7 @@ mod maps;
 pub mod pages;
 mod race;
 pub(crate) mod refinement;
+pub(crate) mod setting;
 pub mod study_page;
 mod survival;
 pub(crate) mod theory_lines;

@@ -6,7 +6,7 @@ use crate::judge::proposals::proposals;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
-    StudyResults, checks, cost, footing, layer, maps, race, refinement, survival, theory_lines,
+    StudyResults, checks, cost, footing, layer, maps, race, refinement, setting, survival, theory_lines,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{runs, uncertainties};
@@ -54,8 +54,9 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     Ok(Page {
         title: study.title.clone(),
         lead: format!(
-            "{}\n\n[All studies](index.html). Run it again: `{}`.",
+            "{}\n\n{}[All studies](index.html). Run it again: `{}`.",
             study.summary,
+            setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
             results.run_command()
         ),
         callout: Some(verdict(results)),
