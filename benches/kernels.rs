@@ -109,7 +109,7 @@ fn problem(method: &str, cells: usize, configuration: Configuration) -> Problem<
     crowded_problem(method, cells, POINTS_PER_CELL, configuration)
 }
 
-/// The same with any number of points a cell.
+/// The same with any number of points per cell.
 fn crowded_problem(
     method: &str,
     cells: usize,
@@ -157,7 +157,7 @@ fn bench_steps(bencher: Bencher, method: &str, cells: usize, kernel: Kernel) {
 
 /// Least nanoseconds per point and step, every kernel and method.
 fn print_table() {
-    println!("\nns per point and step, {POINTS_PER_CELL} points a cell, least of {ROUNDS} rounds");
+    println!("\nns per point and step, {POINTS_PER_CELL} points per cell, least of {ROUNDS} rounds");
     println!("{:<16}{:>6}{:>12}{:>12}{:>12}", "method", "cells", "point-wise", "assembled", "moving");
     for method in METHODS {
         for cells in CELLS {
@@ -170,7 +170,7 @@ fn print_table() {
 /// Prints the point-wise and the assembled step of the seed layer, in two dimensions.
 fn print_plane_table() {
     println!(
-        "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points a cell, \
+        "\nns per point and step, two dimensions, frozen, {POINTS_PER_CELL} × {POINTS_PER_CELL} points per cell, \
          least of {PLANE_ROUNDS} rounds"
     );
     println!("{:<16}{:>6}{:>12}{:>12}", "method", "cells", "point-wise", "assembled");

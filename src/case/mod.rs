@@ -188,7 +188,7 @@ impl Case {
         self.column.cell_size(self.cells)
     }
 
-    /// Points there are to be, in all sets: cells times points a cell, in every direction.
+    /// Points there are to be, in all sets: cells times points per cell, in every direction.
     pub fn expected_points(&self) -> usize {
         let of_set = |per_cell: usize| {
             let along = self.column.points.points_up(self.column.cells_up(self.cells), per_cell);

@@ -130,7 +130,7 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
     };
     let level_series = |axis: Axis| {
         let label = |case: &Case| match axis {
-            Axis::PointsPerCell => format!("{} points a cell", case.points_per_cell),
+            Axis::PointsPerCell => format!("{} points per cell", case.points_per_cell),
             _ => format!("{} cells", case.cells),
         };
         let all = paths(&records, axis);

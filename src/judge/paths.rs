@@ -194,7 +194,7 @@ impl<'a> Path<'a> {
             // Steps of the explicit integrator follow its limit, and say little about the result.
             (has_step && self.axis != Axis::TimeStep).then(|| step_label(&case.time_step)),
             cells,
-            (self.axis != Axis::PointsPerCell).then(|| format!("{} points a cell", case.points_per_cell)),
+            (self.axis != Axis::PointsPerCell).then(|| format!("{} points per cell", case.points_per_cell)),
             variant,
         ];
         parts.into_iter().flatten().collect()

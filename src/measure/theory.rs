@@ -142,7 +142,7 @@ pub fn computed_consolidation(record: &Record) -> Vec<(f64, f64)> {
 }
 
 /// Relative L2 error that a constant value a cell must leave at its points, for a field with the
-/// slope of the slowest mode: `(π/2) (h/H) √((1 − 1/m²)/12)` with `m` points a cell.
+/// slope of the slowest mode: `(π/2) (h/H) √((1 − 1/m²)/12)` with `m` points per cell.
 pub fn constant_recovery_error(case: &Case) -> f64 {
     let points = case.points_per_cell as f64;
     let size = case.cell_size() / case.column.height;

@@ -104,7 +104,7 @@ pub struct Groups {
 pub struct StartChecks {
     /// Points there are.
     pub points: usize,
-    /// Points there should be: cells times points a cell.
+    /// Points there should be: cells times points per cell.
     pub points_expected: usize,
     /// Volume over that of the column, minus one.
     pub volume_error: f64,

@@ -273,7 +273,7 @@ fn an_expectation_that_is_not_met_fails_everywhere_it_is_told() {
     let summary = fs::read_to_string(summary).expect("a summary");
     assert!(summary.starts_with("before\n## oedometer check\n"), "appended: {summary}");
     let junit = fs::read_to_string(place.path().join("junit.xml")).expect("a report");
-    assert!(junit.contains("name=\"short/GIMP-SRI, 2 points a cell"), "{junit}");
+    assert!(junit.contains("name=\"short/GIMP-SRI, 2 points per cell"), "{junit}");
     assert!(junit.contains("/order\"") && junit.contains("<failure"), "{junit}");
     let names: Vec<&str> =
         junit.split("<testcase name=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();

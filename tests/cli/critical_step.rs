@@ -32,7 +32,7 @@ fn every_method_agrees_with_its_prediction_within_two_percent() {
 
 #[test]
 fn the_limits_are_those_that_were_measured() {
-    // Nearly undamped, nc = 8: over h/c at 1, 2 and 4 points a cell, with and without mapping back.
+    // Nearly undamped, nc = 8: over h/c at 1, 2 and 4 points per cell, with and without mapping back.
     for (mapping_back, expected) in [("true", [2.04, 1.74, 1.66]), ("false", [0.71, 0.76, 0.78])] {
         let mapping = format!("integrator.mapping_back={mapping_back}");
         let (code, rows) = stability(&[

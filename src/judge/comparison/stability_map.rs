@@ -71,7 +71,9 @@ static AXES: [MapAxis; 6] = [
         of: |case| case.material.water_bulk_modulus / case.material.youngs_modulus,
     },
     MapAxis { label: "porosity n (–)", scale: MapScale::Log, of: |case| case.material.porosity },
-    MapAxis { label: "points a cell (–)", scale: MapScale::Counts, of: |case| case.points_per_cell as f64 },
+    MapAxis {
+        label: "points per cell (–)", scale: MapScale::Counts, of: |case| case.points_per_cell as f64
+    },
     MapAxis {
         label: "shift of the points, in spacings (–)",
         scale: MapScale::Linear,

@@ -35,7 +35,7 @@ pub(crate) fn convergence() -> Chart {
         ChartAxis::log10("cell size h/H (–)").with_ticks(h.to_vec()),
         ChartAxis::log10("relative L_2 error of p at the points (–)"),
     );
-    chart.subtitle = Some("T_v = 0.1, 2 points a cell, against Terzaghi with compressible water".into());
+    chart.subtitle = Some("T_v = 0.1, 2 points per cell, against Terzaghi with compressible water".into());
     for (i, name) in METHODS.into_iter().enumerate() {
         let (c, p) = [(0.9, 0.9), (0.62, 1.0), (0.4, 1.0), (0.5, 1.9), (0.36, 2.0)][i];
         let mut points: Vec<(f64, f64)> = h.iter().map(|&h: &f64| (h, c * h.powf(p) + 1e-6)).collect();

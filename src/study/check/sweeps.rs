@@ -194,7 +194,7 @@ impl Checker<'_> {
             self.complain(
                 place("cells").unwrap_or(start.clone()),
                 format!(
-                    "{} cells over the height with {} points a cell need about {:.0} GB of memory",
+                    "{} cells over the height with {} points per cell need about {:.0} GB of memory",
                     case.cells,
                     case.points_per_cell,
                     1e-9 * bytes

@@ -40,7 +40,7 @@ pub struct Points<const D: usize> {
 
 impl<const D: usize> Points<D> {
     /// A block of `cells` square cells of edge `cell_size` (m) with its corner at the origin,
-    /// `per_cell` equally spaced points a cell and direction, at rest and without stress.
+    /// `per_cell` equally spaced points per cell and direction, at rest and without stress.
     pub fn lattice(cell_size: f64, cells: [usize; D], per_cell: usize) -> Self {
         let along = cells.map(|count| count * per_cell);
         let count: usize = along.iter().product();

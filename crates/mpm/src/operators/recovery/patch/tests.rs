@@ -148,7 +148,7 @@ fn the_recovery_never_turns_a_pressure_wave_round() {
             let wave = recovered(&grid, &points, |x| (theta * (x[0] - 4.5)).cos());
             let middle = &wave[4 * per_cell..5 * per_cell];
             let symbol: f64 = middle.iter().map(|pair| pair.0).sum::<f64>() / per_cell as f64;
-            assert!(symbol > 0.0, "symbol {symbol} at θ = {theta}, {per_cell} points a cell");
+            assert!(symbol > 0.0, "symbol {symbol} at θ = {theta}, {per_cell} points per cell");
         }
     }
 }
