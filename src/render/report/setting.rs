@@ -61,17 +61,12 @@ fn with_unit(value: f64, unit: &str) -> String {
         "Pa" => &[(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")],
         _ => &[],
     };
-    match prefixes.iter().find(|(scale, _)| value.abs() >= *scale) {
-        Some((scale, name)) => format!("{} {name}", scaled(*scale)),
-        None => {
-            let number = if (1e-3..1e4).contains(&value.abs()) {
-                format!("{}", scaled(1.0))
-            } else {
-                format!("{:e}", scaled(1.0))
-            };
-            format!("{number} {unit}").trim_end().to_owned()
-        }
+    if let Some((scale, name)) = prefixes.iter().find(|(scale, _)| value.abs() >= *scale) {
+        return format!("{} {name}", scaled(*scale));
     }
+    let is_plain = (1e-3..1e4).contains(&value.abs());
+    let number = if is_plain { format!("{}", scaled(1.0)) } else { format!("{:e}", scaled(1.0)) };
+    format!("{number} {unit}").trim_end().to_owned()
 }
 
 /// What the surface of a column settles by in the end.
