@@ -76,10 +76,8 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
     let best = audited.max_by_key(|(_, pairings, common)| worth(pairings, common));
     let (one, pairings, common) = best?;
     let figures = vec![over_time(&pairings, &common), over_mesh(&pairings, &common)];
-    QUESTION.told(
-        format!("{} Evidence: {}.", sentence(&pairings, &common), link(links, &one.study.name)),
-        vec![Block::Figures(figures), Block::Paragraph(MAPPING_BACK.to_owned())],
-    )
+    let sentence = format!("{} Evidence: {}.", sentence(&pairings, &common), link(links, &one.study.name));
+    Some(QUESTION.told(sentence, vec![Block::Figures(figures), Block::Paragraph(MAPPING_BACK.to_owned())]))
 }
 
 /// The pairings of the method that has most of them.

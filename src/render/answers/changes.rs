@@ -15,7 +15,7 @@ pub fn answer(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
         let text = format!(
             "Nothing: every value that these studies share with {against} agrees within its tolerance."
         );
-        return QUESTION.told(text, Vec::new());
+        return Some(QUESTION.told(text, Vec::new()));
     }
     let worse = changes.iter().filter(|one| one.is_regression()).count();
     let sentence = format!(
@@ -24,7 +24,7 @@ pub fn answer(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
     );
     let tables = comparison_tables(changes, [against, "this report"]);
     let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
-    QUESTION.told(sentence, tables.into_iter().map(block).collect())
+    Some(QUESTION.told(sentence, tables.into_iter().map(block).collect()))
 }
 
 #[cfg(test)]

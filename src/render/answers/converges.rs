@@ -35,7 +35,7 @@ pub fn answer(
     let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
     let mut blocks = vec![Block::Table(short(table(&regimes), "in the studies"))];
     blocks.extend(small.and_then(|regime| figure(results, regime)).map(Block::Figure));
-    QUESTION.told(sentence, blocks)
+    Some(QUESTION.told(sentence, blocks))
 }
 
 /// What the paper's method, or the first of the methods, converges to and how fast; where an order is not settled, the

@@ -24,7 +24,8 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
         blocks.push(Block::Paragraph(equal_cells(&precision)));
         blocks.push(Block::Table(short(cost::peers_table(&precision), "on the page of the study")));
     }
-    QUESTION.told(format!("{} Evidence: {}.", sentence(&precision), link(links, &one.study.name)), blocks)
+    let sentence = format!("{} Evidence: {}.", sentence(&precision), link(links, &one.study.name));
+    Some(QUESTION.told(sentence, blocks))
 }
 
 /// The cheapest way to each tolerance.

@@ -18,12 +18,11 @@ const KEY: [&str; 2] = ["sets", "points"];
 
 /// Error, robustness and cost of double-point MPM beside single-point MPM.
 pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
-    let compared = Key::named(KEY[0], KEY[1]).and_then(|key| compare(results, key, links));
-    compared.unwrap_or_else(|| None)
+    Key::named(KEY[0], KEY[1]).and_then(|key| compare(results, key, links))
 }
 
 /// The comparison by a key with the values one and two; `None` where no study has such pairs.
-fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Option<Answer> {
+fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Answer {
     let mut all: Vec<Twins<'_>> = Vec::new();
     let mut studies: Vec<&str> = Vec::new();
     for one in results {
@@ -154,7 +153,7 @@ mod tests {
         let links = |study: &str| format!("{study}.html");
         // Any key of one and two will do.
         let key = Key::named("points_per_cell", "sweep").expect("a key");
-        let Some(Some(section)) = compare(&results, key, &links) else { panic!("both are there") };
+        let Some(section) = compare(&results, key, &links) else { panic!("both are there") };
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
         let start =
             "2 pairs of runs: “Small strain, points out of place”, `GC-SRI-patch`: double-point MPM has ";

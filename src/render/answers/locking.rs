@@ -32,8 +32,8 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
     let Some(time) = sweep.time_factors.last().copied() else { return Ok(None) };
     let rows: Vec<&SweepRow> = sweep.at(time).collect();
     let sentence = format!("{} Evidence: {}.", sentence(&sweep, &rows, time), link(links, &one.study.name));
-    Ok(QUESTION
-        .told(sentence, vec![Block::Table(answers::short(table(&sweep, &rows), "on the page of the study"))]))
+    let table = answers::short(table(&sweep, &rows), "on the page of the study");
+    Ok(Some(QUESTION.told(sentence, vec![Block::Table(table)])))
 }
 
 /// Errors of displacement and pressure at a value of the sweep.

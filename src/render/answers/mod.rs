@@ -114,11 +114,10 @@ struct Question {
 pub(crate) type Answer = Option<Section>;
 
 impl Question {
-    #[expect(clippy::unnecessary_wraps, reason = "every question ends in an answer, which may be none")]
-    fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Answer {
+    fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Section {
         shown.insert(0, Block::Paragraph(sentence.into()));
         let (heading, id) = (self.heading.to_owned(), self.id.to_owned());
-        Some(Section { heading, id, mood: None, blocks: shown })
+        Section { heading, id, mood: None, blocks: shown }
     }
 }
 

@@ -57,7 +57,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
     }
     let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
     let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
-    Ok(QUESTION.told(sentence, vec![Block::Figures(figures)]))
+    Ok(Some(QUESTION.told(sentence, vec![Block::Figures(figures)])))
 }
 
 /// The sound run of the paper's method on the paper's mesh with most outputs.

@@ -65,7 +65,8 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     sentences.extend(of_the_power(rows));
     let first = sentences.remove(0);
     let files = "[Every cell with all its measures](tables/race.csv).";
-    QUESTION.told(format!("{first} {files}"), vec![Block::Switch(views.to_vec()), Block::List(sentences)])
+    let blocks = vec![Block::Switch(views.to_vec()), Block::List(sentences)];
+    Some(QUESTION.told(format!("{first} {files}"), blocks))
 }
 
 fn table_of(

@@ -480,7 +480,10 @@ impl Checker<'_> {
             self.complain(
                 table.span(),
                 "an order of the time step cannot be read off errors against an exact solution: they end at that of the mesh",
-                format!("add `reference = \"{NEXT_FINER}\"`, the differences from the next finer step"),
+                format!(
+                    "add `reference = \"{NEXT_FINER}\"`, the differences from the next finer step, or name the exact solution where \
+                     the mesh is fine enough for it"
+                ),
             );
         }
     }

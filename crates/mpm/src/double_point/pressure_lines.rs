@@ -14,7 +14,6 @@ use crate::state::grid::{GHOST_LAYERS, Grid};
 use oedometer_soil::tensor::Vector;
 
 /// How often what a point carries beyond its cell's line falls by a factor `e` while the water goes through a cell.
-/// From 1 to 30 the errors of consolidation change by a quarter (docs/layers.md).
 const FADINGS_PER_CELL: f64 = 2.0;
 
 impl<const D: usize> DoublePoint<D> {
