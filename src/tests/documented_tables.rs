@@ -7,7 +7,6 @@ use crate::case::keys::{KEYS, Key, Kind, Range};
 use crate::case::{Case, Task};
 use crate::record::csv::long_tables::columns_csv;
 use crate::schema::{Document, schema_of};
-use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::method::Method;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::typed;
@@ -27,9 +26,6 @@ fn table(name: &str) -> Option<String> {
     Some(match name {
         "methods" => methods(),
         "scenes" => scenes(),
-        "exact solutions" => {
-            markdown("solution", ReferenceKind::ALL.iter().map(|kind| vec![code(kind.name())]))
-        }
         "columns" => columns(""),
         "columns of profiles" => columns("profiles"),
         "columns of the history" => columns("history"),
@@ -161,7 +157,7 @@ fn methods() -> String {
     let names = Method::names().into_iter();
     let plain =
         names.filter(|name| !name.starts_with('u') && !name.starts_with("TL-") && !name.ends_with("-cells"));
-    markdown("name | weights + strain gradient + divergence + recovery", plain.map(row))
+    markdown("name | shape functions + strain gradient + divergence + recovery", plain.map(row))
 }
 
 fn scenes() -> String {
