@@ -11,7 +11,6 @@ use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::critical_step::observed::Stopped;
-use oedometer_mpm::run::profile::{Phase, enter};
 use oedometer_mpm::run::results::outcome::{FailureKind, Outcome};
 use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::scene::column::column_parameters;
@@ -128,7 +127,6 @@ fn run_case_on(
         return stability_of(case, observe);
     }
     let (outcome, wall) = solved(course, case, observe)?;
-    enter(Phase::Assessment);
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(wall);
     Ok(record)

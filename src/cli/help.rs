@@ -80,7 +80,6 @@ const GROUPS: [Group; 5] = [
         &[
             ("records", ["records out/my-study", "records out/my-study 3f2a"]),
             ("merge", ["merge out-1 out-2", "merge my-study.toml out-1 out-2 --out merged"]),
-            ("spread", ["spread terzaghi-mesh --quick", "spread my-study.toml --into golden"]),
             ("schema", ["schema", "schema mapping"]),
             ("completions", ["completions bash", "completions zsh"]),
         ],
@@ -88,7 +87,7 @@ const GROUPS: [Group; 5] = [
 ];
 
 /// Options for clusters, other builds and the development of methods.
-const EXPERT: [&str; 22] = [
+const EXPERT: [&str; 21] = [
     "shard",
     "balance",
     "resume",
@@ -108,7 +107,6 @@ const EXPERT: [&str; 22] = [
     "summary",
     "despite_failing",
     "point_wise",
-    "profile",
     "time_tolerance",
     "against",
 ];

@@ -19,7 +19,7 @@ pub mod trust;
 
 use crate::cli::commands::{
     accept, bisect, check, compare, completions, exact, explain, history, list, merge, new, plan, records,
-    report, run, schema, score, solve, spread, stability,
+    report, run, schema, score, solve, stability,
 };
 use crate::cli::exit::Exit;
 use crate::cli::stream::{say, written};
@@ -71,8 +71,6 @@ enum Command {
     History(history::Arguments),
     /// Find the commit that moved the results of a study
     Bisect(bisect::Arguments),
-    /// Measure the scatter of results that should be equal
-    Spread(spread::Arguments),
     /// Print the JSON Schema of studies, records, mappings or cases
     Schema(schema::Arguments),
     /// Print the completions for a shell
@@ -127,7 +125,6 @@ fn run(command: Command) -> anyhow::Result<Exit> {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::History(arguments) => history::run(&arguments),
         Command::Bisect(arguments) => bisect::run(&arguments),
-        Command::Spread(arguments) => spread::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments, self::command()),
     }

@@ -12,7 +12,6 @@ pub mod path_context;
 pub mod paths;
 pub mod proposals;
 pub mod race;
-pub mod scatter;
 pub mod score;
 pub mod soundness;
 pub mod study_check;

@@ -14,7 +14,6 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::provenance::{Machine, Provenance};
 pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
-pub use oedometer_mpm::run::profile::PhaseTime;
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};

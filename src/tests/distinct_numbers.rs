@@ -3,9 +3,8 @@
 use crate::campaign::runner::records_of;
 use crate::case::norm::Norm;
 use crate::case::tier::Tier;
-use crate::judge::scatter::ValueScatter;
 use crate::record::csv::tidy::{header_line, rows_of};
-use crate::record::{CriticalStep, PhaseTime, Record, WallSample};
+use crate::record::{CriticalStep, Record, WallSample};
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::report::cost;
@@ -13,7 +12,6 @@ use crate::render::table::{Cell, Table};
 use crate::render::tables::{measures, runs};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use oedometer_mpm::run::profile::Phase;
 
 /// A column of no unit number: height, load, stiffness, density and gravity are another each, and so are the ratios of its
 /// meshes.
@@ -200,42 +198,6 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
     let Cell::Percent(difference) = under(&table, 0, "difference") else { panic!("a share") };
     assert!((difference - (0.013 / 0.011 - 1.0)).abs() < 1e-12, "{difference}: observed over predicted");
 
-    let spread = ValueScatter {
-        study: "its study".to_owned(),
-        source: "its source".to_owned(),
-        values: 101,
-        unpaired: 13,
-        differing: 29,
-        absolute: 3e-12,
-        relative: 7e-11,
-        place: Some("its place".to_owned()),
-    };
-    let table = runs::spreads(std::slice::from_ref(&spread));
-    for (header, value) in [
-        ("study", Cell::Text("its study".to_owned())),
-        ("against", Cell::Text("its source".to_owned())),
-        ("values", Cell::Count(101)),
-        ("unpaired", Cell::Count(13)),
-        ("differing", Cell::Count(29)),
-        ("largest difference", Cell::Error(3e-12)),
-        ("relative", Cell::Error(7e-11)),
-        ("tolerance from it", Cell::Error(spread.tolerance())),
-        ("widest at", Cell::Code("its place".to_owned())),
-    ] {
-        assert_eq!(*under(&table, 0, header), value, "{header}");
-    }
-
-    record.counters.point_updates = 5_000_000;
-    let phase = PhaseTime { phase: Phase::Outputs, seconds: 0.03, share: 0.2, entries: 17 };
-    let table = measures::phases_table(&[phase], &record);
-    let number = |header: &str| match under(&table, 0, header) {
-        Cell::Number(value) | Cell::Percent(value) => *value,
-        other => panic!("{other:?}"),
-    };
-    assert_eq!(number("share"), 0.2);
-    assert!((number("time") - 30.0).abs() < 1e-12, "milliseconds");
-    assert!((number("a point and step") - 6.0).abs() < 1e-12, "nanoseconds");
-    assert_eq!(*under(&table, 0, "entered"), Cell::Count(17));
 }
 
 #[test]

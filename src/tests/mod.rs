@@ -15,5 +15,4 @@ mod record_tables;
 mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;
-mod runs_profile;
 mod study_limits;

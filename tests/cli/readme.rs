@@ -487,7 +487,6 @@ fn quoted_commands(text: &str) -> Vec<Vec<String>> {
         "stability",
         "plan",
         "merge",
-        "spread",
         "explain",
         "new",
         "list",

@@ -1,4 +1,4 @@
-//! `score`, `explain`, `merge`, `spread`, `schema`, `completions` and `run --case` through the
+//! `score`, `explain`, `merge`, `schema`, `completions` and `run --case` through the
 //! program, and the list of faults that `check` is held against.
 
 use crate::program::{assert_snapshot, assert_words, call, folder_with, table_without_times};
@@ -238,25 +238,6 @@ fn an_explanation_says_what_changed_against_the_golden_values() {
     let other = call(folder.path(), &["explain", "MPM cells=5", "short.toml"]);
     assert!(other.err.contains("golden values of the case agree"), "{}", other.err);
     assert!(other.out.contains("• this case") && other.out.contains("golden"), "{}", other.out);
-}
-
-#[test]
-fn threads_make_no_spread_and_last_digits_and_kernels_a_little() {
-    let folder = place();
-    let told = call(folder.path(), &["spread", "short.toml", "--format", "json"]);
-    assert_eq!(told.code, 0, "{}", told.err);
-    let spreads: Vec<serde_json::Value> = serde_json::from_str(&told.out).expect("JSON");
-    assert_eq!(spreads[0]["differing"], 0, "{spreads:?}");
-    let sources: Vec<&str> = spreads.iter().filter_map(|spread| spread["source"].as_str()).collect();
-    assert_eq!(
-        sources[1..],
-        ["last digit of the stiffness", "last digit of the conductivity", "point-wise kernel"]
-    );
-    for spread in &spreads[1..] {
-        assert!(spread["differing"].as_u64() > Some(0) && spread["unpaired"] == 0, "{spread}");
-        assert!(spread["absolute"].as_f64().expect("a number") < 1e-11, "{spread}");
-    }
-    assert_words("spread_table", &call(folder.path(), &["spread", "short.toml", "--jobs", "2"]).out);
 }
 
 /// The kernel that visits every point rounds everywhere else: what it gives agrees within tolerances that

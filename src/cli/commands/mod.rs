@@ -18,5 +18,4 @@ pub mod run;
 pub mod schema;
 pub mod score;
 pub mod solve;
-pub mod spread;
 pub mod stability;

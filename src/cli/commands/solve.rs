@@ -11,13 +11,12 @@ use crate::cli::time_notes::note_on_solve;
 use crate::judge::soundness;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
-use crate::render::tables::measures::{self, phases_table};
+use crate::render::tables::measures;
 use crate::study::check::Purpose;
 use crate::study::check::Study;
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
-use oedometer_mpm::run::profile::{PhaseTime, profiled};
 use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
 use oedometer_mpm::scene::SceneKind;
 
@@ -58,9 +57,6 @@ pub struct Arguments {
     /// Visit every point in every step, even if one banded matrix gives the same
     #[arg(long)]
     point_wise: bool,
-    /// Show where the time went, phase by phase
-    #[arg(long)]
-    profile: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = SolveFormat::Table)]
     format: SolveFormat,
@@ -75,9 +71,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
     let (seconds, case, cores) = (study.case_seconds, &planned.case, Cores::all());
-    let solve = || run_case_within(seconds, case, &study.references, kernel, cores, &|_, _| true);
-    let (record, phases) = if arguments.profile { profiled(solve) } else { (solve(), Vec::new()) };
-    let record = record?;
+    let record = run_case_within(seconds, case, &study.references, kernel, cores, &|_, _| true)?;
     match arguments.format {
         SolveFormat::Csv => {
             let errors = record.errors.iter().map(|row| row.csv_fields().to_vec());
@@ -86,18 +80,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let loads = record.measures.iter().filter(|_| is_footing).map(|row| row.csv_fields().to_vec());
             print_data(&csv_of(ERROR_COLUMNS, errors.chain(loads))?)?;
         }
-        SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record, &phases))?)?,
+        SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record))?)?,
         SolveFormat::Table => print_data(&measures::table_of(&record)?)?,
-    }
-    // A CSV has one kind of row, so its profile goes to standard error.
-    match arguments.format {
-        SolveFormat::Table if arguments.profile => {
-            print_data(&format!("\n{}", phases_table(&phases, &record).to_text()?))?;
-        }
-        SolveFormat::Csv if arguments.profile => {
-            say!("{}", phases_table(&phases, &record).to_text()?.trim_end());
-        }
-        _ => {}
     }
     for complaint in soundness::complaints(&record).iter().filter(|_| record.status == Status::Ok) {
         say!("warning: {complaint}");
@@ -183,14 +167,11 @@ struct SolveJson<'a> {
     failure: Option<&'a Failure>,
     case: &'a Case,
     hash: &'a str,
-    /// Where the time went, with `--profile`.
-    #[serde(skip_serializing_if = "<[PhaseTime]>::is_empty")]
-    phases: &'a [PhaseTime],
     provenance: &'a Provenance,
 }
 
 impl<'a> SolveJson<'a> {
-    fn of(record: &'a Record, phases: &'a [PhaseTime]) -> Self {
+    fn of(record: &'a Record) -> Self {
         let failure = match &record.status {
             Status::Ok => None,
             Status::Failed(failure) => Some(failure),
@@ -212,7 +193,6 @@ impl<'a> SolveJson<'a> {
             failure,
             case: &record.case,
             hash: &record.hash,
-            phases,
             provenance: &record.provenance,
         }
     }

@@ -4,7 +4,7 @@ use crate::case::norm::Norm;
 use crate::case::quantity::{Quantity, Sample};
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
-use crate::record::{PhaseTime, Record, Status};
+use crate::record::{Record, Status};
 use crate::render::error::RenderError;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
@@ -114,23 +114,6 @@ pub(crate) fn groups_of(record: &Record) -> [(&'static str, f64); 3] {
         ("finite strain m_vl q", groups.finite_strain),
         ("inertia c_v/(H V)", groups.inertia),
     ]
-}
-
-/// One row per phase in the order of a run: share of the time, and cost of a point and step.
-pub fn phases_table(phases: &[PhaseTime], record: &Record) -> Table {
-    let updates = record.counters.point_updates.max(1) as f64;
-    let rows = phases.iter().map(|time| {
-        vec![
-            time.phase.name().into(),
-            Cell::Percent(time.share),
-            Cell::Number(1e3 * time.seconds),
-            Cell::Number(1e9 * time.seconds / updates),
-            Cell::Count(time.entries),
-        ]
-    });
-    let header = "phase | > share | > time [ms] | > a point and step [ns] | > entered";
-    Table::of("where the time went", columns(header), rows)
-        .note("wall time without that of the clock, which is read at the start of each phase; a run without it is faster")
 }
 
 /// The bound of a check with the mark of its judgement.

@@ -1,6 +1,5 @@
-//! Tables over several runs: those of attached solvers, critical time steps, and spreads of results that should agree.
+//! Tables over several runs: those of attached solvers, and critical time steps.
 
-use crate::judge::scatter::ValueScatter;
 use crate::measure::statistics::{WallSpread, spread};
 use crate::record::{Probe, Record, WallSample};
 use crate::render::table::{Cell, Mood, Table, columns};
@@ -160,28 +159,6 @@ fn probe_words(probe: &Probe) -> String {
         format!(", grows by {seen:.4} a step{}", predicted.unwrap_or_default())
     });
     format!("{} at step {}{growth}", failure.kind.name(), failure.step)
-}
-
-/// One row per study and source: how far results that should be equal differ.
-pub fn spreads(spreads: &[ValueScatter]) -> Table {
-    let rows = spreads.iter().map(|spread| {
-        vec![
-            spread.study.as_str().into(),
-            spread.source.as_str().into(),
-            Cell::Count(spread.values as u64),
-            Cell::Count(spread.unpaired as u64),
-            Cell::Count(spread.differing as u64),
-            Cell::Error(spread.absolute),
-            Cell::Error(spread.relative),
-            Cell::Error(spread.tolerance()),
-            spread.place.clone().map_or(Cell::missing("every bit is equal"), Cell::Code),
-        ]
-    });
-    let header = "study | against | > values | > unpaired | > differing | > largest difference | > relative | > tolerance \
-                  from it | widest at";
-    Table::of("spread of results that should be equal", columns(header), rows).note(
-        "the tolerance is ten times the spread; a golden value takes that of its own quantity, case and time",
-    )
 }
 
 #[cfg(test)]

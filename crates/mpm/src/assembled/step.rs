@@ -12,7 +12,6 @@ use crate::body::Body;
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::explicit::ExplicitSettings;
 use crate::operators::volumetric::VolumetricRows;
-use crate::run::profile::{Phase, enter};
 use crate::wide::wide;
 use nalgebra::DMatrix;
 use oedometer_soil::tensor::{Vector, dot};
@@ -160,13 +159,11 @@ impl<const D: usize> AssembledStep<D> {
         let Self { rows, constants, state, tied, sliding, .. } = self;
         match rows {
             RowStorage::Banded(bands) => {
-                enter(Phase::Forces);
                 match bands.force_reach {
                     0 | 1 => accelerate(&BandsWithin::<D, 1>(bands), constants, state, kick),
                     2 => accelerate(&BandsWithin::<D, 2>(bands), constants, state, kick),
                     _ => accelerate(&BandsWithin::<D, REACH>(bands), constants, state, kick),
                 }
-                enter(Phase::Motion);
                 // On a regular lattice a node shares points with its neighbours only.
                 if bands.projection_reach <= 1 {
                     advance(&BandsWithin::<D, 1>(bands), constants, state, [kick, dt], settings);
@@ -175,13 +172,10 @@ impl<const D: usize> AssembledStep<D> {
                 }
             }
             RowStorage::Sparse(rows) => {
-                enter(Phase::Recovery);
                 rows.dilate(&state.flux_displacement, &mut state.dilation);
-                enter(Phase::Forces);
                 accelerate(rows, constants, state, kick);
                 sliding.keep_accelerations(state);
                 tied.tie_accelerations(state, kick);
-                enter(Phase::Motion);
                 advance(rows, constants, state, [kick, dt], settings);
                 sliding.keep_velocities(state, dt, settings.mapping_back);
                 tied.tie_velocities(state, dt, settings.mapping_back);

@@ -21,7 +21,6 @@ use crate::explicit::{ExplicitSettings, Motion};
 use crate::method::{PressureIntegration, Recovery};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
-use crate::run::profile::{Phase, enter};
 use crate::state::cells::Cells;
 use crate::state::points::Points;
 use oedometer_soil::tensor::{Tensor, Vector};
@@ -127,7 +126,6 @@ impl<const D: usize> DoublePoint<D> {
     /// One explicit step whose velocities advance by `kick` seconds, and all that they carry by `dt`.
     pub fn kick_and_drift(&mut self, kick: f64, dt: f64, settings: &ExplicitSettings) {
         self.reset_grid(settings); // step 1
-        enter(Phase::Forces);
         self.map_forces();
         let inertia = &self.inertia;
         self.body.accelerate_nodes(kick, settings.drag, |_, node| inertia[node]); // step 2
@@ -145,7 +143,6 @@ impl<const D: usize> DoublePoint<D> {
 
     /// Step 1: operators, masses and velocities of both sets at their places.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
-        enter(Phase::BuildWeights);
         self.body.follow_places();
         if self.body.configuration.deforms() {
             self.body.map_masses();

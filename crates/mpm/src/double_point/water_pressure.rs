@@ -23,13 +23,11 @@ use crate::double_point::DoublePoint;
 use crate::method::PressureIntegration;
 use crate::operators::recovery::PointsInCells;
 use crate::operators::volumetric::Place;
-use crate::run::profile::{Phase, enter};
 use oedometer_soil::tensor::Vector;
 
 impl<const D: usize> DoublePoint<D> {
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the water points.
     pub fn update_pressure(&mut self, dt: f64) {
-        enter(Phase::Recovery);
         let body = &mut self.body;
         body.nodes.take_flux();
         body.surface_flux += dt * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);

@@ -17,7 +17,6 @@ use crate::body::Body;
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::method::Memory;
 use crate::operators::recovery::points_in_cells;
-use crate::run::profile::{Phase, enter};
 
 impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds by forward Euler.
@@ -44,7 +43,6 @@ impl<const D: usize> Body<D> {
     /// Step 1: shape functions, masses and velocities at the points' places. Where nothing moves all of it
     /// stands, but for velocities that the last step has not mapped back.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
-        enter(Phase::BuildWeights);
         self.follow_places();
         if self.configuration.deforms() {
             self.map_masses_and_velocities();
@@ -55,7 +53,6 @@ impl<const D: usize> Body<D> {
 
     /// Step 2: accelerations of water and skeleton at the nodes.
     fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
-        enter(Phase::Forces);
         self.map_forces();
         let water_density = self.material.water_density;
         self.accelerate_nodes(kick, drag, |volume, _| water_density * volume);
@@ -96,7 +93,6 @@ impl<const D: usize> Body<D> {
 
     /// Step 3: nodal velocities by forward Euler.
     pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
-        enter(Phase::Motion);
         let nodes = &mut self.nodes;
         for &node in &nodes.active {
             for d in 0..D {
@@ -113,7 +109,6 @@ impl<const D: usize> Body<D> {
     /// Step 7: pressure increments at the sites of the method's divergence, recovered to the points:
     /// `Δp = −Δt (K_w/n) [∇·v_s + ∇·w]` (docs/theory.md, Eq. 8), with the flux that the nodes have.
     fn update_pressure(&mut self, dt: f64) {
-        enter(Phase::Recovery);
         if self.forcing.is_some() {
             self.update_forced_pressure(dt);
             return;

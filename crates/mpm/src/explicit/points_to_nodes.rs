@@ -4,7 +4,6 @@
 
 use crate::body::Body;
 use crate::drag::drag_of_point;
-use crate::run::profile::{Phase, enter};
 use crate::state::points::Points;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
@@ -13,7 +12,6 @@ use oedometer_soil::tensor::{Vector, product_with_transpose};
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
     pub fn map_masses(&mut self) {
-        enter(Phase::MapVelocities);
         let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_values(
             self.grid.node_stride(),
@@ -26,7 +24,6 @@ impl<const D: usize> Body<D> {
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
     pub fn map_velocities(&mut self) {
-        enter(Phase::MapVelocities);
         let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_values(
             self.grid.node_stride(),
@@ -42,7 +39,6 @@ impl<const D: usize> Body<D> {
 
     /// Maps masses and velocities in one pass.
     pub fn map_masses_and_velocities(&mut self) {
-        enter(Phase::MapVelocities);
         let (soils, points) = (&self.soils[..], &self.points);
         self.basis.sum_both(
             self.grid.node_stride(),

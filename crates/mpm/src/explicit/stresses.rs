@@ -6,7 +6,6 @@ use crate::body::Body;
 use crate::method::Configuration;
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::StrainOperator;
-use crate::run::profile::{Phase, enter};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
 use crate::wide::wide;
@@ -27,7 +26,6 @@ impl<const D: usize> Body<D> {
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
     pub(crate) fn update_effective_stress(&mut self, dt: f64) {
-        enter(Phase::Stresses);
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }

@@ -15,7 +15,6 @@ use crate::body::{Body, DrivenPlate};
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::implicit::no_pivot;
 use crate::implicit::unknowns::Unknowns;
-use crate::run::profile::{Phase, enter};
 use crate::run::results::outcome::FailureKind;
 use crate::run::results::snapshot::Snapshot;
 use crate::run::run_plan::Plan;
@@ -70,7 +69,6 @@ pub struct DrivenStepper<const D: usize> {
 impl<const D: usize> DrivenStepper<D> {
     /// A body at its start.
     pub fn new(body: Body<D>, plate: DrivenPlate, plan: &Plan<'_>) -> Self {
-        enter(Phase::Assembly);
         let mut rows = body.volumetric_rows();
         if !plate.has_water {
             rows.coupling.fill(0.0);
@@ -196,7 +194,6 @@ impl<const D: usize> DrivenStepper<D> {
 
     /// Strains the points by the present increment, and puts their forces on the nodes; the largest one on a free node, N.
     fn strain_and_balance(&mut self) -> f64 {
-        enter(Phase::Balances);
         let (body, rows) = (&mut self.body, &self.unknowns.rows);
         for (point, entries) in self.strains.iter().enumerate() {
             let (mut gradient, mut dilation) = ([[0.0; D]; D], 0.0);
@@ -233,7 +230,6 @@ impl<const D: usize> DrivenStepper<D> {
         if self.time_limit.is_over() {
             return Err(StepFailure::out_of_time());
         }
-        enter(Phase::Assembly);
         for (row, constant) in self.stiffness.rows.iter_mut().zip(&self.pressure_stiffness.rows) {
             let mut constant = constant.iter().peekable();
             for (column, block) in row {
@@ -245,7 +241,6 @@ impl<const D: usize> DrivenStepper<D> {
         self.matrix.clear();
         let matrix = &mut self.matrix;
         self.unknowns.visit_blocks(&self.stiffness, |row, column, value| matrix.add(row, column, value));
-        enter(Phase::Factors);
         self.work.factorisations += 1;
         let factored = self.factors.factor(&self.matrix);
         factored.map_err(|singular| no_pivot("the tangent", singular, self.time_limit))

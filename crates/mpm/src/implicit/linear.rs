@@ -8,7 +8,6 @@ use crate::body::Body;
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::implicit::linear_system::LinearSystem;
 use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
-use crate::run::profile::{Phase, enter};
 use crate::run::results::snapshot::Snapshot;
 use crate::run::run_plan::Plan;
 use crate::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
@@ -50,7 +49,6 @@ pub struct LinearStepper<const D: usize> {
 impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
     pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
-        enter(Phase::Assembly);
         let system = LinearSystem::of(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
@@ -81,7 +79,6 @@ impl<const D: usize> LinearStepper<D> {
             if self.time_limit.is_over() {
                 return Err(StepFailure::out_of_time());
             }
-            enter(Phase::Factors);
             let system = &self.system;
             self.projection = self.start.projection_parameter(SDIRK_GAMMA * dt);
             system.set_matrix(&mut self.matrix, SDIRK_GAMMA * dt, self.projection);
@@ -95,7 +92,6 @@ impl<const D: usize> LinearStepper<D> {
 
     /// Takes both stages of a step of the size last set; nothing is allocated.
     fn take_stages(&mut self, dt: f64) {
-        enter(Phase::Solve);
         let stage = SDIRK_GAMMA * dt;
         let system = &self.system;
         let sites = &system.unknowns.pressure;

@@ -10,7 +10,6 @@ use crate::implicit::trial::{Skeleton, Trial};
 use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
 use crate::method::PressureIntegration;
 use crate::run::integrator::StepBound;
-use crate::run::profile::{Phase, enter};
 use crate::run::results::outcome::FailureKind;
 use crate::run::results::snapshot::Snapshot;
 use crate::run::run_plan::Plan;
@@ -168,7 +167,6 @@ impl<const D: usize> NewtonStepper<D> {
             *rate = (end - start) / stage;
         }
         self.settlement_rate = self.trial.settlement_rate();
-        enter(Phase::BuildWeights);
         self.trial.end_step(&self.state, flux);
         self.time += dt;
         self.guess.end_step();
@@ -245,13 +243,11 @@ impl<const D: usize> NewtonStepper<D> {
         let mut renew = self.factored != Some(self.start.duration);
         for _ in 0..MOST_ITERATIONS {
             self.ask_for_time()?;
-            enter(Phase::Balances);
             self.trial.residual(&self.state, &self.start, &mut self.residual)?;
             if renew {
                 self.renew_tangent()?;
                 self.contraction = SLOW;
             }
-            enter(Phase::Solve);
             self.scratch.copy_from_slice(&self.residual);
             self.factors.solve(&mut self.scratch);
             self.secants.apply(&mut self.scratch);
@@ -307,7 +303,6 @@ impl<const D: usize> NewtonStepper<D> {
     }
 
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
-        enter(Phase::Assembly);
         if !self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
             self.renew_pattern();
         }
@@ -329,7 +324,6 @@ impl<const D: usize> NewtonStepper<D> {
         self.ask_for_time()?;
         self.work.factorisations += 1;
         self.factored = Some(start.duration);
-        enter(Phase::Factors);
         self.secants.clear();
         self.factors.factor(&self.tangent).map_err(|singular| {
             self.factored = None;

@@ -1,6 +1,5 @@
 //! The one driver of every run: from output to output, with snapshots, history and a watch.
 
-use crate::run::profile::{Phase, enter};
 use crate::run::results::outcome::{
     Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
 };
@@ -190,7 +189,6 @@ impl<'a> Driver<'a> {
         }
         let before = is_due.then(|| Settled::now(self.stepper, self.time));
         let error = self.stepper.advance(&last, most_error)?;
-        enter(Phase::Outputs);
         if error > most_error {
             self.ask_to_go_on()?;
             return Ok(error);

@@ -9,7 +9,6 @@ pub(crate) mod energy;
 pub(crate) mod explicit_stepper;
 pub mod integrator;
 pub(crate) mod physical_bounds;
-pub mod profile;
 pub mod results;
 pub mod run_plan;
 pub mod schedule;

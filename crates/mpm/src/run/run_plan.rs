@@ -6,7 +6,6 @@ use crate::critical_step::predicted::{GrowingMode, predict_for_run};
 use crate::operators::surface_load::LoadedSurface;
 use crate::run::integrator::StepBound;
 use crate::run::physical_bounds::PhysicalBounds;
-use crate::run::profile::{self, Phase, enter};
 use crate::run::results::outcome::StepSizes;
 use crate::run::schedule::{Schedule, StepLimit, TimeStepRule};
 use crate::state::points::Points;
@@ -72,10 +71,9 @@ impl<'a> Plan<'a> {
     /// explicit, of the explicit integrator's where there is none.
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
-        let predicted = || predict_for_run(problem, settings);
         let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
             (StepBound::AllWaves, None) => {
-                let (critical, growing) = profile::within(Phase::CriticalStep, predicted);
+                let (critical, growing) = predict_for_run(problem, settings);
                 (critical, growing.map(UnknownLimit::Growing))
             }
             (StepBound::AllWaves, Some(known)) => (known, None),
@@ -91,7 +89,6 @@ impl<'a> Plan<'a> {
             }
         };
         let unknown_limit = unknown.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
-        enter(Phase::Setup);
         let sizes = StepSizes {
             predicted_critical: critical,
             target: schedule.rule.step(problem, critical),
