@@ -33,7 +33,7 @@ const GROUPS: [Group; 5] = [
                 "accept",
                 [
                     "accept my-study.toml --reason \"First results\"",
-                    "accept --references --reason \"One more term\"",
+                    "accept race --reason \"One more contender\"",
                 ],
             ),
             ("explain", ["explain 3f2a my-study.toml", "explain \"GC-SRI-patch cells=20\" terzaghi-mesh"]),
@@ -87,7 +87,7 @@ const GROUPS: [Group; 5] = [
 ];
 
 /// Options for clusters, other builds and the development of methods.
-const EXPERT: [&str; 21] = [
+const EXPERT: [&str; 20] = [
     "shard",
     "balance",
     "resume",
@@ -102,7 +102,6 @@ const EXPERT: [&str; 21] = [
     "detach",
     "dry_run",
     "case_files",
-    "references",
     "annotate",
     "summary",
     "despite_failing",

@@ -5,7 +5,6 @@
 
 use crate::case::contender::RACE;
 use crate::cli::exit::{Ended, Exit};
-use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenError, GoldenFile};
 use crate::study::shipped::{name_of, shipped_names, shipped_study};
 use oedometer_formats::input_file::read_text;
@@ -45,11 +44,6 @@ impl StudyArguments {
     /// Whether all studies are taken, of the project or of the program.
     pub fn names_none(&self) -> bool {
         self.studies.is_empty()
-    }
-
-    /// Whether the golden values of the exact solutions belong to what is taken.
-    pub fn has_references(&self) -> bool {
-        self.shipped || self.names_none() && GoldenFile::path(&folder_of_golden(None), REFERENCES).is_file()
     }
 }
 
@@ -167,7 +161,7 @@ pub fn folder_of_golden(file: Option<&Path>) -> PathBuf {
 /// # Errors
 /// As [`GoldenFile::read`].
 pub fn golden_of(given: Option<&Path>, study: &str, chosen: &[PathBuf]) -> Result<GoldenFile, GoldenError> {
-    let is_inside = study == REFERENCES || is_shipped(study, chosen);
+    let is_inside = is_shipped(study, chosen);
     match given {
         Some(folder) => GoldenFile::read(folder, study),
         None if is_inside => GoldenFile::read_or_embedded(&golden_folder(None, study, chosen), study),

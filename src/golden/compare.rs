@@ -4,7 +4,6 @@
 //! is dominated by them; one that pays for one with the other is a trade. A long list of differences says less than one
 //! line a kind, with what its values have in common and its largest change.
 
-use crate::golden::references::REFERENCES;
 use crate::golden::{GoldenFile, is_counter, parts};
 use oedometer_convergence::ParetoChange;
 use std::cmp::Ordering;
@@ -90,9 +89,9 @@ impl Difference {
     }
 }
 
-/// Whether a smaller value is better: true of errors and counters, not of exact solutions and critical steps.
-fn is_better_if_smaller(study: &str, name: &str) -> bool {
-    study != REFERENCES && !parts(name).1.ends_with("critical step")
+/// Whether a smaller value is better: true of errors and counters, not of critical steps.
+fn is_better_if_smaller(name: &str) -> bool {
+    !parts(name).1.ends_with("critical step")
 }
 
 /// Every difference beyond the tolerance `atol + rtol · max(|x|, |g|)`, the worst first; a value that is
@@ -106,9 +105,7 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
         let change = match present {
             None => Change::Missing,
             Some(present) if tolerance.is_finite() && (present - value).abs() <= tolerance => continue,
-            Some(present) if present.abs() < value.abs() && is_better_if_smaller(&golden.study, name) => {
-                Change::Stale
-            }
+            Some(present) if present.abs() < value.abs() && is_better_if_smaller(name) => Change::Stale,
             Some(_) => Change::Moved,
         };
         differences.push(Difference {
@@ -359,15 +356,10 @@ mod tests {
     }
 
     #[test]
-    fn an_exact_solution_or_a_critical_step_that_falls_is_no_better_one() {
-        let step = "a | predicted critical step";
-        let fallen = |study: &str, name: &str| {
-            let golden = GoldenFile { study: study.to_owned(), ..golden(&[(name, 1.0)]) };
-            changes(&golden, &[(name, 0.5)])[0].1
-        };
-        assert_eq!(fallen("study", step), Change::Moved);
-        assert_eq!(fallen("references", "terzaghi seed column | p/q ζ=0.5 T_v=0.02"), Change::Moved);
-        assert_eq!(fallen("study", "a | pressure points l2 terzaghi T_v=0.1"), Change::Stale);
+    fn a_critical_step_that_falls_is_no_better_one() {
+        let fallen = |name: &str| changes(&golden(&[(name, 1.0)]), &[(name, 0.5)])[0].1;
+        assert_eq!(fallen("a | predicted critical step"), Change::Moved);
+        assert_eq!(fallen("a | pressure points l2 terzaghi T_v=0.1"), Change::Stale);
     }
 
     fn difference(name: &str, golden: f64, found: f64) -> Difference {

@@ -3,7 +3,6 @@
 use crate::case::tier::Tier;
 use crate::golden::GoldenFile;
 use crate::golden::inputs::CaseInputs;
-use crate::golden::references::REFERENCES;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::Record;
 use crate::record::store::RecordStore;
@@ -148,7 +147,7 @@ impl StudyState {
 /// The study whose golden file has this path, directly below the folder.
 pub(crate) fn golden_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
     let name = path.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(".csv")?;
-    (!name.contains('/') && name != REFERENCES).then_some(name)
+    (!name.contains('/')).then_some(name)
 }
 
 /// The sentence about a golden file of a layout that this program does not read.

@@ -6,7 +6,6 @@ use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
 };
 use crate::golden::inputs::{CaseInputs, InputChange};
-use crate::golden::references::{REFERENCES, reference_values};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::judge::attached_diagnosis::diagnoses;
 use crate::judge::explanation::place_of_attached;
@@ -16,7 +15,6 @@ use crate::judge::proposals::proposals;
 use crate::judge::soundness;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_exact::ExactError;
 use std::collections::BTreeMap;
 
 /// Wall time over the golden one from which on a warning is given.
@@ -140,14 +138,6 @@ impl StudyCheck {
         let notes = errors.iter().filter_map(RunError::of_case);
         self.failed_cases.extend(notes.map(|(case, sentence)| CaseNote { case: case.to_owned(), sentence }));
         self
-    }
-
-    /// Compares the exact solutions with their golden values.
-    ///
-    /// # Errors
-    /// When a solution refuses its column: a fault of this program.
-    pub fn of_references(golden: Result<GoldenFile, GoldenError>) -> Result<Self, ExactError> {
-        Ok(Self::of_values(REFERENCES, &reference_values()?, golden))
     }
 
     /// Compares values alone.

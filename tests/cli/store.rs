@@ -88,7 +88,7 @@ fn a_name_that_is_not_plain_is_refused_before_any_work() {
     let folder = folder_with(STUDY);
     let at = folder.path().join("inner");
     fs::create_dir(&at).expect("a folder");
-    for name in ["MyStudy.toml", "...toml", ".toml", "a b.toml", "references.toml"] {
+    for name in ["MyStudy.toml", "...toml", ".toml", "a b.toml", "profiles.toml"] {
         fs::write(at.join(name), STUDY).expect("a file");
         for command in
             [&["run", name, "--out", "out"][..], &["report", name], &["check", name], &["plan", name]]

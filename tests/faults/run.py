@@ -158,7 +158,7 @@ def judge_of(caught_by, program, tests, folder):
     if caught_by.startswith("check "):
         study = caught_by.removeprefix("check ")
         # Nothing that another fault left is taken for what this one gives.
-        return [str(program), "check", "--records", "no-records", *([study] if study != "references" else ["--references", "at-rest"])], folder
+        return [str(program), "check", "--records", "no-records", study], folder
     whole = [name for name in tests if name == caught_by or name.endswith("::" + caught_by)]
     if len(whole) != 1:
         sys.exit(f"{len(whole)} tests are called `{caught_by}`")

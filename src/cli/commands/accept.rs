@@ -8,7 +8,6 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{golden_folder, named};
 use crate::cli::stream::say;
 use crate::cli::trust::TrustArguments;
-use crate::golden::references::REFERENCES;
 use crate::golden::tolerance::spread_by_group;
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::study_check::StudyCheck;
@@ -23,11 +22,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Study files, folders of them, or names of shipped studies
-    #[arg(required_unless_present = "references", value_name = "STUDY.toml")]
+    #[arg(required = true, value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Take the present values of the exact solutions too
-    #[arg(long)]
-    references: bool,
     /// Take the values although expectations or cases of their study fail
     #[arg(long)]
     despite_failing: bool,
@@ -57,9 +53,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
     refuse_failing(&studies, &records, arguments.despite_failing)?;
     let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
-    if arguments.references {
-        keep(GoldenFile::of_references(reason)?, &folder_of(REFERENCES))?;
-    }
     let mut perturbed = Vec::new();
     for digit in LastDigit::ALL {
         let studies: Vec<Study> = studies.iter().map(|study| study.perturbed(digit)).collect();

@@ -13,7 +13,6 @@ use crate::cli::stream::{print_data, say};
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;
-use crate::golden::references::REFERENCES;
 use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
@@ -43,10 +42,6 @@ pub struct Arguments {
     /// Solve every case anew, whatever is in the folder of results
     #[arg(long)]
     fresh: bool,
-    /// Compare the exact solutions with their golden values too; done by itself with `--shipped`, and without names
-    /// where the project has such values
-    #[arg(long)]
-    references: bool,
     /// Write a `JUnit` report
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
@@ -104,9 +99,6 @@ fn checks_of(
 ) -> anyhow::Result<(Vec<StudyCheck>, Tally)> {
     let read = |name: &str| golden_of(arguments.golden.as_deref(), name, chosen);
     let mut checks = Vec::new();
-    if arguments.references || arguments.studies.has_references() {
-        checks.push(StudyCheck::of_references(read(REFERENCES))?);
-    }
     let golden: Vec<_> = studies.iter().map(|study| read(&study.name)).collect();
     // Where no golden value is compared, a record is held as far as its verdicts go.
     let is_alone = studies.iter().zip(&golden).filter(|(_, golden)| golden.is_err());

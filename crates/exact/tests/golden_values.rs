@@ -1,9 +1,6 @@
-//! The exact solutions as golden values, with the bounds that they give on their own errors: a fault
-//! in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
+//! Values of every exact solution on a few places and times, with the bounds that it gives on its own error, as a
+//! snapshot: a fault in one shows at its own numbers, and not only in the errors of those scenes that happen to use it.
 
-use crate::golden::GoldenFile;
-use crate::golden::tolerance::spread_by_group;
-use crate::study::perturbed::LastDigit;
 use oedometer_exact::cosine_layer::CosineLayer;
 use oedometer_exact::dynamic_column::{DynamicColumn, Start};
 use oedometer_exact::exact_error::ExactError;
@@ -15,9 +12,6 @@ use oedometer_exact::xie_leo::{Drainage, XieLeo};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use std::collections::BTreeMap;
-
-/// Name under which their golden values are kept.
-pub const REFERENCES: &str = "references";
 
 /// Time factors: before and after the front reaches the base, and on both sides of the switch
 /// between images and modes.
@@ -35,41 +29,6 @@ const LOADED_AT: f64 = 1e-3;
 const TIMES_OF_GROWTH: [f64; 3] = [2e-4, 1e-3, 5e-3];
 /// Bounds of nothing at all count as this.
 const LEAST_BOUND: f64 = 1e-300;
-
-impl GoldenFile {
-    /// The present values of the exact solutions as golden, for a reason.
-    ///
-    /// # Errors
-    /// When a solution refuses its column: a fault of this program.
-    pub fn of_references(reason: &str) -> Result<Self, ExactError> {
-        let values = reference_values()?;
-        let spread = spread_by_group(&values, &perturbed_reference_values()?);
-        let golden = Self { seconds: None, values, ..Self::of(REFERENCES, &[], reason) };
-        Ok(golden.widened_by(spread))
-    }
-}
-
-/// Pressures, stresses, displacements and degrees of every solution on a few places and times, and the
-/// bounds on what their sums leave out.
-///
-/// # Errors
-/// When a solution refuses the column: a fault of this program.
-pub fn reference_values() -> Result<BTreeMap<String, f64>, ExactError> {
-    values_of_column(&ColumnParameters::default())
-}
-
-/// [`reference_values`] with the last digit of one input after the other changed: what they move by is round-off.
-///
-/// # Errors
-/// When a solution refuses the column: a fault of this program.
-pub fn perturbed_reference_values() -> Result<Vec<BTreeMap<String, f64>>, ExactError> {
-    let perturbed = LastDigit::ALL.map(|digit| {
-        let mut column = ColumnParameters::default();
-        digit.change(&mut column.soil.youngs_modulus, &mut column.soil.hydraulic_conductivity);
-        values_of_column(&column)
-    });
-    perturbed.into_iter().collect()
-}
 
 /// Values by the names `case | what T_v=time`.
 #[derive(Default)]
@@ -180,6 +139,7 @@ impl Values {
     }
 }
 
+/// Values of every solution on the seed column and on softer ones.
 fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, ExactError> {
     let mut values = Values::default();
     let soft = ColumnParameters {
@@ -211,4 +171,16 @@ fn values_of_column(seed: &ColumnParameters) -> Result<BTreeMap<String, f64>, Ex
     values.note_waves(seed)?;
     values.note_layers(seed)?;
     Ok(values.0)
+}
+
+/// Values below this are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+#[test]
+fn exact_solutions_keep_their_values() {
+    let values = values_of_column(&ColumnParameters::default()).expect("every solution takes the seed column");
+    let lines = values.iter().map(|(name, value)| {
+        if value.abs() < ROUND_OFF { format!("{name}: 0") } else { format!("{name}: {value:.9e}") }
+    });
+    insta::assert_snapshot!(lines.collect::<Vec<_>>().join("\n"));
 }
