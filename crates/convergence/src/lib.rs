@@ -8,7 +8,7 @@
 //! | [`classify`] | class of a series, before any order is quoted | the rules are listed at [`classify`] |
 //! | [`hidden_floor`] | floor of `e = C h^p + F` | variable projection (Golub & Pereyra 1973), F-test |
 //! | [`ValueSeries::uncertainty`] | uncertainty of a value without an exact solution | grid convergence index: Roache (1998), Celik et al. (2008); least squares: Eça & Hoekstra (2014) |
-//! | [`front`], [`predict_next`] | Pareto front of error and cost; cost and error of one more level | – |
+//! | [`front`] | Pareto front of error and cost | – |
 //! | [`SeriesDemand`] | what a study expects of a series | – |
 
 // Tests may call the platform's functions: a second opinion there.
@@ -28,7 +28,7 @@ pub use demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
 pub use fit::floor::hidden_floor;
 pub use limiter::{Limiter, LimiterKind};
 pub use orders::{SlopeFit, WINDOW, finest_order, pair_orders, slope};
-pub use pareto::{CostLevel, CostPoint, LevelPrediction, ParetoChange, front, predict_next};
+pub use pareto::{CostPoint, ParetoChange, front};
 pub use series::{ErrorSeries, SeriesLevel, Undefined};
 pub use uncertainty::{
     Behaviour, ErrorModel, Estimator, GridConvergence, GridUncertainty, LeastSquaresUncertainty,

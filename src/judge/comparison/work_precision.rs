@@ -1,16 +1,13 @@
 //! Error against cost: timed runs by error and wall time.
 
 use crate::case::Quantity;
-use crate::judge::paths::{Path, first_error, first_measure, paths};
+use crate::judge::paths::first_error;
 use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
-use crate::study::expectation::Axis;
-use oedometer_convergence::{CostLevel, CostPoint, LevelPrediction, front, predict_next};
+use oedometer_convergence::{CostPoint, front};
 
 /// Tolerances of the comparison.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
-/// Ratio of the cell size of one more level.
-const REFINEMENT: f64 = 2.0;
 
 /// A timed run.
 #[derive(Clone, Debug)]
@@ -34,19 +31,6 @@ pub struct Cheapest<'a> {
     pub run: Option<TimedRun<'a>>,
 }
 
-/// One more level of a path over the mesh, as its last levels predict it.
-#[derive(Clone, Debug)]
-pub struct NextLevel {
-    /// Label of the path.
-    pub label: String,
-    /// Wall time, s, and error of its finest level.
-    pub finest: CostPoint,
-    /// Wall time and error of the next.
-    pub next: LevelPrediction,
-    /// The finest level as the coarser ones predict it: shows how far such predictions can be trusted.
-    pub finest_predicted: Option<LevelPrediction>,
-}
-
 /// Timed runs of one study.
 #[derive(Clone, Debug)]
 pub struct WorkPrecision<'a> {
@@ -54,8 +38,6 @@ pub struct WorkPrecision<'a> {
     pub runs: Vec<TimedRun<'a>>,
     /// The cheapest run within each tolerance.
     pub cheapest: Vec<Cheapest<'a>>,
-    /// One more level of each path.
-    pub next_levels: Vec<NextLevel>,
     /// How far from 1 the ratio of a run to itself was in this session, the median over
     /// the runs; `None` for fewer than two repeats.
     pub noise_floor: Option<f64>,
@@ -80,7 +62,6 @@ impl<'a> WorkPrecision<'a> {
         });
         Some(Self {
             cheapest: cheapest.to_vec(),
-            next_levels: next_levels(records, reference),
             noise_floor: session_noise(&runs),
             runs,
         })
@@ -122,43 +103,13 @@ fn session_noise(runs: &[TimedRun<'_>]) -> Option<f64> {
     median(&floors)
 }
 
-fn next_levels(records: &[Record], reference: &str) -> Vec<NextLevel> {
-    let of_path = |path: Path<'_>| {
-        let levels: Vec<CostLevel> = path
-            .records
-            .iter()
-            .filter_map(|record| {
-                let run = timed(record, reference)?;
-                Some(CostLevel { size: record.case.cell_size(), point: run.point() })
-            })
-            .collect();
-        let last = *path.records.last()?.case.time_factors.last()?;
-        let class_of = |path: &Path<'_>| {
-            let sample = path.records[0].main_sample();
-            path.summary(&first_measure(Quantity::Pressure, sample, reference, last)).classification
-        };
-        let next = predict_next(&levels, &class_of(&path), REFINEMENT)?;
-        let (finest, coarser) = levels.split_last()?;
-        let records = path.records[..path.records.len() - 1].to_vec();
-        let coarser_path = Path { axis: path.axis, records };
-        let ratio = coarser.last()?.size / finest.size;
-        let finest_predicted = predict_next(coarser, &class_of(&coarser_path), ratio);
-        Some(NextLevel { label: path.label(), finest: finest.point, next, finest_predicted })
-    };
-    paths(records, Axis::Cells)
-        .into_iter()
-        .filter(|path| path.records.len() > 2)
-        .filter_map(of_path)
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
 
-    const STUDY: &str = r#"title = "One more level"
+    const STUDY: &str = r#"title = "Costs"
 scene = "terzaghi"
 
 [output]
@@ -172,7 +123,7 @@ time_step = [{ growth = 0.005 }]
 "#;
 
     #[test]
-    fn the_coarser_levels_predict_cost_and_error_of_the_finest() {
+    fn the_cheapest_run_within_a_tight_tolerance_is_of_second_order() {
         let mut records = records_of(STUDY);
         for record in &mut records {
             // A cost that is the same on every machine.
@@ -180,14 +131,6 @@ time_step = [{ growth = 0.005 }]
             record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
         let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
-        assert_eq!(precision.next_levels.len(), 2);
-        for level in &precision.next_levels {
-            let predicted = level.finest_predicted.expect("four coarser levels");
-            let cost = predicted.cost / level.finest.cost;
-            let error = predicted.error.expect("it converges") / level.finest.error;
-            assert!((cost - 1.0).abs() < 0.15, "{}: cost {cost} of the measured one", level.label);
-            assert!((error - 1.0).abs() < 0.1, "{}: error {error} of the measured one", level.label);
-        }
         // Within the tightest tolerance that both reach, the cheapest is the method of second order.
         let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
         assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());

@@ -4,7 +4,7 @@
 use crate::case::IntegratorKind;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::peers::{self, Comparison, Peer};
-use crate::judge::comparison::work_precision::{NextLevel, TimedRun, WorkPrecision};
+use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
 use crate::measure::statistics::spread;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
@@ -103,36 +103,11 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
         Block::Table(cheapest_table(&precision)),
     ];
-    if !precision.next_levels.is_empty() {
-        blocks.push(Block::Table(next_table(&precision.next_levels)));
-    }
     if peers::solve_their_column(&precision.runs) {
         blocks.push(Block::Table(peers_table(&precision)));
         blocks.push(Block::Table(peer_series_table()));
     }
     blocks
-}
-
-/// What one more level would cost and bring, and how well the coarser levels predict the finest.
-fn next_table(levels: &[NextLevel]) -> Table {
-    let share = |off: Option<f64>| Cell::of(off, Cell::Percent, "the coarser levels do not predict it");
-    let rows = levels.iter().map(|level| {
-        let predicted = level.finest_predicted;
-        vec![
-            level.label.as_str().into(),
-            Cell::Number(1e3 * level.finest.cost),
-            Cell::Error(level.finest.error),
-            Cell::Number(1e3 * level.next.cost),
-            Cell::of(level.next.error, Cell::Error, "the series does not converge"),
-            share(predicted.map(|one| one.cost / level.finest.cost - 1.0)),
-            share(predicted.and_then(|one| one.error).map(|error| error / level.finest.error - 1.0)),
-        ]
-    });
-    let header = "runs | > finest mesh: wall [ms] | > error | > next mesh, predicted: wall [ms] | > error \
-                  | > finest mesh predicted from the coarser ones: wall off by | > error off by";
-    Table::of("One more level: cells half as large", columns(header), rows).note(
-        "the cost grows as a power of the cell size; the error falls with the order and floor of its class",
-    )
 }
 
 /// Slot of the markers of other programs, which no integrator has.

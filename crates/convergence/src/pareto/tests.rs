@@ -1,15 +1,8 @@
 use super::*;
-use crate::class::{Context, classify};
-use crate::series::ErrorSeries;
 use proptest::prelude::*;
 
 fn point(cost: f64, error: f64) -> CostPoint {
     CostPoint { cost, error }
-}
-
-fn levels(cost: fn(f64) -> f64, error: fn(f64) -> f64) -> Vec<CostLevel> {
-    let sizes = [0.2, 0.1, 0.05, 0.025, 0.0125];
-    sizes.map(|size| CostLevel { size, point: point(cost(size), error(size)) }).to_vec()
 }
 
 #[test]
@@ -24,26 +17,6 @@ fn the_front_has_what_nothing_beats() {
         point(4.0, 0.1),
     ];
     assert_eq!(front(&points), [true, true, false, false, false, true, true]);
-}
-
-#[test]
-fn the_next_level_is_predicted_with_and_without_a_floor() {
-    let series = |error: fn(f64) -> f64| {
-        let levels = levels(|h| 3.0 / h.powi(3), error);
-        let pairs: Vec<_> = levels.iter().map(|level| (level.size, level.point.error)).collect();
-        let context = Context { formal_order: Some(2.0), ..Context::default() };
-        let class = classify(&ErrorSeries::of(&pairs), &context);
-        predict_next(&levels, &class, 2.0).unwrap()
-    };
-    let size: f64 = 0.00625;
-    let clean = series(|h| h * h);
-    assert!((clean.cost / (3.0 / size.powi(3)) - 1.0).abs() < 1e-12);
-    assert!((clean.error.unwrap() / (size * size) - 1.0).abs() < 1e-12);
-    assert!((clean.cost_exponent - 3.0).abs() < 1e-12 && (clean.size - size).abs() < 1e-15);
-    let floored = series(|h| h * h + 2e-4);
-    assert!((floored.error.unwrap() / (size * size + 2e-4) - 1.0).abs() < 1e-6);
-    assert_eq!(series(|h| 1.0 / h).error, None);
-    assert_eq!(series(|_| f64::MIN_POSITIVE).error, None);
 }
 
 proptest! {
