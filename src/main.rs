@@ -1,4 +1,4 @@
-//! The door: everything behind it is in the library.
+//! Calls the library and nothing else.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! Runs the cases of a study, each by whom it is given to: this program, or an attached solver; and times them alone.
+//! Runs the cases of a study with this program or an attached solver, and times them alone.
 
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
 use crate::campaign::run_report::{Progress, RunError};

@@ -1,4 +1,4 @@
-//! How long the processor has worked on a run, for which other programs do not count.
+//! Processor time of a run, which the load of the machine hardly changes.
 
 /// Seconds that this thread has worked on a processor, where the system tells.
 pub fn thread_seconds() -> Option<f64> {

@@ -1,4 +1,4 @@
-//! Runs the cases of a study: in parallel, resumable, every finished case on disk at once.
+//! Runs the cases of a study in parallel, resumably, with every finished case on disk at once.
 
 pub mod case_run;
 pub mod case_runner;

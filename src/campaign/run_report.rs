@@ -1,4 +1,4 @@
-//! What the runner tells: while it works, at its end, and where it could not go on.
+//! What the runner reports: progress, the end, and why it could not continue.
 
 use crate::case::Case;
 use crate::record::provenance::Origins;

@@ -1,4 +1,4 @@
-//! Runs cases side by side and keeps each record as soon as it is there.
+//! Runs cases in parallel and keeps each record as soon as it is finished.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::run_report::{LongestCase, Progress, RunError, RunReport};

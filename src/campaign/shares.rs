@@ -1,4 +1,4 @@
-//! Shares of the cases for several machines: by hash, or by what the cases cost.
+//! Splits the cases between several machines, by hash or by estimated cost.
 
 use crate::case::Case;
 use crate::case::work_estimate::{estimated_seconds, estimated_work};

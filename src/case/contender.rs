@@ -1,4 +1,4 @@
-//! The contenders of the race: what a sweep with `method = ["race"]` runs, one line each.
+//! The contenders of the race, one line each: what `method = ["race"]` runs.
 
 use crate::case::Case;
 use crate::case::keys::{Key, Value};

@@ -1,4 +1,4 @@
-//! What a case is called: its method, its meshes and what is special about it.
+//! Labels of cases: the method, the meshes and what differs from the defaults.
 
 use crate::case::keys::{Key, Value};
 use crate::case::{Case, Task, USUAL_POINTS, step_label};

@@ -1,4 +1,4 @@
-//! What a case cannot be, and why: combinations of inputs that are possible one by one.
+//! Combinations of inputs that are invalid although each input alone is valid, with the reason.
 
 use crate::case::{Case, Task};
 use oedometer_mpm::method::{Basis, Configuration, Memory};

@@ -1,4 +1,4 @@
-//! The cases of a study in their order, each once, and what neighbours have in common kept once too.
+//! The cases of a study in order, each once, with the inputs that neighbours share stored once.
 
 use crate::case::Case;
 use crate::case::tier::Tier;

@@ -1,4 +1,4 @@
-//! What is measured, and where.
+//! Measured quantities and the places where they are sampled.
 
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
 use oedometer_soil::wording::words;

@@ -1,4 +1,4 @@
-//! What neighbouring cases have in common: kept once, read as if each had its own.
+//! Inputs that neighbouring cases share: stored once, read as if each case had its own.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;

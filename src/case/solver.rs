@@ -1,4 +1,4 @@
-//! What solves a case: a method of this program, or an attached solver with its name and digest.
+//! The solver of a case: a method of this program, or an attached solver with its name and digest.
 
 use oedometer_mpm::method::Method;
 use serde::{Deserialize, Serialize};

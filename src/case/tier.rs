@@ -1,4 +1,4 @@
-//! How much of a study is run.
+//! Tiers of a study: how much of it runs.
 
 use oedometer_soil::wording::words;
 

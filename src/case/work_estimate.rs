@@ -1,4 +1,4 @@
-//! How much work a case will be, before it runs.
+//! Estimates the work of a case before it runs.
 
 use crate::case::step_cost::{CASE_SECONDS, seconds_per_step};
 use crate::case::{Case, Task};

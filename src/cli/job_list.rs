@@ -1,4 +1,4 @@
-//! Job lists: the commands that run the shares of a campaign, one a line, for whatever starts them.
+//! Job lists: the commands that run the shares of a campaign, one per line, for any scheduler.
 
 use crate::campaign::shares::{Parting, balance_of, shares_of};
 use crate::case::Case;

@@ -1,4 +1,4 @@
-//! The tables of a study, made of the records that its store keeps.
+//! Writes the tables of a study from its stored records.
 
 use crate::case::Case;
 use crate::case::tier::Tier;

@@ -1,4 +1,4 @@
-//! What a person wants to know of time before it is spent: how long, and what takes less.
+//! Notes on long runs before they start: the estimated time, and what would take less.
 
 use crate::campaign::run_report::LongestCase;
 use crate::case::keys::{Key, Value};

@@ -1,4 +1,4 @@
-//! A solver of a study, ready to run its cases.
+//! An attached solver of a study, ready to run its cases.
 
 use crate::case::Case;
 use crate::case::quantity::Sample;

@@ -1,4 +1,4 @@
-//! What an attached solver is told of a case: the file `case.json`.
+//! Writes `case.json`, which tells an attached solver what to solve.
 
 use crate::case::Case;
 use crate::case::keys::Key;

@@ -1,4 +1,4 @@
-//! Somebody else's solver, run on a case: what it is told, how it is started and ended, how its result is taken.
+//! Attached solvers: writes the case file, starts and ends the program, and reads its result.
 
 pub mod attachment;
 pub mod case_file;

@@ -1,4 +1,4 @@
-//! One run of a program: in a folder and a process group of its own, without input, bounded in time and output.
+//! Runs a program in its own folder and process group, without input, with limits on time and output.
 
 use crate::foreign::started_processes::{Family, Found, MARK, Mark};
 use std::collections::VecDeque;

@@ -1,4 +1,4 @@
-//! What an attached solver is made of: its program, and all that lies beside its adapter.
+//! Digest of an attached solver: its program and all files beside its adapter.
 
 use crate::study::check::solvers::digest_of_file;
 use crate::study::solver::ExternalSolver;

@@ -1,4 +1,4 @@
-//! Reads the files that a solver left as states, and says what they were read as.
+//! Reads the result files of a solver as states, and reports how they were read.
 
 use crate::case::Case;
 use crate::case::quantity::Sample;

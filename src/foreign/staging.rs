@@ -1,5 +1,5 @@
-//! What a run needs: the words that start it, with placeholders filled in and files of the adapter found beside the study,
-//! and its folder, fresh, under a name of its own until the run is whole, then beside the record.
+//! Prepares a run: fills in the placeholders of its command, finds the files of the adapter beside the study, and makes
+//! a fresh folder that takes its final name when the run is complete.
 
 use crate::case::Case;
 use crate::foreign::case_file::suggested_step;

@@ -1,5 +1,5 @@
-//! The processes that a run of a program has started, those among them that left its group or closed its streams too:
-//! found, ended, and named by what was seen.
+//! Finds and ends the processes that a program has started, including those that left its process group or closed their
+//! streams.
 
 use std::process::Child;
 use std::sync::atomic::{AtomicUsize, Ordering};

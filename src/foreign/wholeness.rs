@@ -1,5 +1,5 @@
-//! Whether a result has all that was asked for: a state at every output, and samples over the whole height; and whether the
-//! repeats of a run gave the same result.
+//! Checks that a result is complete: a state at every output, samples over the whole height, and equal results of
+//! repeated runs.
 
 use crate::case::Case;
 use crate::import::SampledState;

@@ -1,4 +1,4 @@
-//! The text of a golden file: a header and a table. The format is told in [`crate::golden`].
+//! Reads and writes the text of a golden file, whose format is described in [`crate::golden`].
 
 use crate::golden::{GoldenFile, SCHEMA, WITHOUT_INPUTS, parts};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,5 +1,4 @@
-//! Inputs of the cases that golden values are of, and what differs in them: a value that moved because its input did
-//! is told by its input first.
+//! Inputs of the cases of a golden file, and which of them changed: a changed input explains changed values.
 
 use crate::case::Case;
 use crate::case::keys::Key;

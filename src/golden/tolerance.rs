@@ -1,5 +1,5 @@
-//! The tolerance of each golden value, from how far round-off alone was seen to move it, and the bounds on what a
-//! file may allow: a tolerance leaves room for round-off, and one that lets an error of the method pass is refused.
+//! The tolerance of each golden value, from the effect of round-off, and limits on the tolerances of a file: one that
+//! hides an error of the method is refused.
 
 use crate::golden::{GoldenFile, is_counter, parts};
 use std::collections::BTreeMap;

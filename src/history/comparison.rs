@@ -1,4 +1,4 @@
-//! Two states beside each other: inputs that differ first, then accuracy and cost, apart.
+//! Compares two states of a study: changed inputs first, then accuracy and cost separately.
 
 use crate::golden::compare::{
     CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,

@@ -1,4 +1,4 @@
-//! A git repository, asked by the program `git` itself.
+//! Reads a git repository by the program `git`.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};

@@ -1,4 +1,4 @@
-//! Two commands of an attached solver, run in turn on the cases of a study.
+//! Runs two commands of an attached solver in alternating rounds on the cases of a study.
 
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::tier::Tier;

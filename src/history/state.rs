@@ -1,4 +1,4 @@
-//! One state of studies: their values, and the inputs that they belong to.
+//! One state of the studies: their values and the inputs that produced them.
 
 use crate::case::tier::Tier;
 use crate::golden::GoldenFile;

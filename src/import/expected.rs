@@ -1,4 +1,4 @@
-//! The quantities that every state of a result must have: one that is missing has no error, and no gate would see it.
+//! Quantities that every state of a result must have; a missing one would pass unseen.
 
 use crate::case::quantity::Quantity;
 use crate::import::mapping::{Column, DeclaredBy, Mapping};

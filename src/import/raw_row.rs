@@ -1,4 +1,4 @@
-//! One row in the units and signs of its file, and how it becomes a sample in SI.
+//! One row in the units and signs of its file, and its conversion to a sample in SI.
 
 use crate::case::Case;
 use crate::import::mapping::mapping_parts::StressKind;

@@ -1,4 +1,4 @@
-//! From the files that a user gives to runs: files found, their states grouped by mesh, times and rows read.
+//! Groups the files that a user gives into runs by mesh, and reads their times and rows.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::import::expected::Expected;

@@ -1,4 +1,4 @@
-//! The state of a column or a layer as samples, collected row by row.
+//! Collects the state of a column or a layer as samples, row by row.
 
 use crate::import::mapping::Column;
 use oedometer_formats::ImportError;

@@ -1,4 +1,4 @@
-//! Times of files with one step each: by name, from a list, or from the number of the step.
+//! Times of files with one step each: from the name, a list, or the step number.
 
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;

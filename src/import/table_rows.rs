@@ -1,4 +1,4 @@
-//! Tables of text: a file is opened by its declared layout, and its lines become rows in SI.
+//! Reads text tables by their declared layout as rows in SI.
 
 use crate::import::expected::left_out;
 use crate::import::mapping::mapping_parts::SettlementSeries;

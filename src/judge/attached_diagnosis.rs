@@ -1,4 +1,4 @@
-//! What seems to be wrong with the results of a study's attached solvers, as `score` tells it of files.
+//! Likely causes of wrong results of attached solvers, as `score` reports them for files.
 
 use crate::case::Case;
 use crate::foreign::reading::mapping_of;

@@ -1,5 +1,5 @@
-//! Where the error of one case comes from: the norm and place that dominate it, its place among the other levels of
-//! its study, and the changes from the golden values.
+//! Explains the error of one case: the dominant norm and place, the other levels of its study, and changes from the
+//! golden values.
 
 use crate::case::{Case, Norm};
 use crate::golden::compare::{Difference, compare};

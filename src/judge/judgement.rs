@@ -1,4 +1,4 @@
-//! From the paths of a study to verdicts on what it expects.
+//! Judges the expectations of a study on the paths of its records.
 
 use crate::case::{Case, Tier};
 use crate::golden::GoldenFile;

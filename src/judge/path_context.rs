@@ -1,5 +1,5 @@
-//! What is known along a path of runs besides the errors: formal order, possible causes of a floor, signs,
-//! mobility, oscillation, and the values of quantities without a reference.
+//! What is known along a path of runs beside the errors: formal order, possible causes of a floor, signs, mobility,
+//! oscillation, and values without a reference.
 
 use crate::case::{Case, Norm, Quantity, Sample};
 use crate::judge::paths::{Path, level_size};

@@ -1,4 +1,4 @@
-//! From the records of a study to its paths and their series of errors.
+//! Groups the records of a study into paths along an axis, with their series of errors.
 
 use crate::case::{Norm, Quantity, Sample, step_label};
 use crate::judge::explanation::place_of_attached;

@@ -1,4 +1,4 @@
-//! Expectations that today's results meet, for a study that has none: proposed, to be pasted into its file, never demanded.
+//! Proposes expectations that the present results meet, for a study without any.
 //!
 //! Every series along an axis that is refined gets one: the order, where its class has one, and the error at the finest
 //! level. The room is less than what a worse solver takes: half an order, or twice the error.

@@ -1,5 +1,5 @@
-//! What must hold for every record, whatever a study expects and whatever the golden values are: a lost point, or a
-//! reference no more accurate than the result, invalidates any verdict.
+//! Requirements on every record, whatever a study expects: a lost point, or a reference no more accurate than the
+//! result, invalidates any verdict.
 
 use crate::case::Quantity;
 use crate::judge::proposals;

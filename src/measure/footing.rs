@@ -1,5 +1,5 @@
-//! What is measured of a footing: its load against that of collapse, how the load goes on rising, and how the pressure
-//! under it jumps.
+//! Measures of a footing: its load over the collapse load, the slope of its plateau, and jumps of the pressure below
+//! it.
 
 use crate::case::{Case, Norm, Quantity, Sample};
 use crate::record::{ErrorRow, MeasureRow};

@@ -1,5 +1,5 @@
-//! Measures of a run besides errors of fields: the peak of a pressure, spurious velocities at rest, and balances of two
-//! layers.
+//! Measures other than field errors: the peak of a pressure, spurious velocities at rest, and balances of double-point
+//! MPM.
 
 use crate::case::Case;
 use crate::measure::footing::measures_of_footing;

@@ -1,4 +1,4 @@
-//! From a run, of this program or of an attached solver, to its record.
+//! Makes the record of a run of this program or of an attached solver.
 
 use crate::case::Case;
 use crate::measure::balances::{balance, curve_gap, start_checks};

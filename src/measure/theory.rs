@@ -1,5 +1,5 @@
-//! References and theory lines of a case, cached: runs and reports use the same ones repeatedly, and one at large
-//! strain has to march in time.
+//! Cached references and theory lines of a case: runs and reports use them repeatedly, and the large-strain one marches
+//! in time.
 
 use crate::case::Case;
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! The record of one case: the waist between solving and everything that is made of it.
+//! The record of one case: all that judgements, tables and reports are made from.
 //!
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.

@@ -1,5 +1,5 @@
-//! What made a record: the program with its version, sources, compiler and target, and the machine; and what made several
-//! records that are taken together.
+//! Provenance of a record: program version, sources, compiler, target and machine; and the provenances of several
+//! records combined.
 
 use crate::record::whole_file::host_name;
 use serde::{Deserialize, Serialize};

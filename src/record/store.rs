@@ -1,4 +1,4 @@
-//! Records on disk: a small study has a folder a case, a large one has packs.
+//! Records on disk: one folder per case in a small study, packs in a large one.
 
 use crate::case::Case;
 use crate::record::pack::{CaseEnd, Damage, Entry, Packs};

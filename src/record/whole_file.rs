@@ -1,5 +1,5 @@
-//! Files that are written whole or not at all, under a name of their own first, then renamed; and texts with a digest as
-//! their last field, by which damage and tampering are seen.
+//! Files that are written completely or not at all, by renaming, and texts with a digest as their last field, which
+//! reveals damage.
 
 use regex_lite::Regex;
 use serde::Serialize;

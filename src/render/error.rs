@@ -1,4 +1,4 @@
-//! What can go wrong between a description and a document.
+//! Errors of rendering.
 
 /// A description that cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! What an exact solution or a score is asked for: a scene or a problem of the shelf, with its numbers.
+//! The problem that an exact solution or a score is asked for: a scene or a shelf problem, with its numbers.
 
 use crate::case::Case;
 use crate::study::check::Study;

@@ -1,4 +1,4 @@
-//! What is wrong with a study file, where, and what would be right.
+//! Messages on mistakes in a study file: what is wrong, where, and what would be right.
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};

@@ -1,4 +1,4 @@
-//! A study as it was typed: every value with its place in the text, nothing judged yet.
+//! A study as typed: every value with its place in the text, before any check.
 
 use crate::case::Task;
 use crate::case::keys::Key;

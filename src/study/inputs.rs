@@ -1,4 +1,4 @@
-//! Inputs of a case in the tables of a study file: which keys each table takes stands in [`KEYS`].
+//! Inputs of a case in the tables of a study file; [`KEYS`] lists which table takes which key.
 //!
 //! [`KEYS`]: crate::case::keys::KEYS
 

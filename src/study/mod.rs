@@ -1,5 +1,4 @@
-//! Studies: what was typed (`file`, `inputs`, `reading`), what will run (`check`, `sweep`), and what must be found
-//! (`expectation`).
+//! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`, `sweep`), and as judged (`expectation`).
 
 pub mod asked;
 pub mod check;

@@ -1,4 +1,4 @@
-//! A study with the last digit of one input changed: what its results move by is round-off.
+//! A study with the last digit of one input changed: the change of its results is round-off.
 
 use crate::case::planned::PlannedCase;
 use crate::study::check::Study;

@@ -1,4 +1,4 @@
-//! Reads TOML into a type. What does not fit is explained by the type's JSON Schema: every mistake at its place.
+//! Reads TOML into a type, and explains every mistake at its place by the type's JSON Schema.
 
 use crate::case::keys::{KEYS, Key};
 use crate::study::diagnostic::{Diagnostic, StudyError, nearest, one_of};

@@ -1,4 +1,4 @@
-//! An external solver, checked: what is started for a case, and how its result is read.
+//! A checked external solver: its command, and how its result is read.
 
 use crate::case::solver::Attached;
 use std::path::PathBuf;

@@ -197,7 +197,6 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
     }
     let Cell::Percent(difference) = under(&table, 0, "difference") else { panic!("a share") };
     assert!((difference - (0.013 / 0.011 - 1.0)).abs() < 1e-12, "{difference}: observed over predicted");
-
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What the exact solutions refuse, in sentences.
+//! Errors of the exact solutions, as sentences.
 
 use thiserror::Error;
 

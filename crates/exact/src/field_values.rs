@@ -1,4 +1,4 @@
-//! What every solution answers: the fields at a place and time, and how far they can be trusted.
+//! The fields that every solution gives at a place and time, and their accuracy.
 
 /// Fields at one depth and time.
 #[derive(Clone, Copy, Debug, PartialEq)]

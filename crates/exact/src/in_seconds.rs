@@ -1,4 +1,4 @@
-//! Columns whose solutions are functions of seconds, by time factor and relative depth.
+//! Adapts solutions in seconds to time factors and relative depths.
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::field_values::{Accuracy, FieldValues};

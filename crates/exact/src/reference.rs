@@ -1,4 +1,4 @@
-//! The door: a reference by its name, its fields by time factor and depth.
+//! Entry point: a reference by its name, with its fields by time factor and depth.
 
 use core::fmt;
 use core::str::FromStr;

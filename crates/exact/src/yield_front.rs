@@ -1,4 +1,4 @@
-//! A soil that yields: a front of yielding moves into a column that drains at its top.
+//! A preconsolidated column in which a front of yielding moves in from the drained top.
 //!
 //! The soil has the oedometric modulus `E₁` where the effective stress is at its largest value so far and beyond the
 //! preconsolidation, and `E₂ > E₁` below. Undrained it stays elastic; as water leaves, places yield from the top on.

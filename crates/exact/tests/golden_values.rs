@@ -178,7 +178,8 @@ const ROUND_OFF: f64 = 1e-12;
 
 #[test]
 fn exact_solutions_keep_their_values() {
-    let values = values_of_column(&ColumnParameters::default()).expect("every solution takes the seed column");
+    let values =
+        values_of_column(&ColumnParameters::default()).expect("every solution takes the seed column");
     let lines = values.iter().map(|(name, value)| {
         if value.abs() < ROUND_OFF { format!("{name}: 0") } else { format!("{name}: {value:.9e}") }
     });

@@ -1,5 +1,4 @@
-//! What acts on a body from outside at every point: body forces and a source of water, each a function of the point
-//! of the skeleton and the time.
+//! Body forces and a water source, as functions of the skeleton point and time.
 //!
 //! A scene whose motion was chosen gives one ([`Forcing`]); [`Forced`] is what a body keeps of it during a run. It is
 //! asked for all points of a time at once: what is of the time alone is then made once.

@@ -1,4 +1,4 @@
-//! A body under its loads: what acts on its surface or on its plate, what the settlement is, and what leaves it.
+//! A body under its loads: forces on its surface or plate, its settlement, and the water that leaves it.
 //!
 //! The plate is rigid, smooth and impermeable and lies on the upper face of the first direction: a constraint.
 //!

@@ -1,4 +1,4 @@
-//! The moment at which a run has to end: asked within what takes long, where no observer is asked.
+//! The deadline of a run, checked inside long computations that no observer interrupts.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Registers of four numbers, where the processor has them.
+//! Four-wide registers, where the processor has them.
 //!
 //! The program is compiled for every 64-bit machine, whose registers hold two numbers. A loop that is handed to
 //! [`wide!`](wide) is compiled a second time for registers of four, and which of the two runs is asked at run time. Both do

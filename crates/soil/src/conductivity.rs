@@ -1,5 +1,5 @@
-//! The hydraulic conductivity as a function of the volume, and the mean that the drag of a node takes of it: who wants
-//! another `k(n)` writes it here.
+//! The hydraulic conductivity as a function of the volume, and its mean for the drag of a node: add another `k(n)`
+//! here.
 
 use crate::elementary;
 use crate::law::Law;

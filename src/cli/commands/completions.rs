@@ -1,4 +1,4 @@
-//! `oedometer completions`: what a shell needs to complete the command line.
+//! `oedometer completions`: shell completions.
 
 use crate::cli::exit::Exit;
 use crate::cli::stream::print_data;

@@ -1,5 +1,4 @@
-//! `oedometer plan`: lists cases with their hashes and estimated times before anything runs, the missing ones, and the
-//! commands that run them in shares.
+//! `oedometer plan`: lists cases with hashes and estimated times, missing cases, and the commands of shares.
 
 use crate::campaign::run_report::LongestCase;
 use crate::campaign::shares::Parting;

@@ -1,4 +1,4 @@
-//! `oedometer records`: what a store of results holds, and single records out of it.
+//! `oedometer records`: lists the records of a folder of results, or prints single ones.
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::json_of;

@@ -1,4 +1,4 @@
-//! `oedometer run`: the cases of study files, their records and one tidy CSV a study.
+//! `oedometer run`: runs the cases of study files and writes their records and one tidy CSV per study.
 
 use crate::campaign::case_runner::time_study;
 use crate::campaign::run_report::{RunError, RunReport, Tally};

@@ -1,4 +1,4 @@
-//! What is asked of Slurm: to take a script, what became of it, and how many tasks an array may have.
+//! Queries of Slurm: submit a script, follow its tasks, and ask for the largest array.
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;

@@ -1,4 +1,4 @@
-//! The scripts of a campaign, and the words that submit them.
+//! Scripts of a campaign and the commands that submit them.
 
 use crate::cli::job_list::{JobList, quoted};
 use crate::cli::slurm::{ClusterArguments, FOLDER};

@@ -1,4 +1,4 @@
-//! Mappings that are built in: those of known programs, which a user's own mapping overrides, and the convention.
+//! Built-in mappings for known programs and the default; a mapping of the user overrides them.
 
 use crate::import::mapping::{DeclaredBy, Mapping};
 use crate::study::diagnostic::StudyError;

@@ -60,11 +60,7 @@ impl<'a> WorkPrecision<'a> {
             tolerance,
             run: runs.iter().find(|run| run.error <= tolerance).cloned(),
         });
-        Some(Self {
-            cheapest: cheapest.to_vec(),
-            noise_floor: session_noise(&runs),
-            runs,
-        })
+        Some(Self { cheapest: cheapest.to_vec(), noise_floor: session_noise(&runs), runs })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Scores of contenders in situations: ratios to the best, ranks, and what follows from them. Numbers alone.
+//! Scores of contenders in situations: ratios to the best, ranks, and conclusions. Numbers only.
 //!
 //! Scores of different situations have no common unit, so that only ranks and ratios are compared. Scores that differ by
 //! less than their scatter are equal.

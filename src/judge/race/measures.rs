@@ -1,4 +1,4 @@
-//! What is measured of a contender's runs in a situation.
+//! Measures of a contender's runs in a situation.
 
 use crate::case::contender::Contender;
 use crate::case::{Quantity, Sample};

@@ -1,4 +1,4 @@
-//! What seems to be wrong with an external result's numbers.
+//! Likely mistakes behind the numbers of an external result.
 //!
 //! Each possible mistake is corrected as a trial, with nothing fitted but a gradient; it is named only where
 //! the corrected numbers agree with the exact ones and the given ones do not. A solver that is merely

@@ -1,4 +1,4 @@
-//! The results that are scored: their times are matched, and each is compared with the references.
+//! Matches the times of the results to be scored and compares each with the references.
 
 use crate::case::Case;
 use crate::case::quantity::Quantity;

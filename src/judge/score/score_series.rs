@@ -1,5 +1,5 @@
-//! Orders and classes of external results on finer and finer meshes, and the grouping of their times: no two programs,
-//! and no two meshes of an explicit one, stop at the same instant.
+//! Orders and classes of external results on refined meshes, and the grouping of their times, which differ slightly
+//! between programs and meshes.
 
 use crate::case::{Norm, Quantity, Sample};
 use crate::import::SampledState;

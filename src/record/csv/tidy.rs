@@ -1,4 +1,4 @@
-//! One row a measure: the tidy CSV of a study.
+//! The tidy CSV of a study: one row per measure.
 
 use crate::case::Case;
 use crate::case::keys::{KEYS, Key};

@@ -1,4 +1,4 @@
-//! The pages behind the answers: one a study over its records, and the list of all.
+//! The pages behind the answers: one per study, and the list of all studies.
 
 mod checks;
 pub(crate) mod cost;

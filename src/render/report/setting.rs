@@ -1,5 +1,4 @@
-//! What a study solves, in numbers that a reader can picture: geometry and soil, the settlement in millimetres and a unit of
-//! the time factor in days.
+//! The setting of a study in everyday units: geometry and soil, settlement in millimetres, time in days.
 
 use crate::case::Case;
 use crate::record::Record;

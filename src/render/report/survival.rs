@@ -1,4 +1,4 @@
-//! How every case of a hard study ended, a row a setup and a column a method.
+//! How every case of a hard study ended: one row per setup, one column per method.
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};

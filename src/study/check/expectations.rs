@@ -1,5 +1,4 @@
-//! Checks of what a study expects: the blocks `[[expect]]` of series, `[[expect_case]]` of single cases, and whether
-//! any case can answer them.
+//! Checks `[[expect]]` and `[[expect_case]]` blocks, and that some case can answer each.
 
 use crate::case::keys::{MOST_CELLS, MOST_POINTS, Value};
 use crate::case::norm::Norm;

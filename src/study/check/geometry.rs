@@ -1,5 +1,4 @@
-//! Checks of where the soil is, what it is made of and what loads it: the tables `[column]`, `[layer]`,
-//! `[manufactured]` and `[material]`.
+//! Checks geometry, material and loads: the tables `[column]`, `[layer]`, `[manufactured]` and `[material]`.
 
 use crate::case::keys::{Key, Value};
 use crate::case::planned::PlannedCase;

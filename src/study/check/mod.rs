@@ -1,4 +1,4 @@
-//! From what was typed to what will run: every value judged, every complaint at its place.
+//! Checks a study as typed, reports every mistake at its place, and plans its cases.
 
 mod expectations;
 mod geometry;

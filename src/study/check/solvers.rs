@@ -1,5 +1,4 @@
-//! Checks of attached solvers and of results that they have left: names, commands, placeholders, files; and the digest
-//! that identifies them.
+//! Checks attached solvers and existing results: names, commands, placeholders, files; and makes their digest.
 
 use crate::case::Case;
 use crate::case::keys::MOST_CELLS;

@@ -1,4 +1,4 @@
-//! Checks of the blocks `[[sweep]]`: their axes, the cases they multiply out to, the integrator and labels of these.
+//! Checks `[[sweep]]` blocks: their axes, the cases they multiply out to, and the integrators and labels of these.
 
 use crate::case::contender::{CONTENDERS, Contender, RACE};
 use crate::case::keys::{Key, Value};

@@ -1,4 +1,4 @@
-//! A series that can be evaluated, and the description of a floor under it.
+//! A series that can be evaluated, and the description of its floor.
 
 use crate::class::{Class, Classification, Context, Floor};
 use crate::fit::approach_to_limit::{Approach, CancellingFit};

@@ -1,4 +1,4 @@
-//! A single level that the others contradict: a run of another case, an output of another time, a wrong unit.
+//! A single level that contradicts the others: another case, output time or unit by mistake.
 //!
 //! The order on the finest window may not show it. It is named where no smooth curve goes through all levels and one goes
 //! through all levels but this.

@@ -1,4 +1,4 @@
-//! The column under a load that grows, as Terzaghi's growing pressures and the modes beyond them.
+//! The column under a growing load: Terzaghi's pressures plus modes.
 //!
 //! Steady growth builds up pressures that may be a million times the load, and never comes about: as
 //! a departure from it the sum of the modes would cancel as many digits. The diffusion of storage alone

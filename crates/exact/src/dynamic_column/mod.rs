@@ -1,4 +1,4 @@
-//! The column with inertia of both phases, exact.
+//! The exact column with inertia of both phases.
 
 mod growing;
 mod modes;

@@ -1,4 +1,4 @@
-//! How many modes are summed, what the others may add, and the waves of the modes at a depth.
+//! Truncation of the modal sum with its bound, and the waves of the modes at a depth.
 
 use crate::consolidation::eigenvalue;
 use crate::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode, ModeState};

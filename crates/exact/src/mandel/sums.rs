@@ -1,4 +1,4 @@
-//! The sums that Mandel's fields are made of.
+//! The sums in Mandel's fields.
 
 use crate::parameters::ColumnParameters;
 use oedometer_soil::elementary;

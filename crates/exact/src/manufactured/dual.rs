@@ -1,4 +1,4 @@
-//! Automatic differentiation of the formulas of a motion, at four places at a time.
+//! Automatic differentiation of the formulas of a motion, at four places at once.
 //!
 //! A manufactured motion is written down once, as a formula; accelerations, divergences and sources follow from it to
 //! round-off. [`Dual`] is a number with its derivatives along X, Y and t; a dual number of dual numbers ([`Jet`]) has the

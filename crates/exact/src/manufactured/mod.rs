@@ -1,4 +1,4 @@
-//! Manufactured solutions: large strain in the plane that is exact because it was chosen.
+//! Manufactured solutions: prescribed motions at large strain in the plane, with the body forces that make them exact.
 //!
 //! A motion of the unit square and a pore pressure are written down; velocities, porosity, flux, stresses and
 //! accelerations follow from them, and whatever is left of the balances is put on the body as body forces of

@@ -1,4 +1,4 @@
-//! Motions of the unit square that are written down: where a point of the skeleton is, and which.
+//! Prescribed motions of the unit square.
 //!
 //! What the formulas take of a place ([`Spot`]) and of a time ([`Moment`]) is made once for a point and once a step:
 //! no sine is left where points and times meet, but those of an angle that is of both.

@@ -1,4 +1,4 @@
-//! All that follows from a motion and a pressure at a point of the skeleton and a time.
+//! Kinematics, stresses and residuals of a prescribed motion and pressure at a skeleton point and time.
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 

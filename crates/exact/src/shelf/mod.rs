@@ -1,4 +1,4 @@
-//! The shelf: problems of poromechanics that other programs are tested by and no scene of this one solves.
+//! Exact problems used in the tests of other programs, without a solver in this one.
 //!
 //! | name | problem | source |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! The energy of a frozen body on its way, by the forces that its step is made of, and what its forces leave unbalanced.
+//! Energy and unbalanced forces of a frozen body during a run.
 //!
 //! With the forces `K_σ u` and `K_p U` of the displacement `u` that strained the skeleton and of the flux `U`, and the
 //! constant ones `f` on the mixture and `f_w` on the water,

@@ -1,4 +1,4 @@
-//! The step of a body whose weights are frozen, as maps between grid arrays, in any dimension.
+//! The step of a body with frozen shape functions, as maps between grid arrays, in any dimension.
 //!
 //! Where weights are frozen and the material is linear, stresses are linear in the nodal displacements
 //! that strained them, and velocities mapped to the grid are all that the points' velocities are needed

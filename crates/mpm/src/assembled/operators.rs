@@ -1,4 +1,4 @@
-//! What a frozen step needs of its body: rows between those nodes that move.
+//! Operators of a frozen step: rows between free nodes.
 
 use crate::assembled::constraints::{SlidingRows, TiedRows};
 use crate::assembled::stiffness::entry_of;

@@ -1,4 +1,4 @@
-//! Grid arrays of a frozen step: what its rows multiply, and what they give.
+//! Grid arrays of a frozen step.
 
 #![expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 

@@ -1,4 +1,4 @@
-//! The frozen step: accelerations, kick and drift; and what it makes of states without loads, for stability analysis.
+//! The frozen step: accelerations, kick and drift; and its action on unloaded states, for stability analysis.
 
 #![expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 

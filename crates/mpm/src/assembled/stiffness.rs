@@ -1,4 +1,4 @@
-//! Stiffness of a body as sparse blocks between nodes: what its forces do under displacements.
+//! Stiffness of a body as sparse blocks between nodes.
 
 use crate::body::Body;
 use crate::operators::volumetric::{VectorRow, VolumetricRows};

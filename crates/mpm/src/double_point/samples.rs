@@ -1,4 +1,4 @@
-//! What a snapshot tells of double-point MPM: the skeleton at its own points, the pressure at those of the water.
+//! Snapshots of double-point MPM: the skeleton at its own points, the pressure at those of the water.
 
 use crate::double_point::DoublePoint;
 use crate::run::results::snapshot::{Means, Snapshot, Totals, WaterSamples, WaterTotals};

@@ -1,4 +1,4 @@
-//! A rigid plate that is pushed into a body whose soil yields: small strain, no inertia, and no water that leaves.
+//! A rigid plate pushed into a yielding soil: small strain, no inertia, undrained.
 //!
 //! At the end of a step of the plate the forces on all free nodes vanish,
 //!

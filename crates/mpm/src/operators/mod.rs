@@ -1,5 +1,5 @@
 //! The operators of a method, each sparse between points, nodes and cell centres: shape functions, strain gradient,
-//! divergence, recovery, surface load; and what cells remember.
+//! divergence, recovery, surface load; and the cell-averaged projection.
 
 pub mod basis;
 pub mod cell_averaged;

@@ -1,5 +1,4 @@
-//! The strain gradient `G`: from nodal velocities to the strain of the effective stress, and what carries the
-//! points with it.
+//! The strain gradient `G`: from nodal velocities to the strain rate of the effective stress.
 //!
 //! `∇v(x_p) = Σ_i v_i ⊗ ∇N_i(x_p)`, `[component][direction]`, with the gradients of the basis, of the Lagrange
 //! interpolant through the nodes of the cell and its neighbours (composite MPM), or of that interpolant between

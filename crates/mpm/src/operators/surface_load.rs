@@ -1,4 +1,4 @@
-//! The load on the material's surface, wherever the points have carried it.
+//! The load on the body's moving surface.
 
 use crate::method::Basis;
 use crate::state::grid::Grid;

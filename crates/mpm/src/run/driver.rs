@@ -1,4 +1,4 @@
-//! The one driver of every run: from output to output, with snapshots, history and a watch.
+//! The driver of every run: steps from output to output, with snapshots, history and checks.
 
 use crate::run::results::outcome::{
     Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,

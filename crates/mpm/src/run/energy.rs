@@ -1,5 +1,4 @@
-//! The energy of a body on its way: what it holds may fall, by drag and by what points smooth, and never rises but by the
-//! work of its loads.
+//! Energy balance of a run: drag and smoothing lower the energy, and only the work of loads may raise it.
 //!
 //! ```text
 //! H = Σ ½ (m_s v_s² + m_w v_w²) + ∫ ½ σ':C⁻¹:σ' dV + ∫ n p²/(2 K_w) dV − W

@@ -1,5 +1,4 @@
-//! The explicit step on its way through time: point by point with one set of points or two, or assembled where nothing
-//! moves.
+//! Explicit time stepping: point by point with one or two point sets, or assembled where nothing moves.
 
 use crate::assembled::step::AssembledStep;
 use crate::body::Body;

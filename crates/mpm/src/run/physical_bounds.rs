@@ -1,4 +1,4 @@
-//! What a sound result cannot leave, whatever the method: looked at while a run goes on.
+//! Physical bounds of a sound result, checked during a run with any method.
 
 use crate::body::Problem;
 use crate::critical_step::formula;

@@ -1,4 +1,4 @@
-//! What a run needs beside its body, from the problem and the schedule.
+//! What a run needs beside its body: step sizes, bounds, loading time and plate.
 
 use crate::body::{DrivenPlate, Problem};
 use crate::critical_step::formula;

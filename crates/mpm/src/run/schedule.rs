@@ -1,4 +1,4 @@
-//! When to step, how far, and what to keep.
+//! The schedule of a run: step rule, outputs, and what to keep.
 
 use crate::body::Problem;
 use crate::critical_step::formula;

@@ -1,4 +1,4 @@
-//! What every integrator is to the driver.
+//! The interface between the driver and the integrators.
 
 use crate::run::energy::Energy;
 use crate::run::results::outcome::FailureKind;

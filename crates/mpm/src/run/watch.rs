@@ -1,4 +1,4 @@
-//! Whether a run is still sound: looked at every few steps, for every integrator alike.
+//! Checks every few steps that a run is still sound, for every integrator.
 
 use crate::body::Body;
 use crate::run::energy::EnergyAccount;

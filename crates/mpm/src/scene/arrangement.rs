@@ -1,5 +1,4 @@
-//! Where the points lie in their cells: the regular lattice, or one of the arrangements that moving
-//! points come to sooner or later; and in how many sets.
+//! Arrangements of the points in their cells: the regular lattice, shifted or jittered points, one or two point sets.
 
 use crate::state::points::Points;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What makes a scene: one table per scene, each in the scene's own file.
+//! The definition of a scene: one table per scene, each in its own file.
 
 use crate::scene::column::Column;
 use crate::state::points::Points;

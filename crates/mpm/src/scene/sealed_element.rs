@@ -1,4 +1,4 @@
-//! A column that no water leaves: it carries its load undrained for ever.
+//! A sealed column: no water leaves, so it carries its load undrained.
 
 use crate::scene::definition::{
     SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,

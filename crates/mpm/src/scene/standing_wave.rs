@@ -1,4 +1,4 @@
-//! An undrained wave that stands in an unloaded column: smooth, and nothing but inertia.
+//! An undrained standing wave in an unloaded column: smooth, with inertia only.
 
 use crate::scene::column::column_parameters;
 use crate::scene::definition::{

@@ -1,5 +1,4 @@
-//! The files of a report: the answer page, the list of studies, a page a study, and all tables and figures as
-//! files of their own.
+//! The files of a report: the answer page, the list of studies, one page per study, and all tables and figures.
 
 use crate::history::comparison::StudyComparison;
 use crate::judge::race::RaceRow;

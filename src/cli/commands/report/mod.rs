@@ -1,4 +1,4 @@
-//! `oedometer report`: run what is missing, render everything.
+//! `oedometer report`: runs missing cases and renders everything.
 
 mod files;
 

@@ -1,4 +1,4 @@
-//! The verdict on scores: warnings, guesses at their cause, and whether the results pass.
+//! The verdict on scores: warnings, likely causes, and whether the results pass.
 
 use crate::case::norm::Norm;
 use crate::case::quantity::Quantity;

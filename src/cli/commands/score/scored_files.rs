@@ -1,4 +1,4 @@
-//! The files that are scored: their meaning, and their runs with numbers of cells.
+//! The files to score: their mapping, and their runs with numbers of cells.
 
 use crate::case::{Case, Quantity};
 use crate::cli::commands::score::Arguments;

@@ -1,5 +1,5 @@
-//! Mistakes in the input of a solver, or in the choice of the field that was written: another stress in place of the
-//! pressure, another load, stiffness, permeability or clock, a plate that is missing.
+//! Likely mistakes in the input of a solver or in the written field: a stress in place of the pressure, a wrong load,
+//! stiffness, permeability or time, a missing plate.
 //!
 //! Only a factor or an offset of the time is fitted, and then less error must be left.
 

@@ -1,4 +1,4 @@
-//! What a run leaves behind: its end by name, states at the times asked for, and the settlement between.
+//! Results of a run: its end by name, states at the outputs, and the settlement between them.
 
 pub mod outcome;
 pub mod snapshot;

@@ -1,4 +1,4 @@
-//! What a run leaves behind: its end by name, counters, step sizes and snapshots.
+//! The outcome of a run: its end by name, counters, step sizes and snapshots.
 
 use crate::run::results::snapshot::Snapshot;
 use oedometer_soil::wording::words;
