@@ -63,7 +63,7 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
     let folder = folder();
     let at = folder.path();
     let reason = ["--reason", "a look"];
-    let commands: [(&[&str], i32); 10] = [
+    let commands: [(&[&str], i32); 9] = [
         (&["plan", "s.toml"], 0),
         (&["plan", "s.toml", "--format", "json"], 0),
         (&["run", "s.toml"], 6),
@@ -71,7 +71,6 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
         (&["check", "s.toml"], 5),
         (&["report", "s.toml"], 6),
         (&["report", "s.toml", "--from-records"], 0),
-        (&["spread", "s.toml", "--quick"], 6),
         (&["explain", "theirs cells=4", "s.toml"], 4),
         (&["merge", "s.toml", "out"], 6),
     ];
@@ -79,8 +78,7 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
         let told = untrusting(at, words);
         assert!(!was_started(at), "{words:?} starts it");
         assert_eq!(told.code, code, "{words:?}: {}{}", told.out, told.err);
-        let says_how =
-            ["run", "check", "report", "spread"].contains(&words[0]) && !words.contains(&"--from-records");
+        let says_how = ["run", "check", "report"].contains(&words[0]) && !words.contains(&"--from-records");
         let how = "this study starts `sh adapter.sh {out} {study}` in";
         assert_eq!(
             says_how,
