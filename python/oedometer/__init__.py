@@ -14,7 +14,7 @@ import json
 import os
 from array import array
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, SupportsFloat, Tuple, Union
 
 from . import _native
 
@@ -47,7 +47,7 @@ def _doubles(numbers: Numbers) -> Tuple[bytes, Tuple[int, ...]]:
     if _numpy is not None:
         try:
             whole = _numpy.ascontiguousarray(numbers, dtype=_numpy.float64)
-        except TypeError as error:
+        except (TypeError, OverflowError) as error:
             raise ValueError(f"these are no numbers: {error}") from None
         return whole.tobytes(), _numpy.shape(numbers)
     if isinstance(numbers, (int, float)):
@@ -84,6 +84,9 @@ def _inputs(given: Dict[str, Any]) -> List[Tuple[str, str]]:
         # A whole number is given as such where one is needed, like `dimensions`.
         return value if isinstance(value, str) else repr(value if isinstance(value, int) else float(value))
 
+    wrong = [name for name, value in given.items() if not isinstance(value, (str, SupportsFloat))]
+    if wrong:
+        raise ValueError(f"`{wrong[0]}` is no number: {given[wrong[0]]!r}")
     return [(name, text(value)) for name, value in given.items()]
 
 
