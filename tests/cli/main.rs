@@ -17,6 +17,7 @@ mod manufactured;
 mod mapping;
 mod over_time;
 mod over_time_attached;
+mod own_answers;
 mod place;
 mod planted_damage;
 mod plate_and_weight;

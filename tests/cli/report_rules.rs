@@ -260,6 +260,6 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
         answer.contains("1 keep displacement and pressure within 10 % up to ν = 0.4999: `GIMP-Bbar-patch`"),
         "{answer}"
     );
-    assert!(answer.contains("lost from ν = 0.3 on: `GIMP`."), "{answer}");
+    assert!(answer.contains("lost from ν = 0.3 on (off by up to "), "{answer}");
     assert!(answer.contains("Evidence: [`short`]"), "{answer}");
 }

@@ -30,7 +30,14 @@ pub fn answer(
     if regimes.is_empty() {
         return None;
     }
-    let sentences: Vec<String> = regimes.iter().filter_map(|(name, regime)| sentence(name, regime)).collect();
+    // Beside the race and timed studies, which have sections of their own on what to take and what it costs.
+    let is_alone = !results.iter().any(|one| one.study.is_race || one.study.timing_repeats > 1);
+    let sentences = regimes.iter().filter_map(|(name, regime)| {
+        let advice =
+            if is_alone { better(regime).unwrap_or_default() + &cost(regime) } else { String::new() };
+        Some(sentence(name, regime)? + &advice)
+    });
+    let sentences: Vec<String> = sentences.collect();
     let studies = regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.study));
     let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
     let mut blocks = vec![Block::Table(short(table(&regimes), "in the studies"))];
@@ -38,10 +45,15 @@ pub fn answer(
     Some(QUESTION.told(sentence, blocks))
 }
 
+/// The method of the sentence.
+fn told<'r>(regime: &'r Regime<'_>) -> Option<&'r MethodPath<'r>> {
+    regime.method(PAPERS).or(regime.methods.first())
+}
+
 /// What the paper's method, or the first of the methods, converges to and how fast; where an order is not settled, the
 /// class instead.
 fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
-    let one = regime.method(PAPERS).or(regime.methods.first())?;
+    let one = told(regime)?;
     let of = [
         ("in the pressure at the points", Quantity::Pressure, Sample::Points),
         ("in the effective stress", Quantity::EffectiveStress, Sample::Points),
@@ -75,6 +87,43 @@ fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
     })
 }
 
+/// The method to take instead of the one of the sentence: where the largest of its errors is at most half as large.
+fn better(regime: &Regime<'_>) -> Option<String> {
+    let largest = |one| regime.largest_error(one).unwrap_or(f64::INFINITY);
+    let own = largest(told(regime)?);
+    let least = regime.methods.iter().min_by(|a, b| largest(a).total_cmp(&largest(b)))?;
+    let instead = Some(largest(least)).filter(|instead| 2.0 * instead <= own)?;
+    let [instead, own] = [instead, own].map(number::percent);
+    let (method, cells) = (&least.method, regime.finest_cells);
+    Some(format!(
+        " Take `{method}` instead: the largest of its errors on {cells} cells is {instead}, against {own}."
+    ))
+}
+
+/// The coarsest meshes with a pressure error of 1 %, of studies that time nothing by repeats, and what these runs took.
+fn cost(regime: &Regime<'_>) -> String {
+    let within = regime.methods.iter().filter_map(|one| {
+        let is_within = |cells| Some(regime.error(one, Quantity::Pressure, Sample::Points, cells)? <= WITHIN);
+        // From coarse to fine; single times are too rough to choose by.
+        let run = one.path.records.iter().find(|record| is_within(record.case.cells) == Some(true))?;
+        let seconds = run.wall.iter().map(|sample| sample.seconds).reduce(f64::min)?;
+        Some((seconds, format!("`{}` {} on {} cells", one.method, number::seconds(seconds), run.case.cells)))
+    });
+    let mut within: Vec<(f64, String)> = within.collect();
+    within.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ways = within.into_iter().map(|(_, way)| way).collect::<Vec<_>>().join(", ");
+    let (share, time) = (number::number(100.0 * WITHIN), regime.time_factor);
+    match ways.as_str() {
+        "" => format!(" No run has an error of the pressure below {share} % at T_v = {time}."),
+        _ => format!(
+            " A pressure within {share} % at T_v = {time} costs, each timed once beside others: {ways}."
+        ),
+    }
+}
+
+/// The error whose cost is told.
+const WITHIN: f64 = 0.01;
+
 fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
     let all =
         distinct(regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.method.as_str())));
@@ -91,7 +140,8 @@ fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
     });
     let mut columns = columns("method");
     for (name, _) in regimes {
-        columns.extend(HEADINGS.map(|what| TableColumn::text(format!("{name}: {what}"))));
+        let of = if regimes.len() > 1 { format!("{name}: ") } else { String::new() };
+        columns.extend(HEADINGS.map(|what| TableColumn::text(format!("{of}{what}"))));
     }
     let rows = ranked.iter().map(|name| {
         let mut row = vec![method_cell(name)];
@@ -140,7 +190,7 @@ fn quote(regime: &Regime<'_>, one: &MethodPath<'_>, quantity: Quantity, sample: 
 
 /// The error of the pressure over the mesh, of the study that refines the paper's method.
 fn figure(results: &[StudyResults<'_>], regime: &Regime<'_>) -> Option<Figure> {
-    let study = regime.method(PAPERS).or(regime.methods.first())?.study;
+    let study = told(regime)?.study;
     let one = results.iter().find(|one| one.study.name == study)?;
     let mut figure = refinement::mesh_figure(one, Quantity::Pressure, Sample::Points, regime.time_factor)?;
     "readme-mesh".clone_into(&mut figure.name);

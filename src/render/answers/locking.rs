@@ -1,7 +1,9 @@
 //! Which method locks, from which Poisson's ratio, and by how much? Answered where a study sweeps it in the plane.
 
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweepRow, SweptStiffness};
+use crate::measure::statistics::largest as largest_of;
 use crate::render::answers::{self, Answer, Links, Question, link};
+use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, columns};
@@ -68,12 +70,25 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
         text += &names(&|row| lost_from(row).is_none());
     }
     for (place, value) in sweep.values.iter().enumerate() {
-        let lost = names(&|row| lost_from(row) == Some(place));
+        let of_place = |row: &SweepRow| lost_from(row) == Some(place);
+        let lost = names(&of_place);
         if !lost.is_empty() {
-            text += &["; lost from ν = ", &typed(*value), " on: ", &lost].concat();
+            let errors = rows.iter().filter(|row| of_place(row)).flat_map(|row| errors(row, place)).flatten();
+            let off = largest_of(errors)
+                .map_or(String::new(), |off| format!(" (off by up to {})", off_in_words(off)));
+            text += &["; lost from ν = ", &typed(*value), " on", &off, ": ", &lost].concat();
         }
     }
     text + "."
+}
+
+/// An error in percent, or of more than the exact value in multiples of it.
+fn off_in_words(error: f64) -> String {
+    if error < 1.0 {
+        number::percent(error)
+    } else {
+        format!("{} times the exact value", number::number(error.round()))
+    }
 }
 
 /// One row for each method, those that keep their result first.

@@ -12,6 +12,8 @@ mod locking;
 pub(crate) mod paper;
 mod race;
 mod regime;
+mod soil;
+mod time_step;
 
 use crate::history::comparison::StudyComparison;
 use crate::judge::race::RaceRow;
@@ -154,6 +156,8 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         locking::answer(results, &links)?,
         converges::answer(results, small.as_ref(), large.as_ref(), &links),
         paper::answer(results, &links)?,
+        time_step::answer(results, &links),
+        soil::answer(results, &links),
         cost::answer(results, &links),
         audit::answer(results, &links),
         double_point::answer(results, &links),

@@ -1,12 +1,15 @@
 //! Words for quantities, samples, axes and orders, shared by all figures and tables.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::case::step_label;
+pub use crate::judge::paths::first_measure;
+use crate::judge::paths::{Path, SeriesSummary};
 use crate::record::Record;
 use crate::render::number;
 use crate::render::table::Cell;
 use crate::study::expectation::{Axis, Measure};
 use oedometer_convergence::{Class, Classification};
+use oedometer_mpm::run::TimeStepRule;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The meaning of the words beside an order, or instead of one.
@@ -126,10 +129,12 @@ pub fn measure(measure: &Measure) -> String {
     format!("{} {}", quantity(measure.quantity), sample(measure.sample))
 }
 
-/// A measure in the main norm of its quantity.
-pub fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
-    let norm = first_norm(quantity);
-    Measure { quantity, sample, norm, reference: reference.to_owned(), time_factor, probe: None }
+/// The step of a run in words: seconds with their unit, else its rule.
+pub fn step(record: &Record) -> String {
+    match record.case.time_step {
+        TimeStepRule::Seconds(seconds) => format!("Δt = {} s", number::number(seconds)),
+        rule => step_label(&rule),
+    }
 }
 
 /// Label of an axis of refinement.

@@ -1,7 +1,6 @@
 //! Errors under refinement: figures with slope triangles, and tables of orders.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::step_label;
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
@@ -40,7 +39,7 @@ pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
         return Vec::new();
     }
     let times = common_times(&all);
-    let Some(shown) = times.get(times.len().saturating_sub(1) / 2).copied() else { return Vec::new() };
+    let Some(shown) = shown_time(&all) else { return Vec::new() };
     let mut blocks = vec![Block::Heading(heading(axis).to_owned())];
     let mut references: Vec<&str> = results.study.references.iter().map(|kind| kind.name()).collect();
     let expects_nothing = results.study.expectations.is_empty();
@@ -87,7 +86,7 @@ pub fn mesh_figure(
 }
 
 /// Paths of at least three levels: two levels have no order.
-fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
+pub fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
     let mut all = results.paths.along(axis).to_vec();
     all.retain(|path| path.records.len() >= WINDOW);
     all
@@ -102,6 +101,12 @@ fn floors_of_model(results: &StudyResults<'_>) -> bool {
 fn common_times(all: &[Path<'_>]) -> Vec<f64> {
     let first = all[0].records[0].case.time_factors.iter().copied();
     first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
+}
+
+/// The time of the figures and of the table that stands open: the middle one of those that all paths have.
+pub fn shown_time(all: &[Path<'_>]) -> Option<f64> {
+    let times = all.first().map_or(Vec::new(), |_| common_times(all));
+    times.get(times.len().saturating_sub(1) / 2).copied()
 }
 
 fn heading(axis: Axis) -> &'static str {
@@ -325,7 +330,7 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
             .iter()
             .map(|record| match axis {
                 Axis::Cells => record.case.cells.to_string(),
-                Axis::TimeStep => step_label(&record.case.time_step).replace("seconds=", "Δt = ") + " s",
+                Axis::TimeStep => labels::step(record),
                 Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
                 Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
             })

@@ -25,36 +25,31 @@ const STATED: [Stated; 7] = [
 pub fn sentence(records: &[Record]) -> Option<String> {
     let cases: Vec<&Case> = records.iter().map(|record| &record.case).collect();
     let stated = STATED.iter().filter_map(|(symbol, unit, value)| {
-        let text = range(&cases, unit, value)?;
+        let text = range(&cases, value, |value| with_unit(value, unit))?;
         Some(format!("*{symbol}* = {text}"))
     });
     let inputs = stated.collect::<Vec<_>>().join(", ");
-    let outcome: Vec<String> = [settlement(&cases), unit_of_time(&cases)].into_iter().flatten().collect();
+    let settlement =
+        range(&cases, |case| 1e3 * final_settlement(case).unwrap_or(0.0), |value| with_unit(value, "mm"))
+            .map(|text| format!("the surface settles by {text} in the end"));
+    let time = range(&cases, |case| unit_of_time(case).unwrap_or(0.0), duration)
+        .map(|text| format!("T_v = 1 is {text}"));
+    let outcome: Vec<String> = [settlement, time].into_iter().flatten().collect();
     (!inputs.is_empty()).then(|| {
         let outcome = if outcome.is_empty() { String::new() } else { format!(": {}", outcome.join("; ")) };
         format!("{inputs}{outcome}.")
     })
 }
 
-/// The value that all cases share, or the least and the largest; `None` where it is nowhere given.
-fn range(cases: &[&Case], unit: &str, value: impl Fn(&Case) -> f64) -> Option<String> {
-    let values: Vec<f64> = cases.iter().map(|case| value(case)).filter(|value| *value != 0.0).collect();
-    let (least, most) = ends(&values)?;
-    Some(if least == most {
-        with_unit(least, unit)
-    } else {
-        format!("{} … {}", with_unit(least, unit), with_unit(most, unit))
-    })
-}
-
-/// The least and the largest of some values.
-fn ends(values: &[f64]) -> Option<(f64, f64)> {
-    let all = || values.iter().copied();
-    Some((all().reduce(f64::min)?, all().reduce(f64::max)?))
+/// The value that all cases share, or the least and the largest, in words; `None` where it is nowhere given.
+fn range(cases: &[&Case], value: impl Fn(&Case) -> f64, words: impl Fn(f64) -> String) -> Option<String> {
+    let all = || cases.iter().map(|case| value(case)).filter(|value| *value != 0.0);
+    let (least, most) = (all().reduce(f64::min)?, all().reduce(f64::max)?);
+    Some(if least == most { words(least) } else { format!("{} … {}", words(least), words(most)) })
 }
 
 /// A value in the unit that suits it.
-fn with_unit(value: f64, unit: &str) -> String {
+pub fn with_unit(value: f64, unit: &str) -> String {
     let scaled = |scale: f64| format!("{:.3e}", value / scale).parse::<f64>().unwrap_or(value);
     let prefixes: &[(f64, &str)] = match unit {
         "Pa" => &[(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")],
@@ -68,31 +63,23 @@ fn with_unit(value: f64, unit: &str) -> String {
     format!("{number} {unit}").trim_end().to_owned()
 }
 
-/// What the surface of a column settles by in the end.
-fn settlement(cases: &[&Case]) -> Option<String> {
-    let of = |case: &Case| match case.scene {
-        SceneKind::Terzaghi => column_parameters(&case.column, &case.material).final_settlement(),
+/// What the surface of a column settles by in the end, m.
+pub fn final_settlement(case: &Case) -> Option<f64> {
+    match case.scene {
+        SceneKind::Terzaghi => Some(column_parameters(&case.column, &case.material).final_settlement()),
         SceneKind::XieLeo => {
             let strain = 1.0 - elementary::exp(-case.column.load / case.material.oedometric_modulus());
-            case.column.height * strain
+            Some(case.column.height * strain)
         }
-        _ => 0.0,
-    };
-    let text = range(cases, "mm", |case| 1e3 * of(case))?;
-    Some(format!("the surface settles by {text} in the end"))
+        _ => None,
+    }
 }
 
-/// What a time factor of one is on the clock, where the scene consolidates.
-fn unit_of_time(cases: &[&Case]) -> Option<String> {
-    let first = cases.first()?;
-    let consolidates =
-        first.scene.is_loaded() && !matches!(first.scene, SceneKind::Footing | SceneKind::SealedElement);
-    let seconds = |case: &&Case| column_parameters(&case.column, &case.material).time(1.0);
-    let all: Vec<f64> = cases.iter().map(seconds).collect();
-    let (least, most) = ends(&all)?;
-    let text =
-        if least == most { duration(least) } else { format!("{} … {}", duration(least), duration(most)) };
-    consolidates.then(|| format!("T_v = 1 is {text}"))
+/// What a time factor of one is on the clock, s, where the scene consolidates.
+pub fn unit_of_time(case: &Case) -> Option<f64> {
+    let is_fast = matches!(case.scene, SceneKind::Footing | SceneKind::SealedElement);
+    let consolidates = case.scene.is_loaded() && !is_fast;
+    consolidates.then(|| column_parameters(&case.column, &case.material).time(1.0))
 }
 
 #[cfg(test)]

@@ -1,0 +1,157 @@
+//! What does the soil change? Of every number of the soil and the body that a study varies: by what factor the error, the
+//! settlement in the end and the time of consolidation change from its smallest value to its largest.
+
+use crate::case::Case;
+use crate::case::keys::{Key, Kind, Value};
+use crate::case::quantity::Quantity;
+use crate::judge::paths::{first_error, grouped};
+use crate::record::{Record, Status};
+use crate::render::answers::{Answer, Links, Question, link, short};
+use crate::render::page::Block;
+use crate::render::report::{StudyResults, setting};
+use crate::render::table::{Cell, Table, columns};
+use oedometer_soil::wording;
+
+const QUESTION: Question = Question { heading: "What does the soil change?", id: "soil" };
+
+/// Two runs that differ in one key alone, with its smallest and its largest value.
+type Pair<'a> = [&'a Record; 2];
+
+/// A key that a study varies.
+struct Varied<'a> {
+    key: &'static Key,
+    pairs: Vec<Pair<'a>>,
+}
+
+/// What is compared: its words, and its value in a run.
+type Compared = (&'static str, fn(&Record, &str) -> Option<f64>);
+
+const COMPARED: [Compared; 3] = [
+    ("error of the pressure", last_error),
+    ("settlement in the end", |record, _| setting::final_settlement(&record.case)),
+    ("time of consolidation", |record, _| setting::unit_of_time(&record.case)),
+];
+
+/// The study that varies most keys of the soil; of a layer the section on locking says more.
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+    let fits = |one: &&StudyResults<'_>| !one.study.is_race && !one.study.scene.shows_locking();
+    let studies = results.iter().filter(fits).map(|one| (one, varied(one.records)));
+    let (one, keys) = studies.reduce(|most, next| if next.1.len() > most.1.len() { next } else { most })?;
+    let reference = one.study.references.first()?.name();
+    let told: Vec<String> = keys.iter().filter_map(|varied| sentence(varied, reference)).collect();
+    if told.is_empty() {
+        return None;
+    }
+    let sentence = format!(
+        "From the smallest value to the largest, all else equal: {}. Evidence: {}.",
+        told.join("; "),
+        link(links, &one.study.name)
+    );
+    Some(
+        QUESTION
+            .told(sentence, vec![Block::Table(short(table(&keys, reference), "on the page of the study"))]),
+    )
+}
+
+/// The numbers of soil and body that differ between runs which are alike in everything else.
+fn varied(records: &[Record]) -> Vec<Varied<'_>> {
+    let is_ok = |record: &&Record| record.status == Status::Ok;
+    let sweeps = Key::of("sweep").filter(|key| matches!(key.kind, Kind::Number(_)) && is_of_soil(key));
+    let keys = sweeps.map(|key| {
+        let alike = grouped(records.iter().filter(is_ok), |record| without(key, &record.case));
+        let pairs = alike.into_iter().filter_map(|(_, alike)| ends(key, &alike));
+        Varied { key, pairs: pairs.collect() }
+    });
+    keys.filter(|varied| !varied.pairs.is_empty()).collect()
+}
+
+fn is_of_soil(key: &Key) -> bool {
+    ["material", "column", "layer"].iter().any(|table| key.tables.contains(table))
+}
+
+/// A number for all inputs of a case but a key.
+fn without(key: &Key, case: &Case) -> u64 {
+    let seed = Case::seed(case.task, case.scene);
+    case.number_with(|case| key.set(case, key.get(&seed)))
+}
+
+fn number(key: &Key, record: &Record) -> Option<f64> {
+    if let Value::Number(number) = key.get(&record.case) { Some(number) } else { None }
+}
+
+/// The runs with the smallest and the largest value, where these differ.
+fn ends<'a>(key: &Key, alike: &[&'a Record]) -> Option<Pair<'a>> {
+    let mut known: Vec<_> = alike.iter().filter_map(|record| Some((number(key, record)?, *record))).collect();
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (first, last) = (known.first()?, known.last()?);
+    (first.0 < last.0).then_some([first.1, last.1])
+}
+
+/// The error of the pressure at the last output.
+fn last_error(record: &Record, reference: &str) -> Option<f64> {
+    let time = *record.case.time_factors.last()?;
+    first_error(record, Quantity::Pressure, record.main_sample(), reference, time)
+}
+
+/// The least and the largest factor over some pairs.
+fn factors(pairs: &[Pair<'_>], value: impl Fn(&Record) -> Option<f64>) -> Option<[f64; 2]> {
+    let factor = |[first, last]: &Pair<'_>| Some(value(last)? / value(first)?).filter(|one| one.is_finite());
+    let all = || pairs.iter().filter_map(factor);
+    Some([all().reduce(f64::min)?, all().reduce(f64::max)?])
+}
+
+fn in_words([least, most]: [f64; 2]) -> String {
+    let [least, most] =
+        [least, most].map(|factor| wording::short(format!("{factor:.2e}").parse().unwrap_or(factor)));
+    if least == most { least } else { format!("{least} … {most}") }
+}
+
+fn sentence(varied: &Varied<'_>, reference: &str) -> Option<String> {
+    let told = COMPARED.iter().filter_map(|(words, value)| {
+        let factors = factors(&varied.pairs, |record| value(record, reference))?;
+        let changes = factors.iter().any(|factor| (factor - 1.0).abs() > CHANGES);
+        changes.then(|| format!("the {words} by {}", in_words(factors)))
+    });
+    let told = told.collect::<Vec<_>>();
+    factors(&varied.pairs, |record| last_error(record, reference))?;
+    let told = match told.as_slice() {
+        [] => "changes nothing by more than 1 %".to_owned(),
+        told => format!("multiplies {}", told.join(", ")),
+    };
+    Some(format!("`{}` {told}", varied.key.name))
+}
+
+/// A factor this near to one is no change.
+const CHANGES: f64 = 0.01;
+
+/// A row for each key and method.
+fn table(keys: &[Varied<'_>], reference: &str) -> Table {
+    let rows = keys.iter().flat_map(|varied| {
+        let by_method = grouped(varied.pairs.iter().copied(), |pair| pair[0].case.method.to_string());
+        by_method.into_iter().map(move |(method, pairs)| {
+            let [first, last] = pairs[0];
+            let value = |record| {
+                number(varied.key, record)
+                    .map_or(String::new(), |value| setting::with_unit(value, varied.key.unit))
+            };
+            let mut row = vec![
+                Cell::Code(varied.key.name.to_owned()),
+                Cell::Code(method),
+                format!("{} → {}", value(first), value(last)).into(),
+            ];
+            row.extend(COMPARED.iter().map(|(_, value)| {
+                factors(&pairs, |record| value(record, reference)).map_or_else(
+                    || Cell::missing("not measured in this scene"),
+                    |found| in_words(found).into(),
+                )
+            }));
+            row
+        })
+    });
+    let [error, settlement, time] = COMPARED.map(|(words, _)| words);
+    let header = format!("input | method | values | {error} | {settlement} | {time}");
+    Table::of("Factors from the smallest value to the largest", columns(&header), rows).note(format!(
+        "the error is the relative L_2 error at the last output, against {reference}; settlement and time by theory; two \
+         numbers are the least and the largest over the runs that are alike in everything else"
+    ))
+}

@@ -1,0 +1,135 @@
+//! What does the time step change? The order in the step, what it leaves of the error, and from where on it is unstable.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::Path;
+use crate::record::{Record, Status};
+use crate::render::answers::{Answer, Links, Question, link, short};
+use crate::render::number;
+use crate::render::page::Block;
+use crate::render::report::StudyResults;
+use crate::render::report::labels::{self, first_measure, grouped, order_or_class, path_labels};
+use crate::render::report::refinement::{longest_paths, shown_time};
+use crate::render::table::{Cell, Table, columns};
+use crate::study::expectation::{Axis, NEXT_FINER};
+use oedometer_convergence::{Class, WINDOW};
+
+const QUESTION: Question = Question { heading: "What does the time step change?", id: "time-step" };
+
+/// What is said of one path along the step.
+struct Row<'a> {
+    label: String,
+    /// The order of the differences between neighbouring steps, or their class.
+    order: String,
+    /// The largest and the smallest step that reached the end.
+    largest: &'a Record,
+    smallest: &'a Record,
+    /// Errors of the pressure with these two, against the scene's own solution.
+    errors: [Option<f64>; 2],
+    /// The smallest step that was unstable, and its end by name.
+    unstable: Option<&'a Record>,
+}
+
+/// The study that refines the step of most methods.
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+    let of_study = |one| (one, longest_paths(one, Axis::TimeStep));
+    let studies = results.iter().filter(|one| !one.study.is_race).map(of_study);
+    let (one, paths) = studies.reduce(|most, next| if next.1.len() > most.1.len() { next } else { most })?;
+    let time = shown_time(&paths)?;
+    let own = one.study.references.first()?.name();
+    let labels = path_labels(&paths);
+    let rows = paths.iter().zip(&labels.each).filter_map(|(path, label)| row(path, label, own, time));
+    let rows: Vec<Row<'_>> = rows.collect();
+    if rows.is_empty() {
+        return None;
+    }
+    let sentence = format!("{} Evidence: {}.", sentence(&rows, time), link(links, &one.study.name));
+    let table = table(&rows, own, time)
+        .notes((!labels.shared.is_empty()).then(|| format!("all with {}", labels.shared)));
+    Some(QUESTION.told(sentence, vec![Block::Table(short(table, "on the page of the study"))]))
+}
+
+fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>> {
+    let measure =
+        |reference| path.own_measure(&first_measure(Quantity::Pressure, Sample::Points, reference, time));
+    let is_ok = |record: &&Record| record.status == Status::Ok;
+    let stable = Path { axis: path.axis, records: path.records.iter().copied().filter(is_ok).collect() };
+    let (largest, smallest) = (*stable.records.first()?, *stable.records.last()?);
+    let error = |record| measure(own).error(record).map(|row| row.value.abs());
+    Some(Row {
+        label: label.to_owned(),
+        order: match stable.summary(&measure(NEXT_FINER)).classification {
+            found if found.class == Class::NotEvaluable => "none, of too few steps,".to_owned(),
+            found => order_or_class(&found),
+        },
+        largest,
+        smallest,
+        errors: [error(largest), error(smallest)],
+        unstable: path.records.iter().copied().rfind(|record| !is_ok(record)),
+    })
+}
+
+fn names<'r, 'a: 'r>(rows: impl IntoIterator<Item = &'r Row<'a>>) -> String {
+    rows.into_iter().map(|row| format!("`{}`", row.label)).collect::<Vec<_>>().join(", ")
+}
+
+/// The orders, the paths with the same one together; then where steps are unstable; then what the step leaves of the error.
+fn sentence(rows: &[Row<'_>], time: f64) -> String {
+    let orders = grouped(rows.iter().map(|row| (row.order.as_str(), row)));
+    let orders = orders.into_iter().map(|(order, rows)| format!("{order} for {}", names(rows)));
+    let orders = orders.collect::<Vec<_>>().join("; ");
+    let unstable = rows.iter().filter_map(|row| {
+        let step = labels::step(row.unstable?);
+        Some(format!("`{}` ends {} from {step} on", row.label, row.unstable?.status.name()))
+    });
+    let unstable = unstable.collect::<Vec<_>>().join(", ");
+    let ends = if unstable.is_empty() { "Every step that was tried is stable".to_owned() } else { unstable };
+    format!(
+        "Order of the pressure in the step, from the differences between neighbouring steps at T_v = {time}: {orders}. {ends}.{}",
+        left(rows).unwrap_or_default()
+    )
+}
+
+/// What the error against the exact solution comes to when the step gets smaller, of the path where it changes most.
+fn left(rows: &[Row<'_>]) -> Option<String> {
+    let change = |row: &Row<'_>| Some(row.errors[0]? / row.errors[1]?);
+    let most = rows.iter().max_by(|a, b| change(a).unwrap_or(0.0).total_cmp(&change(b).unwrap_or(0.0)))?;
+    let [coarse, fine] = most.errors;
+    Some(format!(
+        " Against the exact solution `{}` is off by {} with {} and by {} with {}: {}.",
+        most.label,
+        number::percent(coarse?),
+        labels::step(most.largest),
+        number::percent(fine?),
+        labels::step(most.smallest),
+        if change(most)? > STEP_COUNTS {
+            "smaller steps pay"
+        } else {
+            "the mesh, not the step, makes the error"
+        }
+    ))
+}
+
+/// An error that a smaller step reduces by less than this factor is not the step's.
+const STEP_COUNTS: f64 = 1.1;
+
+fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
+    let header = "method | order in the step | largest step that ends | > error with it | smallest step | > error with it | \
+                  unstable from";
+    let cells = rows.iter().map(|row| {
+        let error = |place: usize| Cell::of(row.errors[place], Cell::Error, "no error was measured");
+        let stable = || Cell::missing("every step that was tried is stable");
+        vec![
+            Cell::Code(row.label.clone()),
+            row.order.trim_end_matches(',').into(),
+            labels::step(row.largest).into(),
+            error(0),
+            labels::step(row.smallest).into(),
+            error(1),
+            row.unstable.map_or_else(stable, |record| labels::step(record).into()),
+        ]
+    });
+    Table::of("Errors over the time step", columns(header), cells).note(format!(
+        "relative L_2 error of the pressure at T_v = {time} against {own}; the order is that of the differences between \
+         neighbouring steps, on the finest {WINDOW}"
+    ))
+}

@@ -1,0 +1,90 @@
+//! What the front page of a report says of a user's own study.
+
+use crate::program::{call, folder_with};
+use std::fs;
+
+/// The front page of the report of a study.
+fn front(study: &str) -> String {
+    let folder = folder_with(&format!("title = \"t\"\n{study}"));
+    let told = call(folder.path(), &["report", "short.toml", "--out", "made"]);
+    assert_eq!(told.code, 0, "{}{}", told.out, told.err);
+    fs::read_to_string(folder.path().join("made/README.md")).expect("a page")
+}
+
+/// The answer to a question, up to the next one.
+fn answer<'a>(front: &'a str, question: &str) -> &'a str {
+    let answer = front.split(question).nth(1).unwrap_or_else(|| panic!("not asked: {front}"));
+    answer.split("\n## ").next().unwrap_or(answer)
+}
+
+#[test]
+fn a_study_of_the_step_says_its_order_and_from_where_it_is_unstable() {
+    let steps = |integrator: &str, outputs: &str, steps: &[&str]| {
+        let steps = steps.iter().map(|step| format!("{{ seconds = {step} }}")).collect::<Vec<_>>().join(", ");
+        front(&format!(
+            "scene = \"terzaghi\"\noutput.time_factors = [{outputs}]\n[[sweep]]\nmethod = [\"GC-SRI-patch\"]\n\
+             integrator = [\"{integrator}\"]\ncells = [20]\ntime_step = [{steps}]\n"
+        ))
+    };
+    let page = steps("implicit", "0.2", &["0.4", "0.2", "0.1", "0.05"]);
+    let told = answer(&page, "## What does the time step change?");
+    // The scheme is of second order.
+    assert!(told.contains("at T_v = 0.2: 1.9") || told.contains("at T_v = 0.2: 2.0"), "{told}");
+    assert!(told.contains(" for `GC-SRI-patch`. Every step that was tried is stable."), "{told}");
+    assert!(
+        told.contains("with Δt = 0.4 s and by") && told.contains("with Δt = 0.05 s: the mesh, not"),
+        "{told}"
+    );
+    // The critical step of the explicit scheme on 20 cells is 4.4e-5 s.
+    let page = steps("explicit", "0.001", &["8e-5", "4e-5", "2e-5", "1e-5", "5e-6"]);
+    let told = answer(&page, "## What does the time step change?");
+    assert!(told.contains("`GC-SRI-patch` ends unstable from Δt = 8e-5 s on."), "{told}");
+    assert!(told.contains("| Δt = 4e-5 s |") && told.contains("| Δt = 5e-6 s |"), "{told}");
+    assert!(!told.contains("too few"), "the order is of the stable steps: {told}");
+    let page = steps("implicit", "0.2", &["0.4", "0.2", "0.1"]);
+    let told = answer(&page, "## What does the time step change?");
+    assert!(told.contains("at T_v = 0.2: none, of too few steps, for `GC-SRI-patch`"), "{told}");
+}
+
+#[test]
+fn a_sweep_of_the_soil_says_what_each_input_changes() {
+    let page = front(
+        "scene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\"]\nintegrator = [\"implicit\"]\n\
+         cells = [4]\nyoungs_modulus = [5e5, 1e6, 2e6]\nporosity = [0.3, 0.5]\nhydraulic_conductivity = [1e-6, 1e-4]\n",
+    );
+    let told = answer(&page, "## What does the soil change?");
+    // s = m_v q H with m_v as 1/E, and t = H² γ_w/(k E_oed).
+    for sentence in [
+        "`youngs_modulus` multiplies the settlement in the end by 0.25, the time of consolidation by 0.25",
+        "`porosity` changes nothing by more than 1 %",
+        "`hydraulic_conductivity` multiplies the time of consolidation by 0.01. Evidence: [`short`]",
+        "| `youngs_modulus` | `MPM` | 500 kPa → 2 MPa |",
+    ] {
+        assert!(told.contains(sentence), "{sentence}: {told}");
+    }
+    assert!(!page.contains("## What does the time step change?"), "{page}");
+}
+
+#[test]
+fn a_study_of_the_mesh_says_what_one_percent_costs_and_one_at_large_strain_what_to_take() {
+    let page = front(
+        "scene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\", \"GC-SRI-patch\"]\n\
+         integrator = [\"implicit\"]\ncells = [5, 10, 20]\n",
+    );
+    let told = answer(&page, "## Does the method converge, and to what?");
+    let (_, costs) = told.split_once("A pressure within 1 % at T_v = 0.1 costs").expect(told);
+    let sentence = costs.split("Evidence").next().unwrap_or(costs);
+    assert!(sentence.contains("`GC-SRI-patch`") && sentence.contains("s on 10 cells"), "{told}");
+    assert!(!sentence.contains("`MPM`"), "no mesh of it is within 1 %: {told}");
+    assert!(told.contains("| method | p, points |"), "one regime needs no name: {told}");
+    let page = front(
+        "scene = \"xie-leo\"\noutput.time_factors = [0.1]\ncolumn.load = 428e3\nmaterial.porosity = 0.5\n[[sweep]]\n\
+         method = [\"GC-SRI-patch\", \"TL-GC-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [5, 10, 20]\n\
+         time_step = [{ growth = 0.02 }]\n",
+    );
+    let told = answer(&page, "## Does the method converge, and to what?");
+    assert!(
+        told.contains("Take `TL-GC-SRI-patch` instead: the largest of its errors on 20 cells is "),
+        "{told}"
+    );
+}
