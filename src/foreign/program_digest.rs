@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders beside an adapter that hold results and nothing that a result depends on.
-const RESULTS: [&str; 3] = ["out", "golden", "__pycache__"];
+const RESULTS: [&str; 4] = ["out", "golden", "report", "__pycache__"];
 /// Files beside an adapter from which on it is not known what it is made of.
 const MOST_FILES: usize = 2_000;
 /// Bytes of these files from which on it is not known.
@@ -75,7 +75,7 @@ mod tests {
         let folder = tempfile::TempDir::new().expect("a folder");
         let at = |name: &str| folder.path().join(name);
         let write = |name: &str, text: &str| fs::write(at(name), text).expect("a file");
-        for one in ["code", "out", "__pycache__"] {
+        for one in ["code", "out", "report", "__pycache__"] {
             fs::create_dir(at(one)).expect("a folder");
         }
         write("adapter.py", "1");
@@ -84,7 +84,9 @@ mod tests {
         let digest = || program_digest(&adapter).expect("known");
         let mut before = digest();
         assert_eq!(before.len(), DIGITS);
-        for unused in ["out/record.json", "__pycache__/element.pyc", ".cache", "study.toml"] {
+        for unused in
+            ["out/record.json", "report/index.html", "__pycache__/element.pyc", ".cache", "study.toml"]
+        {
             write(unused, "2");
             assert_eq!(digest(), before, "{unused}");
         }
