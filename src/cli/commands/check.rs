@@ -3,7 +3,7 @@
 use crate::campaign::run_report::{RunReport, Tally};
 use crate::campaign::runner::{RunOptions, Selected, run_studies_thinned};
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{TableFormat, json_of, print_coloured};
@@ -62,7 +62,7 @@ pub struct Arguments {
 /// Runs, judges, compares and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
-    let mut studies = load(&chosen)?;
+    let mut studies = load_after_run(&chosen, &arguments.records)?;
     arguments.trust.mark(&mut studies, &chosen);
     let (checks, tally) = checks_of(arguments, &studies, &chosen)?;
     if checks.is_empty() {

@@ -5,7 +5,7 @@ use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::stop;
 use crate::case::Case;
 use crate::case::tier::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, load};
+use crate::cli::commands::run::{DEFAULT_RESULTS, load_after_run};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
@@ -45,7 +45,7 @@ pub struct Arguments {
 /// Finds the case, solves it if its record is missing, and explains it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
-    let studies = load(&chosen)?;
+    let studies = load_after_run(&chosen, &arguments.records)?;
     let (description, focus) = match arguments.case.split_once(" | ") {
         Some((label, measure)) => (label, Some(measure)),
         None => (arguments.case.as_str(), None),

@@ -247,21 +247,32 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
 }
 
-/// Reads and checks study files.
+/// Reads and checks study files; what is odd about them goes to standard error.
 pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    let sources = study_files::read_all(paths)?;
-    sources.iter().map(|source| checked(source, Purpose::Solving)).collect()
+    let studies = checked(paths)?;
+    studies.iter().for_each(tell_warnings);
+    Ok(studies)
 }
 
-/// A study that can run; what is odd about it goes to standard error.
-pub fn checked(source: &StudySource, purpose: Purpose) -> anyhow::Result<Study> {
-    let study = Study::check_for(source, purpose)?;
-    for solver in &study.solvers {
-        mapping_of(solver, study.scene.has_plane_fields())
-            .map_err(|error| Ended::usage(error.to_string()))?;
-    }
-    tell_warnings(&study);
-    Ok(study)
+/// The same after a run: what is odd about a study that has results in a folder was told then.
+pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<Study>> {
+    let studies = checked(paths)?;
+    studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);
+    Ok(studies)
+}
+
+/// Studies that can run, with the mappings of their solvers.
+fn checked(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
+    let sources = study_files::read_all(paths)?;
+    let of = |source: &StudySource| {
+        let study = Study::check_for(source, Purpose::Solving)?;
+        for solver in &study.solvers {
+            mapping_of(solver, study.scene.has_plane_fields())
+                .map_err(|error| Ended::usage(error.to_string()))?;
+        }
+        Ok(study)
+    };
+    sources.iter().map(of).collect()
 }
 
 /// What is odd about a study, on standard error.

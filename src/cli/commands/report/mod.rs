@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::case::tier::Tier;
 use crate::cli::commands::check::refuse_unfinished;
 use crate::cli::commands::compare::state_of;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load, run_and_store};
+use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::stream::say;
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         say!("{note}");
     }
     let chosen = arguments.studies.chosen()?;
-    let mut studies = load(&chosen)?;
+    let mut studies = load_after_run(&chosen, &arguments.records)?;
     let reports = if arguments.from_records {
         kept(&studies, arguments)?
     } else {
