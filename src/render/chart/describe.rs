@@ -247,7 +247,7 @@ pub struct SlopeTriangle {
 /// One value per cell on a rectangular grid. Its colours are near-white at zero and safe for the colour-blind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColourField {
-    /// Quantity and unit, written at the colour bar.
+    /// Quantity and unit, written at the colour bar; empty where another figure has the bar of all.
     pub label: String,
     /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
     /// `None`.

@@ -76,7 +76,7 @@ impl Layout {
         let y_axis = |height: f64| PlacedAxis::new(&chart.y, y_ends, (top + height, top), true);
         let left = PAD + y_axis(tall).label_width() + BESIDE;
         let bar_axis = |height: f64| {
-            let reach = chart.drawn_field()?.0.extent();
+            let reach = chart.drawn_field().filter(|(field, _)| !field.label.is_empty())?.0.extent();
             let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };
@@ -267,11 +267,9 @@ impl Chart {
         Ok(out)
     }
 
-    /// The cells of a field, and its colour bar.
+    /// The cells of a field, and its colour bar where it has one.
     fn cells(&self, area: &Area<'_>, layout: &Layout) -> Drawn {
-        let (Some((field, (columns, _))), Some(bar)) = (self.drawn_field(), &layout.bar) else {
-            return Ok(());
-        };
+        let Some((field, (columns, _))) = self.drawn_field() else { return Ok(()) };
         let extent = field.extent();
         let mut chart = self.plot(area, layout)?;
         chart.draw_series(field.values.iter().enumerate().map(|(place, value)| {
@@ -279,6 +277,7 @@ impl Chart {
             let corner = |after: usize| (field.x_edges[column + after], field.y_edges[row + after]);
             Rectangle::new([corner(0), corner(1)], field_colour(value / extent).filled())
         }))?;
+        let Some(bar) = &layout.bar else { return Ok(()) };
         let (plot, size) = (layout.plot, layout.size);
         let left = plot.right + BAR.0;
         let label_room = bar.label_width() + BESIDE;

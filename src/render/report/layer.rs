@@ -67,7 +67,8 @@ fn figure(
     time_factor: f64,
     oscillation: Option<f64>,
 ) -> Figure {
-    // All fields share their colours, which reach a little beyond the exact values.
+    // All fields share their colours, which reach a little beyond the exact values, and one bar.
+    let is_exact = oscillation.is_none();
     let largest_of = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
     let reach = REACH * largest_of(&field.exact);
     let mut chart = Chart::new(
@@ -76,13 +77,13 @@ fn figure(
         ChartAxis::linear("height above the base y/H (–)"),
     );
     chart.field = Some(ColourField {
-        label: "p/q (–)".to_owned(),
+        label: if is_exact { "p/q (–)".to_owned() } else { String::new() },
         reach: Some(reach),
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
         values: values.to_vec(),
     });
-    chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
+    chart.size = Size { width: if is_exact { 380.0 } else { 300.0 }, plot_height: 240.0, equal_units: true };
     let largest = largest_of(values);
     let beyond = if largest > reach {
         format!(" Values reach {}, beyond the common scale.", number::number(largest))
