@@ -77,12 +77,15 @@ fn missing_reason(record: &Record) -> String {
 
 fn work_note(record: &Record) -> String {
     let wall: f64 = record.wall.iter().map(|sample| sample.seconds).sum();
+    // No critical step bounds an implicit run.
+    let share = if record.case.is_explicit() {
+        format!(" ({:.2} of the predicted critical step)", record.groups.step_over_limit)
+    } else {
+        String::new()
+    };
     format!(
-        "{} steps of at most {:.3e} s ({:.2} of the predicted critical step), {} point updates, {wall:.3} s",
-        record.counters.steps,
-        record.step_sizes.largest,
-        record.groups.step_over_limit,
-        record.counters.point_updates,
+        "{} steps of at most {:.3e} s{share}, {} point updates, {wall:.3} s",
+        record.counters.steps, record.step_sizes.largest, record.counters.point_updates,
     )
 }
 
