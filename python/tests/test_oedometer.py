@@ -79,6 +79,7 @@ def test_what_is_wrong_is_a_sentence():
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5, 0.6], pressure=[[1.0]]), r"\[time\]\[place\]"),
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[0.5]), "nothing is given"),
         (lambda: oedometer.score("terzaghi", time=[8.0], height=[7.0], pressure=[[1.0]]), "outside the column"),
+        (lambda: oedometer.score("cosine-layer", time=[1.0], height=[0.5], pressure=[1.0]), "give `distance`"),
         (lambda: oedometer.convergence([0.1], [1.0, 2.0]), "1 sizes and 2 errors"),
     ]:
         with pytest.raises(ValueError, match=told):

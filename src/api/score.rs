@@ -60,6 +60,11 @@ pub fn score(
         Mapping::convention(case.scene.has_plane_fields()).map_err(|error| error.to_string())?;
     mapping.sample = kind;
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
+    if case.scene.has_plane_fields() && samples.distance.is_empty() {
+        return Err(format!(
+            "the fields of `{scene}` depend on it: give `distance`, m from the crest of the load"
+        ));
+    }
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
     let comparison = asked.comparison(&mapping);
     let mut results = Results::of(vec![run], &comparison).map_err(|error| error.to_string())?;
@@ -230,5 +235,9 @@ mod tests {
         let told = score("terzaghi", &samples, "centres", None, &load).expect_err("no number");
         assert!(told.contains("[0]: `settlement` is NaN"), "{told}");
         assert!(with(&found.pressure[1..]).is_err_and(|told| told.contains("39 numbers for 2 times")));
+        // In the plane a place has a distance too.
+        let samples = Samples { settlement: &[], pressure: &found.pressure, ..samples };
+        let told = score("cosine-layer", &samples, "centres", None, &[]).expect_err("no distance");
+        assert!(told.contains("give `distance`, m from the crest"), "{told}");
     }
 }
