@@ -1,20 +1,13 @@
 //! Files that are written completely or not at all, by renaming, and texts with a digest as their last field, which
 //! reveals damage.
 
-use regex_lite::Regex;
 use serde::Serialize;
-use std::collections::HashSet;
 use std::fs;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::{LazyLock, Mutex};
-use std::time::{Duration, SystemTime};
+use std::sync::LazyLock;
 
-/// Ending of a file that is being written.
-const PART: &str = ".part";
-/// Age after which such a file is abandoned, whatever machine wrote it.
-const STALE: Duration = Duration::from_secs(24 * 3600);
 /// Letters of the host's name in a file's name.
 const HOST_LETTERS: usize = 32;
 
@@ -69,7 +62,6 @@ pub fn host_name() -> String {
 /// # Errors
 /// When the file system refuses; nothing is left under the name then.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
-    remove_stale_once(folder_of(path));
     write_streamed(path, |file| file.write_all(content).and_then(|()| file.sync_all()))
 }
 
@@ -79,16 +71,7 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), StoreError> {
 /// # Errors
 /// As [`write_whole`].
 pub fn write_rebuildable(path: &Path, content: &[u8]) -> Result<(), StoreError> {
-    remove_stale_once(folder_of(path));
     write_streamed(path, |file| file.write_all(content))
-}
-
-/// Clears a folder of what writers that have ended left there, once in a run: some folders have thousands of files.
-fn remove_stale_once(folder: &Path) {
-    static SEEN: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(Mutex::default);
-    if SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned())) {
-        remove_stale(folder);
-    }
 }
 
 /// Writes a file under a temporary name as `fill` fills it, and renames it, making its folders.
@@ -105,7 +88,9 @@ pub fn write_streamed(
         path: folder.to_owned(),
         source,
     })?;
-    let temporary = folder.join(part_name(&path.file_name().unwrap_or_default().to_string_lossy()));
+    // A name that no other writer takes.
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = folder.join(format!(".{file}.{}.part", random_word()));
     let written = fs::File::create_new(&temporary).and_then(|mut file| fill(&mut file));
     written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
         // What is half written is of no use to anyone.
@@ -126,40 +111,6 @@ pub fn place_of_this_process() -> &'static str {
 /// Sixteen hexadecimal digits, unique to this process and call.
 pub fn random_word() -> String {
     format!("{:016x}", RandomState::new().build_hasher().finish())
-}
-
-/// A name that no other writer takes: of this host, this process, and random.
-fn part_name(file: &str) -> String {
-    format!(".{file}.{}.{}.{}{PART}", *PLACE, std::process::id(), random_word())
-}
-
-/// Removes from a folder what a process of this place that has ended left there, and what is older than a day, whoever
-/// wrote it. Whatever cannot be read or removed stays.
-fn remove_stale(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_str().is_some_and(|name| is_stale(name, || age_of(&entry))) {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-fn age_of(entry: &fs::DirEntry) -> Option<Duration> {
-    let modified = entry.metadata().and_then(|about| about.modified()).ok()?;
-    SystemTime::now().duration_since(modified).ok()
-}
-
-/// Whether a file was left by a writer that has certainly ended.
-fn is_stale(name: &str, age: impl Fn() -> Option<Duration>) -> bool {
-    static NAME: LazyLock<Option<Regex>> =
-        LazyLock::new(|| Regex::new(r"^\..+\.([^.]+)\.([0-9]+)\.[0-9a-fA-F]{16}\.part$").ok());
-    let Some(parts) = NAME.as_ref().and_then(|pattern| pattern.captures(name)) else { return false };
-    (parts[1] == **PLACE && has_ended(&parts[2])) || age().is_some_and(|age| age > STALE)
-}
-
-/// Whether a process of this place is known to be no more; never where processes cannot be looked up.
-fn has_ended(process: &str) -> bool {
-    let all = Path::new("/proc");
-    all.join("self").exists() && !all.join(process).exists()
 }
 
 /// What stands before the digest where every field has a line of its own, and where all is one line.
@@ -216,59 +167,6 @@ fn digest_of(content: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const DAY: Option<Duration> = Some(Duration::from_secs(24 * 3600 + 1));
-    const NOW: Option<Duration> = Some(Duration::ZERO);
-    /// Beyond what any kernel counts to.
-    const NO_PROCESS: u32 = 4_194_305;
-
-    #[test]
-    fn two_writers_of_one_file_never_share_a_name() {
-        let (one, other) = (part_name("record.json"), part_name("record.json"));
-        assert_ne!(one, other);
-        let of_process = format!(".{}.{}.", *PLACE, std::process::id());
-        assert!(
-            one.starts_with(".record.json.") && one.contains(&of_process) && one.ends_with(PART),
-            "{one}"
-        );
-        assert!(one.len() < 200, "{one}");
-    }
-
-    #[test]
-    fn what_a_living_or_foreign_process_writes_stays() {
-        let named = |place: &str, process: u32| format!(".a.csv.{place}.{process}.0123456789abcdef.part");
-        let own = std::process::id();
-        assert!(!is_stale(&part_name("a.csv"), || NOW), "its writer is at it");
-        assert!(
-            !is_stale(&named("elsewhere-00000000", NO_PROCESS), || NOW),
-            "nobody knows that it has ended"
-        );
-        assert!(is_stale(&named("elsewhere-00000000", own), || DAY), "a day is enough for any file");
-        #[cfg(target_os = "linux")]
-        assert!(is_stale(&named(&PLACE, NO_PROCESS), || NOW), "its writer has ended");
-        for others in ["a.csv", ".a.csv.part", ".a.b.c.d.part", "record.json", ".x.host.12.zz.part"] {
-            assert!(!is_stale(others, || DAY), "{others} is none of ours");
-        }
-    }
-
-    #[test]
-    fn a_write_clears_what_dead_writers_left_and_nothing_else() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let file = |name: &str| folder.path().join(name);
-        let dead = file(&format!(".a.csv.{}.{NO_PROCESS}.0123456789abcdef.part", *PLACE));
-        let foreign = file(".a.csv.elsewhere-00000000.7.0123456789abcdef.part");
-        let old = file(".b.json.elsewhere-00000000.7.fedcba9876543210.part");
-        for path in [&dead, &foreign, &old] {
-            fs::write(path, "half").expect("written");
-        }
-        let two_days_ago = SystemTime::now() - 2 * STALE;
-        let opened = fs::File::options().write(true).open(&old).expect("opened");
-        opened.set_modified(two_days_ago).expect("aged");
-        write_whole(&file("a.csv"), b"whole").expect("written");
-        assert_eq!(fs::read(file("a.csv")).expect("the file"), b"whole");
-        assert_eq!(dead.exists(), !cfg!(target_os = "linux"));
-        assert!(foreign.exists() && !old.exists());
-    }
 
     #[test]
     fn a_text_is_whole_in_both_layouts_and_no_longer_after_any_change() {
