@@ -2,33 +2,9 @@
 
 use crate::campaign::runner::records_of;
 use crate::record::Record;
-use crate::record::csv::long_tables::{LongTable, MachinesTable, columns_csv};
+use crate::record::csv::long_tables::{LongTable, columns_csv};
 use crate::record::csv::tidy;
 use crate::record::csv::tidy::{columns, header_line, rows_of};
-use crate::record::provenance::Machine;
-
-#[test]
-fn every_machine_and_build_has_its_row_with_its_cases() {
-    let mut records = records_of(
-        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
-         method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [2, 3, 4, 5]\n",
-    );
-    let other = Machine { node: "node-7".to_owned(), processor: "Another, 3 GHz".to_owned() };
-    records[1].wall[0].machine = Some(other);
-    records[2].provenance.compiler = "rustc 0.0.0".to_owned();
-    let mut table = MachinesTable::default();
-    for record in &records {
-        table.add(record);
-    }
-    let text = table.to_csv().expect("a table");
-    let rows: Vec<csv::StringRecord> =
-        csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a row")).collect();
-    let cases: Vec<&str> = rows.iter().map(|row| &row[9]).collect();
-    assert_eq!((rows.len(), cases.iter().filter(|count| **count == "2").count()), (3, 1), "{text}");
-    let node = rows.iter().find(|row| &row[0] == "node-7").expect("a row");
-    assert_eq!((&node[1], &node[9]), ("Another, 3 GHz", "1"));
-    assert!(rows.iter().any(|row| &row[6] == "rustc 0.0.0" && row[0] == Machine::this().node));
-}
 
 const STUDY: &str = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
                      method = [\"MPM\"]\nintegrator = [\"implicit\"]\ncells = [3]\npoisson_ratio = []\n";

@@ -6,7 +6,7 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{chosen_as, studies_of_this_project};
 use crate::cli::stream::say;
-use crate::cli::study_tables::{Beside, write_table};
+use crate::cli::study_tables::write_table;
 use crate::record::csv::table_file::TableForm;
 use crate::record::provenance::Origins;
 use crate::record::store::RecordStore;
@@ -121,7 +121,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     }
     let there = cases.len() - holes.len();
     if there > 0 {
-        let table = write_table(study, &target, &[], Beside::Tables(TableForm::Plain))?;
+        let table = write_table(study, &target, &[], Some(TableForm::Plain))?;
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

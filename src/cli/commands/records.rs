@@ -17,22 +17,27 @@ struct Row {
     integrator: &'static str,
     cells: usize,
     node: Option<String>,
+    processor: Option<String>,
     cpu_seconds: Option<f64>,
     sources: String,
+    compiler: String,
 }
 
 impl Row {
     fn of(record: Record) -> Self {
         let sample = record.wall.into_iter().next().unwrap_or_default();
+        let (node, processor) = sample.machine.map(|machine| (machine.node, machine.processor)).unzip();
         Self {
             case: record.hash,
             status: record.status.name(),
             method: record.case.method.to_string(),
             integrator: record.case.integrator.name(),
             cells: record.case.cells,
-            node: sample.machine.map(|machine| machine.node),
+            node,
+            processor,
             cpu_seconds: sample.cpu_seconds,
             sources: record.provenance.sources,
+            compiler: record.provenance.compiler,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::cli::progress::StudyBar;
 use crate::cli::slurm;
 use crate::cli::stream::say;
 use crate::cli::study_files;
-use crate::cli::study_tables::{Beside, is_compressed, write_table};
+use crate::cli::study_tables::{is_compressed, write_table};
 use crate::cli::trust::{self, TrustArguments};
 use crate::foreign::reading::mapping_of;
 use crate::judge::judgement::Absent;
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         None => &studies,
     };
     let form = if arguments.compress { TableForm::Compressed } else { TableForm::Plain };
-    let reports = run_and_store(&studies, selected, &options, &arguments.out, Beside::Tables(form))?;
+    let reports = run_and_store(&studies, selected, &options, &arguments.out, Some(form))?;
     let mut all = Tally::default();
     for report in &reports {
         all.join(report.tally);
@@ -155,7 +155,7 @@ pub fn run_and_store(
     selected: &[Study],
     options: &RunOptions,
     results: &Path,
-    beside: Beside,
+    beside: Option<TableForm>,
 ) -> anyhow::Result<Vec<RunReport>> {
     let store_of = |study: &Study| RecordStore::for_cases(results, &study.name, study.planned.len());
     let stores: Vec<RecordStore> = studies.iter().map(store_of).collect();

@@ -1,10 +1,9 @@
-//! The tables beside the tidy one: profiles, settlement over time, machines, and what every column means.
+//! The tables beside the tidy one: profiles, settlement over time, and what every column means.
 
 use crate::case::keys::KEYS;
 use crate::record::Record;
-use crate::record::csv::{lines_of, text_of, tidy};
+use crate::record::csv::{lines_of, tidy};
 use oedometer_mpm::run::results::snapshot::Samples;
-use std::collections::BTreeMap;
 
 /// Columns of the profiles.
 const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
@@ -146,57 +145,4 @@ pub fn columns_csv() -> Result<String, csv::Error> {
         rows.extend(table.columns().iter().map(|(name, unit, meaning)| [table.name(), name, unit, meaning]));
     }
     lines_of(rows)
-}
-
-/// A row of the table of machines; what is not known is empty. The number of cases is 0 until it is written.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-struct Origin {
-    node: String,
-    processor: String,
-    version: String,
-    sources: String,
-    commit: String,
-    tree: &'static str,
-    compiler: String,
-    target: String,
-    profile: String,
-    cases: usize,
-}
-
-/// Which machines and builds the records of a study are of, each with its number of cases.
-#[derive(Clone, Debug, Default)]
-pub struct MachinesTable(BTreeMap<Origin, usize>);
-
-impl MachinesTable {
-    /// Counts a record with the machine that ran it first.
-    pub fn add(&mut self, record: &Record) {
-        let made = record.provenance.clone();
-        let machine = record.wall.first().and_then(|sample| sample.machine.clone());
-        let (node, processor) = machine.map(|machine| (machine.node, machine.processor)).unwrap_or_default();
-        let origin = Origin {
-            node,
-            processor,
-            version: made.version,
-            sources: made.sources,
-            commit: made.commit,
-            tree: if made.dirty { "changed" } else { "committed" },
-            compiler: made.compiler,
-            target: made.target,
-            profile: made.profile,
-            cases: 0,
-        };
-        *self.0.entry(origin).or_default() += 1;
-    }
-
-    /// The table.
-    ///
-    /// # Errors
-    /// Never for plain words; the writer's own otherwise.
-    pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for (origin, cases) in &self.0 {
-            writer.serialize(Origin { cases: *cases, ..origin.clone() })?;
-        }
-        text_of(writer)
-    }
 }

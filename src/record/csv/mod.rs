@@ -12,11 +12,6 @@ fn lines_of<F: AsRef<[u8]>>(
     for row in rows {
         writer.write_record(row)?;
     }
-    text_of(writer)
-}
-
-/// What a writer wrote to memory.
-fn text_of(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -12,7 +12,6 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_an
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::stream::say;
-use crate::cli::study_tables::Beside;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::{GoldenFile, parts};
 use crate::history::comparison::StudyComparison;
@@ -125,7 +124,7 @@ fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<R
     let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
     let is_named = !arguments.studies.names_none();
     let chosen: Vec<Study> = studies.iter().map(|study| selected(study, is_named)).collect();
-    let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, Beside::Machines)?;
+    let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, None)?;
     refuse_unfinished(&reports)?;
     for ((study, chosen), report) in studies.iter().zip(&chosen).zip(&mut reports) {
         if chosen.cases(tier).len() < study.cases(Tier::Full).len() {
