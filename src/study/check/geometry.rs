@@ -12,15 +12,16 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::soil_layers::{MOST_LAYERS, SoilLayer, SoilLayers};
-use oedometer_exact::xie_leo::XieLeo;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
-use oedometer_soil::elementary;
 use oedometer_soil::wording::short;
 use std::ops::Range;
 
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
+
+/// Share by which a strain may miss the one that its load was made of.
+const ROUND_OFF: f64 = 1e-12;
 
 /// Share of the load by which the base of a column may change the pressures of a front in a half-space.
 const MOST_FELT_OF_BASE: f64 = 1e-2;
@@ -277,36 +278,9 @@ impl Checker<'_> {
         None
     }
 
-    /// Complains of a load that would press out more water than the pores hold: it has no end state.
-    pub(super) fn porosity_at_the_end(&mut self, file: &StudyFile, base: &Case) {
-        let Case { scene, column, material: soil, .. } = base;
-        if !scene.is_large_strain() || scene.is_manufactured() || !self.diagnostics.is_empty() {
-            return;
-        }
-        let parameters = column_parameters(column, soil);
-        let Err(error @ ExactError::LoadClosesPores { limit, .. }) = XieLeo::new(&parameters) else { return };
-        if let Some(strain) = &file.column.strain {
-            let (value, porosity) = (**strain, soil.porosity);
-            self.complain(
-                strain.span(),
-                format!("a strain of {value} leaves no pores: the porosity is {porosity}"),
-                format!("write `strain` below {porosity}, or in [material] a `porosity` above {value}"),
-            );
-            return;
-        }
-        let place = file.column.inputs.span("load").or(file.material.inputs.span("porosity"));
-        let place = place.or(file.material.inputs.span("youngs_modulus"));
-        let most = limit * soil.oedometric_modulus();
-        let least = -elementary::exp_m1(-column.load / soil.oedometric_modulus());
-        self.complain(
-            place.unwrap_or_else(|| file.scene.span()),
-            error.to_string(),
-            format!("load less than {most:.4e} Pa, or give a porosity above {least:.4}"),
-        );
-    }
-
-    /// Complains of a case whose pores would close before its end, and of a motion that cannot be. Whether it did.
-    pub(super) fn has_no_end(&mut self, place: &Range<usize>, case: &Case) -> bool {
+    /// Complains of a case whose pores would close before its end, where its load is typed, and of a motion that cannot
+    /// be. Whether it did.
+    pub(super) fn has_no_end(&mut self, place: &Range<usize>, load: &Range<usize>, case: &Case) -> bool {
         if let Some(error) = case.scene.refuses_motion(&case.column, &case.material) {
             let help = "the case is impossible: see the tables [manufactured] and [material]";
             self.complain(place.clone(), error.to_string(), help);
@@ -317,11 +291,11 @@ impl Checker<'_> {
         }
         let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
         let (soil, strain) = (&case.material, final_strain(case));
-        if !is_loaded || strain < soil.porosity {
+        if !is_loaded || strain < (1.0 - ROUND_OFF) * soil.porosity {
             return false;
         }
         self.complain(
-            place.clone(),
+            load.clone(),
             format!(
                 "with E = {} Pa, ν = {} and n = {} the load {} Pa strains the column by {}: the pores close at {}",
                 short(soil.youngs_modulus),

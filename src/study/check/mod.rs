@@ -196,7 +196,6 @@ impl Checker<'_> {
             base.column.load = load_of(strain, &base);
         }
         base.column.soils = self.soils(&file, &base);
-        self.porosity_at_the_end(&file, &base);
         let time_factors = Shared::from(match &file.output.time_factors {
             Some(list) => self.time_factors(list),
             None => scene.default_time_factors().to_vec(),

@@ -152,10 +152,14 @@ impl Checker<'_> {
         cases: impl Iterator<Item = Case>,
     ) {
         let place = |key: &str| {
-            let of_study = [&file.points.inputs, &file.integrator.inputs, &file.material.inputs];
+            let of_study =
+                [&file.points.inputs, &file.integrator.inputs, &file.material.inputs, &file.column.inputs];
             let of_study = || of_study.iter().find_map(|inputs| inputs.span(key));
             table.inputs.span(key).or_else(of_study)
         };
+        let of_load = || ["load", "porosity", "youngs_modulus"].into_iter().find_map(place);
+        let of_load = file.column.strain.as_ref().map(Placed::span).or_else(of_load);
+        let of_load = of_load.unwrap_or(start.clone());
         let is_solved = self.purpose == Purpose::Solving;
         let mut refused: Vec<&str> = Vec::new();
         let mut gaps: HashMap<usize, String> = HashMap::new();
@@ -170,7 +174,7 @@ impl Checker<'_> {
                 }
             }
             if is_solved && has_end && self.diagnostics.is_empty() {
-                has_end = !self.has_no_end(start, &case);
+                has_end = !self.has_no_end(start, &of_load, &case);
             }
             if !is_solved || case.is_attached() {
                 continue;

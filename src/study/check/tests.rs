@@ -108,11 +108,11 @@ mod strains {
         for (strain, line) in [("0.35", 4), ("0.3", 4)] {
             let told = refused(&format!("strain = {strain}"), "");
             assert!(
-                told.contains(&format!("a strain of {strain} leaves no pores: the porosity is 0.3")),
+                told.contains(&format!("strains the column by {strain}: the pores close at 0.3")),
                 "{told}"
             );
             assert!(
-                told.contains(&format!("t.toml:{line}:")) && told.contains("a `porosity` above"),
+                told.contains(&format!("t.toml:{line}:")) && told.contains("`strain` in [column]"),
                 "{told}"
             );
         }
