@@ -301,9 +301,15 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Whether it has several soils.
+    #[inline]
+    pub(crate) fn is_layered(&self) -> bool {
+        self.soils.len() > 1
+    }
+
     /// Whether it has several soils, and patches that keep to them.
     fn recovers_by_soils(&self) -> bool {
-        self.soils.len() > 1 && self.method.recovery == Recovery::PatchSoils
+        self.is_layered() && self.method.recovery == Recovery::PatchSoils
     }
 
     /// Soil of a point.

@@ -13,10 +13,11 @@ impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
     pub fn map_masses(&mut self) {
         let (soils, points) = (&self.soils[..], &self.points);
+        let is_layered = self.is_layered();
         self.basis.sum_values(
             self.grid.node_stride(),
             #[inline(always)]
-            |point| masses_of(points.soil_among(soils, point), points, point),
+            |point| masses_of(points.soil_among(soils, point), points, point, is_layered),
             &mut self.nodes.sums.masses,
         );
         self.take_masses();
@@ -40,11 +41,12 @@ impl<const D: usize> Body<D> {
     /// Maps masses and velocities in one pass.
     pub fn map_masses_and_velocities(&mut self) {
         let (soils, points) = (&self.soils[..], &self.points);
+        let is_layered = self.is_layered();
         self.basis.sum_both(
             self.grid.node_stride(),
             #[inline(always)]
             |point| {
-                let masses = masses_of(points.soil_among(soils, point), points, point);
+                let masses = masses_of(points.soil_among(soils, point), points, point, is_layered);
                 (masses, momenta_of(points, point, [masses[0][0], masses[0][1]]))
             },
             &mut self.nodes.sums.masses,
@@ -55,7 +57,7 @@ impl<const D: usize> Body<D> {
     }
 
     fn take_masses(&mut self) {
-        self.nodes.take_masses(&self.material);
+        self.nodes.take_masses(&self.material, self.is_layered());
         if self.material.conductivity_mean == ConductivityMean::Chord {
             self.take_chord_drag();
         }
@@ -97,11 +99,18 @@ pub(crate) fn volumes_of<const D: usize>(points: &Points<D>, point: usize, solid
     [initial * solid_fraction, initial * (points.volume_ratio[point] - solid_fraction)]
 }
 
-/// Volumes of grains and pores of a point, m^D, and its drag, N s/m.
+/// Volumes of grains and pores of a point, m^D, and its drag, N s/m; in layers that over its porosity, which the node's
+/// replaces (docs/theory.md, Eq. 44).
 #[inline(always)]
-fn masses_of<const D: usize>(soil: &Material, points: &Points<D>, point: usize) -> [[f64; 4]; 1] {
+fn masses_of<const D: usize>(
+    soil: &Material,
+    points: &Points<D>,
+    point: usize,
+    is_layered: bool,
+) -> [[f64; 4]; 1] {
     let [grains, pores] = volumes_of(points, point, 1.0 - soil.porosity);
-    [[grains, pores, drag_of_point(soil, pores, points.volume_ratio[point]), 0.0]]
+    let resisting = if is_layered { grains + pores } else { pores };
+    [[grains, pores, drag_of_point(soil, resisting, points.volume_ratio[point]), 0.0]]
 }
 
 /// Volume times velocity of both phases of a point.

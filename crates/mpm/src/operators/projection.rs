@@ -1,5 +1,5 @@
 //! Polynomial pressure projection (PPP): what stabilises a nodal pressure of the order of the velocities (Dohrmann & Bochev
-//! 2004; in poromechanics White & Borja 2008, by material points Zhao & Choo 2020, Eqs 73–79; docs/theory.md, Eq. 37).
+//! 2004; in poromechanics White & Borja 2008, by material points Zhao & Choo 2020, Eqs 73–79; docs/theory.md, Eq. 41).
 //!
 //! ```text
 //! V_j (n_j/K_w) ṗ_j + τ Σ_k P_jk ṗ_k = −Σ_p N_jp V_p (∇·f)_p,     P = Σ_p V_p (N_p − N̄_c)(N_p − N̄_c)ᵀ,

@@ -291,6 +291,11 @@ impl SceneKind {
         matches!(self.definition().load, SceneLoad::SuddenOrGrowing(_))
     }
 
+    /// Whether its soil may lie in layers.
+    pub fn takes_layers(self) -> bool {
+        matches!(self, Self::Layered | Self::XieLeo)
+    }
+
     /// Whether a load acts, so that `σ' − p = −q` at rest.
     pub fn is_loaded(self) -> bool {
         self.definition().load != SceneLoad::None

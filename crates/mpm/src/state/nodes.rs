@@ -239,9 +239,9 @@ impl<const D: usize> Nodes<D> {
         self.solid_mass.is_empty()
     }
 
-    /// Turns the points' [`sums`](Self::sums) into masses, volumes, porosities and drag of the soil. Nodes without mass
-    /// are silenced: what they had would otherwise reach the points.
-    pub fn take_masses(&mut self, soil: &Material) {
+    /// Turns the points' [`sums`](Self::sums) into masses, volumes, porosities and drag of the soil, that of layers with
+    /// the porosity of the node. Nodes without mass are silenced: what they had would otherwise reach the points.
+    pub fn take_masses(&mut self, soil: &Material, is_layered: bool) {
         self.active.clear();
         for node in 0..self.len() {
             let [[grain_volume, pore_volume, drag, _]] = self.sums.masses[node];
@@ -262,7 +262,7 @@ impl<const D: usize> Nodes<D> {
             self.per_water_mass[node] = 1.0 / self.water_mass[node];
             self.volume[node] = grain_volume + pore_volume;
             self.porosity[node] = pore_volume / self.volume[node];
-            self.drag[node] = drag;
+            self.drag[node] = if is_layered { self.porosity[node] * drag } else { drag };
         }
     }
 
@@ -342,7 +342,7 @@ mod tests {
         let grid = Grid::new(0.1, [1, 10]);
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
         nodes.sums.masses.fill([[1.0; 4]]);
-        nodes.take_masses(&Material::default());
+        nodes.take_masses(&Material::default(), false);
         let at = |x: usize, y: usize| nodes.free[grid.flat_node(&[x + 2, y + 2])];
         assert_eq!(at(0, 0), [0.0, 0.0]);
         assert_eq!(at(1, 5), [0.0, 1.0]);
@@ -355,7 +355,7 @@ mod tests {
         let grid = Grid::new(0.1, [3, 3]);
         let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
         nodes.sums.masses.fill([[1.0; 4]]);
-        nodes.take_masses(&Material::default());
+        nodes.take_masses(&Material::default(), false);
         let base = grid.flat_node(&[3, 2]);
         assert_eq!((nodes.free[base], nodes.water_free[base]), ([0.0, 0.0], [1.0, 0.0]));
         let above = grid.flat_node(&[3, 3]);
@@ -372,7 +372,7 @@ mod tests {
             *phases = [[6.0, 10.0], [1.625, 3.5]];
         }
         nodes.water_velocity.fill([0.25, 0.5]);
-        nodes.take_masses(&soil);
+        nodes.take_masses(&soil, false);
         nodes.take_velocities(&soil);
         let of = |row: usize| {
             let node = grid.flat_node(&[3, row]);
@@ -398,7 +398,7 @@ mod tests {
                 nodes.sums.masses[node] = [[2.0 * share, share, 5.0 * share, 0.0]];
                 nodes.sums.phases[node] = [[6.0 * share], [4.0 * share]];
             }
-            nodes.take_masses(&soil);
+            nodes.take_masses(&soil, false);
             nodes.take_velocities(&soil);
             assert_eq!(nodes.active, if has_mass { vec![3, 4, 6] } else { vec![3, 6] });
             let of_node = [nodes.solid_velocity[4][0], nodes.water_velocity[4][0], nodes.porosity[4]];
@@ -421,7 +421,7 @@ mod tests {
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
         nodes.sums.masses[4] = [[1e-33; 4]];
         nodes.sums.masses[5] = [[1e-6; 4]];
-        nodes.take_masses(&Material::default());
+        nodes.take_masses(&Material::default(), false);
         assert_eq!((nodes.free[4], nodes.free[5]), ([0.0], [1.0]));
     }
 }

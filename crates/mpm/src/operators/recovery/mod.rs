@@ -196,7 +196,7 @@ pub(crate) mod tests {
             cells.locate(&grid, &points, &[Material::default()]);
             let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);
             nodes.sums.masses.fill([[1.0; 4]]);
-            nodes.take_masses(&Material::default());
+            nodes.take_masses(&Material::default(), false);
             let mut basis = Basis::Cpgimp.stencils(points.len());
             let places = [&cells.place[..], &points.half_length[..]];
             Basis::Cpgimp.build(&mut basis, &grid, &Support::free(), places);
