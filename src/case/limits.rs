@@ -174,8 +174,14 @@ impl Case {
                 "take another method, or `undrained = \"two-phase\"`",
             ),
             when(
+                "conductivity_mean",
+                chord && !column.soils.is_empty(),
+                "the chord mean is taken along the compression of one soil, and the column has layers",
+                "take `conductivity_mean = \"points\"`",
+            ),
+            when(
                 "sets",
-                two && *scene == SceneKind::Layered,
+                two && (*scene == SceneKind::Layered || !column.soils.is_empty()),
                 "the water of two point sets knows one soil",
                 "take another scene, or `sets = 1`",
             ),

@@ -130,6 +130,9 @@ pub enum ExactError {
         /// Height of the column, m.
         height: f64,
     },
+    /// Layers of soil where the solution has none.
+    #[error("a column of layers {0}")]
+    Layers(&'static str),
     /// Reloading softer than first loading.
     #[error(
         "the modulus of reloading, {reload} Pa, is below that of first loading, {virgin} Pa: a soil that remembers is \

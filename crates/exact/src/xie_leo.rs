@@ -67,6 +67,9 @@ impl XieLeo {
         if parameters.loading_time > 0.0 {
             return Err(ExactError::LoadGrows { loading_time: parameters.loading_time });
         }
+        if !parameters.soils.is_empty() {
+            return Err(ExactError::Layers("has no closed form at large strain: ask for `large-strain`"));
+        }
         Ok(Self { parameters: *parameters, strain, drainage })
     }
 

@@ -166,11 +166,11 @@ impl Checker<'_> {
                 self.complain(layer.span(), message, help);
             }
         }
-        if base.scene != SceneKind::Layered {
+        if !base.scene.takes_layers() {
             self.complain(
                 whole,
                 format!("the soil of the scene `{}` has no layers", base.scene.name()),
-                "layers belong to the scene \"layered\"",
+                "layers belong to the scenes \"layered\", of small strain, and \"xie-leo\", of large",
             );
             return SoilLayers::default();
         }
@@ -261,6 +261,8 @@ impl Checker<'_> {
                 "the column has a `load` and a `strain`".to_owned(),
                 "leave one of them out: the load follows from the strain",
             )
+        } else if !file.column.soils.is_empty() {
+            ("the layers of a column have strains of their own".to_owned(), "give a `load`")
         } else if !seed.scene.is_loaded() {
             (
                 format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name()),
@@ -290,6 +292,18 @@ impl Checker<'_> {
             return true;
         }
         let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
+        if is_loaded && !case.column.soils.is_empty() {
+            let kind = case.scene.references()[0].of_soil(&case.material);
+            let reference = Reference::new(kind, &column_parameters(&case.column, &case.material), &[]);
+            if let Err(error) = &reference {
+                self.complain(
+                    load.clone(),
+                    error.to_string(),
+                    "see [column], [column.soils] and [material]",
+                );
+            }
+            return reference.is_err();
+        }
         let (soil, strain) = (&case.material, final_strain(case));
         if !is_loaded || strain < (1.0 - ROUND_OFF) * soil.porosity {
             return false;

@@ -117,6 +117,14 @@ impl Diffusion {
         }
     }
 
+    /// Storage of skeleton and water, that of the skeleton alone, both over the compliance of the unstrained skeleton, and
+    /// the conductance `k/(k_0 J)`, where the skeleton lacks the share `lacking` of the full load.
+    pub fn storage_and_conductance(&self, lacking: f64) -> [f64; 3] {
+        let Coefficients { storage, skeleton_storage, .. } = self.coefficients(lacking);
+        let conductance = if self.model.law == Law::Linear { 1.0 } else { 1.0 - self.shrinkage(lacking) };
+        [storage * conductance, skeleton_storage * conductance, conductance]
+    }
+
     /// Pressure ratio of the undrained start: `p_0 = −K_w ln(1 − (1 − J_0)/n_0) = q + σ'(J_0)`,
     /// at small strain `B`.
     pub fn undrained_ratio(&self) -> f64 {

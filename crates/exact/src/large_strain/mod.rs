@@ -2,6 +2,8 @@
 
 mod chebyshev;
 pub mod diffusion;
+mod layers;
+mod legendre;
 mod march;
 mod radau;
 mod similarity;
@@ -11,7 +13,7 @@ pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::field_values::{Accuracy, FieldValues};
 use crate::large_strain::diffusion::{Diffusion, Loading};
-use crate::large_strain::march::{March, Profile, State};
+use crate::large_strain::march::{March, Profile, Space, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
 
@@ -42,11 +44,11 @@ const LOAD_SHARES: u32 = 4;
 /// is `β ∂r/∂T_v = ∂²r/∂ζ² − G (∂r/∂ζ)² + β_s dλ/dT_v` for `r = p/q` under the share `λ` of the load,
 /// with `β`, its skeleton's part `β_s` and `G` functions of `σ'/q = r − λ`. Under a load at once, until
 /// the front reaches the base, the solution is a function of `ζ/√T_v`; from there, or from rest under a
-/// load that grows, Chebyshev collocation marches with Radau IIA.
+/// load that grows, Chebyshev collocation marches with Radau IIA. A column of layers under a load that grows marches on
+/// one spectral element per layer.
 #[derive(Clone, Debug)]
 pub struct LargeStrain {
     parameters: ColumnParameters,
-    diffusion: Diffusion,
     loading: Loading,
     /// The first front; none where the load grows.
     front: Option<Front>,
@@ -104,14 +106,13 @@ impl LargeStrain {
             .collect::<Result<Vec<_>, _>>()?;
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let diffusion = Diffusion::new(model, parameters, 1.0)?;
+        Space::of(parameters, model, RESOLUTIONS[0].0)?;
         let loading = Loading::over(parameters.time_factor(parameters.loading_time));
         let mut before: Option<Attempt> = None;
         let mut difference = f64::INFINITY;
         let mut resolution = 0;
         for (order, growth) in RESOLUTIONS {
-            let Ok(attempt) = Attempt::new(parameters, model, diffusion, loading, (order, growth), &times)
-            else {
+            let Ok(attempt) = Attempt::new(parameters, model, loading, (order, growth), &times) else {
                 continue;
             };
             if let Some(before) = &before {
@@ -126,7 +127,6 @@ impl LargeStrain {
         match before {
             Some(attempt) if difference < TOO_MUCH => Ok(Self {
                 parameters: *parameters,
-                diffusion,
                 loading,
                 front: attempt.front,
                 march: attempt.march,
@@ -167,7 +167,7 @@ impl LargeStrain {
     pub fn volume_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let (ratio, _) = self.ratio_and_shrinkage(time_factor, zeta)?;
-        Ok(1.0 - self.diffusion.shrinkage(ratio + 1.0 - self.loading.share(time_factor)))
+        Ok(1.0 - self.march.shrinkage(time_factor, zeta, ratio))
     }
 
     /// Pressure, effective (Cauchy) stress and displacement at a Lagrangian relative depth.
@@ -201,7 +201,7 @@ impl LargeStrain {
     /// # Errors
     /// As for [`fields`](Self::fields).
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = self.parameters.height * self.diffusion.shrinkage(0.0);
+        let end = self.parameters.height * self.march.final_shrinkage();
         Ok(self.settlement(time_factor)? / end)
     }
 
@@ -219,13 +219,12 @@ impl Attempt {
     fn new(
         parameters: &ColumnParameters,
         model: LargeStrainModel,
-        diffusion: Diffusion,
         loading: Loading,
         (order, growth): (usize, f64),
         times: &[f64],
     ) -> Result<Self, ExactError> {
         let failed = ExactError::NotConverged { difference: f64::INFINITY };
-        let march = March::new(diffusion, loading, order, growth);
+        let march = March::new(Space::of(parameters, model, order)?, loading, growth);
         let mut front: Option<Front> = None;
         if !loading.is_gradual() {
             // A steep front is reached by way of smaller loads.

@@ -1,0 +1,213 @@
+//! The space of a column of layers: one spectral element per layer, which joins the next in a point of both.
+//!
+//! In each layer, with the moduli `E` and conductivities `k` over those of the column's soil and `y = Y/H`,
+//!
+//! ```text
+//! (E_0/E) [C(J) ∂r/∂T_v − C_s(J) dλ/dT_v] = ∂/∂y [(k/k_0) κ(J) ∂r/∂y]      r and the flux continuous
+//! ```
+//!
+//! (docs/theory.md, Eq. 43). Its weak form at Lobatto's points leaves no equation over at an interface: what the one layer
+//! gives there the other takes (Maday & Patera 1989).
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::exact_error::ExactError;
+use crate::large_strain::diffusion::{Diffusion, LargeStrainModel, LoadAt};
+use crate::large_strain::legendre::Element;
+use crate::large_strain::march::{Piece, Profile};
+use crate::parameters::ColumnParameters;
+use oedometer_soil::continuity::Continuity;
+
+/// Step in `p/q` of the differences that Newton's matrix is made of.
+const STEP: f64 = 1e-5;
+
+/// A column of layers, from the surface down as its points are.
+#[derive(Clone, Debug)]
+pub struct Layers {
+    layers: Vec<Layer>,
+    /// Points of a layer less one.
+    order: usize,
+    element: Element,
+}
+
+/// One layer with its points from its top down.
+#[derive(Clone, Debug)]
+struct Layer {
+    diffusion: Diffusion,
+    /// Heights of base and top over that of the column.
+    ends: [f64; 2],
+    /// `E_0/E`.
+    compliance: f64,
+    /// `k/k_0`.
+    conductivity: f64,
+    /// Weights of the points, which add up to the thickness over the height of the column.
+    weights: Vec<f64>,
+    /// `∂/∂y` at the points.
+    slope: DMatrix<f64>,
+}
+
+/// `C`, `C_s` and `κ` of the points of a layer, with its factors.
+type Coefficients = Vec<[f64; 3]>;
+
+impl Layers {
+    /// The layers of a column on `order + 1` points each.
+    ///
+    /// # Errors
+    /// When the layers do not fill the column, a soil is impossible or closes its pores, the load acts at once, a weight
+    /// acts, or the continuity needs a gradient of the porosity.
+    pub fn of(
+        parameters: &ColumnParameters,
+        model: LargeStrainModel,
+        order: usize,
+    ) -> Result<Self, ExactError> {
+        let height = parameters.height;
+        if let Some(sum) = parameters.soils.misses(height) {
+            return Err(ExactError::LayersDoNotFill { sum, height });
+        }
+        if parameters.loading_time == 0.0 {
+            return Err(ExactError::Layers("takes a load that grows at large strain: give a loading time"));
+        }
+        if parameters.self_weight {
+            return Err(ExactError::Layers("has no weight here: leave `self_weight` out"));
+        }
+        if model.continuity != Continuity::Conservative {
+            return Err(ExactError::Layers("has jumps of the porosity: the continuity is `conservative`"));
+        }
+        let element = Element::new(order);
+        let mut layers = Vec::with_capacity(parameters.soils.len());
+        let mut base = 0.0;
+        for layer in parameters.soils.iter() {
+            let soil = layer.soil(&parameters.soil);
+            let thickness = layer.thickness / height;
+            layers.push(Layer {
+                diffusion: Diffusion::new(model, &ColumnParameters { soil, ..*parameters }, 1.0)?,
+                ends: [base, base + thickness],
+                compliance: parameters.soil.oedometric_modulus() / soil.oedometric_modulus(),
+                conductivity: soil.hydraulic_conductivity / parameters.soil.hydraulic_conductivity,
+                weights: element.weights.iter().map(|weight| 0.5 * thickness * weight).collect(),
+                slope: element.derivative() * (2.0 / thickness),
+            });
+            base += thickness;
+        }
+        layers.reverse();
+        Ok(Self { layers, order, element })
+    }
+
+    /// Points below the surface.
+    pub fn len(&self) -> usize {
+        self.layers.len() * self.order
+    }
+
+    /// Depths of the points.
+    pub fn depths(&self) -> impl Iterator<Item = f64> {
+        self.layers.iter().flat_map(|layer| {
+            let [base, top] = layer.ends;
+            self.element.points.iter().map(move |x| (1.0 - base - 0.5 * (top - base) * (1.0 + x)).max(0.0))
+        })
+    }
+
+    /// `1 − J` at a depth where the skeleton lacks a share of the load; of the lower layer at an interface.
+    pub fn shrinkage(&self, zeta: f64, lacking: f64) -> f64 {
+        let at = self.layers.iter().position(|layer| 1.0 - zeta > layer.ends[0]);
+        self.layers[at.unwrap_or(self.layers.len() - 1)].diffusion.shrinkage(lacking)
+    }
+
+    /// `∫ (1 − J) dζ` over the column at the end of consolidation.
+    pub fn final_shrinkage(&self) -> f64 {
+        self.layers.iter().map(|layer| (layer.ends[1] - layer.ends[0]) * layer.diffusion.shrinkage(0.0)).sum()
+    }
+
+    /// Functions of the depth through the values at the points below the surface.
+    pub fn profile(&self, ratio: &DVector<f64>, absent: f64) -> Profile {
+        let pieces = self.layers.iter().enumerate().map(|(at, layer)| {
+            let values = self.of_layer(at, ratio);
+            let shrinkage = values.map(|ratio| layer.diffusion.shrinkage(ratio + absent));
+            Piece {
+                ends: layer.ends,
+                ratio: self.element.coefficients(values.as_slice()),
+                shrinkage: self.element.coefficients(shrinkage.as_slice()),
+            }
+        });
+        Profile::Layers(pieces.collect())
+    }
+
+    /// `∂r/∂T_v` at the points below the surface.
+    pub fn rate(&self, ratio: &DVector<f64>, load: LoadAt) -> DVector<f64> {
+        let (taken, storage) = self.balance(ratio, load);
+        taken.component_div(&storage)
+    }
+
+    /// Derivative of the rate.
+    pub fn jacobian(&self, ratio: &DVector<f64>, load: LoadAt) -> DMatrix<f64> {
+        let (taken, storage) = self.balance(ratio, load);
+        let rate = taken.component_div(&storage);
+        let mut jacobian = DMatrix::zeros(self.len(), self.len());
+        for (at, layer) in self.layers.iter().enumerate() {
+            let values = self.of_layer(at, ratio);
+            let coefficients = layer.coefficients(&values, load.absent);
+            let [before, after] = [-STEP, STEP].map(|step| layer.coefficients(&values, load.absent + step));
+            let change = |point: usize, i: usize| (after[point][i] - before[point][i]) / (2.0 * STEP);
+            let gradient = &layer.slope * &values;
+            let mut flux = layer.slope.clone();
+            for q in 0..=self.order {
+                flux.row_mut(q).scale_mut(layer.weights[q] * coefficients[q][2]);
+                flux[(q, q)] += layer.weights[q] * change(q, 2) * gradient[q];
+            }
+            let given = layer.slope.tr_mul(&flux);
+            for a in 0..=self.order {
+                let Some(row) = self.unknown(at, a) else { continue };
+                for b in 0..=self.order {
+                    let Some(column) = self.unknown(at, b) else { continue };
+                    jacobian[(row, column)] -= given[(a, b)];
+                }
+                jacobian[(row, row)] +=
+                    layer.weights[a] * (change(a, 1) * load.rate - change(a, 0) * rate[row]);
+            }
+        }
+        for (row, storage) in storage.iter().enumerate() {
+            jacobian.row_mut(row).scale_mut(storage.recip());
+        }
+        jacobian
+    }
+
+    /// What every point takes in, and its storage.
+    fn balance(&self, ratio: &DVector<f64>, load: LoadAt) -> (DVector<f64>, DVector<f64>) {
+        let (mut taken, mut storage) = (DVector::zeros(self.len()), DVector::zeros(self.len()));
+        for (at, layer) in self.layers.iter().enumerate() {
+            let values = self.of_layer(at, ratio);
+            let coefficients = layer.coefficients(&values, load.absent);
+            let mut flux = &layer.slope * &values;
+            for q in 0..=self.order {
+                flux[q] *= layer.weights[q] * coefficients[q][2];
+            }
+            let given = layer.slope.tr_mul(&flux);
+            for a in 0..=self.order {
+                let Some(row) = self.unknown(at, a) else { continue };
+                taken[row] += layer.weights[a] * coefficients[a][1] * load.rate - given[a];
+                storage[row] += layer.weights[a] * coefficients[a][0];
+            }
+        }
+        (taken, storage)
+    }
+
+    /// Number of the pressure at a point of a layer; the surface has none.
+    fn unknown(&self, at: usize, point: usize) -> Option<usize> {
+        (at * self.order + point).checked_sub(1)
+    }
+
+    /// Values at the points of a layer.
+    fn of_layer(&self, at: usize, ratio: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(self.order + 1, |point, _| self.unknown(at, point).map_or(0.0, |row| ratio[row]))
+    }
+}
+
+impl Layer {
+    /// `(E_0/E) C`, `(E_0/E) C_s` and `(k/k_0) κ` at the points.
+    fn coefficients(&self, values: &DVector<f64>, absent: f64) -> Coefficients {
+        let at = |ratio: &f64| {
+            let [storage, skeleton, conductance] = self.diffusion.storage_and_conductance(ratio + absent);
+            [self.compliance * storage, self.compliance * skeleton, self.conductivity * conductance]
+        };
+        values.iter().map(at).collect()
+    }
+}
