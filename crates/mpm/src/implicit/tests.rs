@@ -166,6 +166,86 @@ fn a_column_that_is_unloaded_keeps_what_it_has_yielded_and_reloads_stiffly() {
     assert!(gap.abs() < 1e-3 * residual, "residual settlement: {unloaded} for {residual}");
 }
 
+/// Settlement and pressures from the base up of a preconsolidated column of 1 m under loads `(share of 1 Pa, seconds)`,
+/// each at once: finite volumes, explicit in time.
+fn finite_volumes(soil: &Material, cells: usize, loads: &[(f64, f64)]) -> (f64, Vec<f64>) {
+    let size = 1.0 / cells as f64;
+    let (virgin, reload) = (soil.oedometric_modulus(), soil.reload_modulus);
+    let (water, mobility) =
+        (1.0 / soil.coupling_modulus(), soil.hydraulic_conductivity / soil.unit_weight_of_water());
+    let mut pressure = vec![0.0; cells];
+    let (mut stress, mut largest) = (vec![0.0; cells], vec![soil.preconsolidation; cells]);
+    let (mut settlement, mut load) = (0.0, 0.0);
+    for &(share, seconds) in loads {
+        let steps = (seconds / (0.2 * size * size / (mobility * reload))).ceil();
+        for step in 0..steps as usize {
+            // The load of the phase comes on with its first step.
+            let more = if step == 0 { share - load } else { 0.0 };
+            let flux = |i: usize| match pressure.get(i + 1) {
+                Some(above) => mobility * (pressure[i] - above) / size,
+                None => mobility * pressure[i] / (0.5 * size),
+            };
+            let flows: Vec<f64> = (0..cells).map(flux).collect();
+            for i in 0..cells {
+                let outflow = flows[i] - if i == 0 { 0.0 } else { flows[i - 1] };
+                let out = seconds / steps * outflow / size;
+                // Where it has yielded it yields on as its stress grows.
+                let yields = stress[i] >= largest[i] && water * more + out > 0.0;
+                let modulus = if yields { virgin } else { reload };
+                let change = (more / modulus - out) / (1.0 / modulus + water);
+                stress[i] += more - change;
+                settlement += size * (more - change) / modulus;
+                largest[i] = largest[i].max(stress[i]);
+                pressure[i] += change;
+            }
+        }
+        load = share;
+    }
+    (settlement, pressure)
+}
+
+#[test]
+fn loading_unloading_and_reloading_follow_finite_volumes() {
+    let soil = Material {
+        law: Law::Preconsolidated,
+        reload_modulus: 4.8e6,
+        preconsolidation: 0.3,
+        ..Material::default()
+    };
+    let problem = || seed("GIMP-SRI-patch", &soil, 20);
+    let schedule = schedule();
+    let plan = Plan::of(&problem(), &schedule);
+    let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
+    let start = newton.settlement();
+    let (mut loads, mut references) = (Vec::new(), Vec::new());
+    // The front stops on its way, and is met again.
+    for share in [1.0, 0.1, 1.2] {
+        newton.trial.set_load_share(share);
+        let (mut dt, mut seconds) = (0.002, 0.0);
+        for _ in 0..90 {
+            newton.advance(&EqualSteps::first(0.0, dt, 1), f64::INFINITY).expect("solvable");
+            (seconds, dt) = (seconds + dt, 1.08 * dt);
+        }
+        loads.push((share, seconds));
+        let [coarse, fine] = [40, 80].map(|cells| finite_volumes(&soil, cells, &loads));
+        // The seed starts undrained, and the settlement of that is in its start.
+        let found = newton.settlement() - start;
+        references.push([
+            found,
+            coarse.0,
+            fine.0,
+            newton.snapshot(0.0).points.pressure[0],
+            coarse.1[0],
+            fine.1[0],
+        ]);
+    }
+    for [settlement, coarse, fine, pressure, coarse_pressure, fine_pressure] in &references {
+        let own = [coarse / fine - 1.0, coarse_pressure - fine_pressure];
+        let misses = [settlement / fine - 1.0, pressure - fine_pressure];
+        assert!(own.iter().chain(&misses).all(|miss| miss.abs() < 5e-3), "{references:?}");
+    }
+}
+
 #[test]
 fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
     let soil = Material { law: Law::LogLinear, ..Material::default() };
