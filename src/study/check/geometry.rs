@@ -256,13 +256,13 @@ impl Checker<'_> {
         let typed = file.column.strain.as_ref()?;
         let has_load = file.column.inputs.typed("load").is_some()
             || file.sweep.iter().any(|block| block.inputs.typed("load").is_some());
-        let (message, help) = if has_load {
+        let (message, help) = if !file.column.soils.is_empty() {
+            ("the layers of a column have strains of their own".to_owned(), "give a `load`")
+        } else if has_load {
             (
                 "the column has a `load` and a `strain`".to_owned(),
                 "leave one of them out: the load follows from the strain",
             )
-        } else if !file.column.soils.is_empty() {
-            ("the layers of a column have strains of their own".to_owned(), "give a `load`")
         } else if !seed.scene.is_loaded() {
             (
                 format!("no load acts in the scene `{}`: it cannot strain it", seed.scene.name()),

@@ -43,6 +43,30 @@ mod point_sets {
     }
 
     #[test]
+    fn what_does_not_go_with_layers_or_an_integrator_is_refused_with_a_sentence() {
+        let of = |scene: &str, column: &str| {
+            format!("{scene}\"\ncolumn.soils = [{{ thickness = 0.5 }}, {{ thickness = 0.5 }}]\n{column} #")
+        };
+        let growing = of("xie-leo", "column.loading_time = 20.0");
+        let explicit = "integrator = [\"explicit\"]\n";
+        for (scene, more, why) in [
+            (of("layered", ""), format!("{explicit}sets = [2]"), "knows one soil"),
+            (growing.clone(), format!("{explicit}sets = [2]"), "knows one soil"),
+            (growing.clone(), "conductivity_mean = [\"chord\"]".to_owned(), "compression of one soil"),
+            (growing.replace("20.0", "20.0\ncolumn.self_weight = true"), String::new(), "has no weight here"),
+            (growing.replace("20.0", "20.0\ncolumn.strain = 0.2"), String::new(), "strains of their own"),
+            (of("xie-leo", ""), String::new(), "give a loading time"),
+            (of("terzaghi", ""), String::new(), "has no layers"),
+            (of("layered", ""), format!("{explicit}formulation = [\"u-p\"]"), "its pressure diffuses"),
+            (of("layered", ""), format!("{explicit}formulation = [\"quasi-static\"]"), "cannot be left out"),
+        ] {
+            let error = checked(&scene, "\"GIMP\"", &more).expect_err(why);
+            assert!(error.contains(why) && error.contains("--> t.toml:"), "{error}");
+        }
+        assert!(checked(&growing, "\"GIMP\"", "").is_ok());
+    }
+
+    #[test]
     fn points_off_their_lattice_carry_no_weight() {
         let scene = "xie-leo\"\ncolumn.self_weight = true #";
         let error = checked(scene, "\"GIMP\"", "offset = [0.25]").expect_err("a shifted lattice");
