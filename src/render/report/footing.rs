@@ -8,9 +8,6 @@ use crate::render::report::labels::grouped;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_mpm::scene::SceneKind;
 
-/// Load factor up to which curves are drawn, over that of collapse: what locks leaves the figure.
-const HIGHEST: f64 = 2.0;
-
 /// Curves on the finest mesh that every method has run, the first run of each method, all kept undrained as in the study's
 /// first case; empty for other scenes.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
@@ -28,25 +25,20 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let mut chart = Chart::new(
         "Load and settlement of the plate",
         ChartAxis::linear("settlement over the width u/B (–)"),
-        ChartAxis::linear("load factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
+        ChartAxis::log10("load factor F/(B c_u) (–)"),
     );
     chart.size = Size::PANEL;
     let mut end: f64 = 0.0;
     for (slot, (method, own)) in of_methods.iter().enumerate() {
         let Some(record) = own.iter().find(|record| record.case.cells == cells) else { continue };
-        let curve: Vec<(f64, f64)> = record
-            .history
-            .iter()
-            .filter_map(|row| Some((row.time_factor, row.load_factor?)))
-            .filter(|(_, load)| *load < HIGHEST * LOAD_FACTOR)
-            .collect();
+        let curve: Vec<(f64, f64)> =
+            record.history.iter().filter_map(|row| Some((row.time_factor, row.load_factor?))).collect();
         end = curve.iter().fold(end, |end, (settlement, _)| end.max(*settlement));
-        chart.series.push(Series::new(method.to_string(), curve).style(Style::LineAndMarkers).slot(slot));
+        chart.series.push(Series::new(method.to_string(), curve).style(Style::Line).slot(slot));
     }
     chart.series.push(Series::theory("2 + π", vec![(0.0, LOAD_FACTOR), (end, LOAD_FACTOR)]));
     let caption = format!(
-        "{cells} cells under the plate, undrained by {}. A method that locks never comes to a plateau: its curve leaves the figure at twice the load \
-         of collapse.",
+        "{cells} cells under the plate, undrained by {}. A method that locks never comes to a plateau.",
         undrained.name().replace('-', " ")
     );
     vec![

@@ -181,6 +181,15 @@ impl PathLabels {
     }
 }
 
+/// A part of a label with a long number as a study has it: `reload_modulus=1.2e7`.
+fn short(part: &str) -> String {
+    let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() >= 1e5);
+    match part.split_once('=').and_then(|(name, value)| Some((name, number(value)?))) {
+        Some((name, value)) => format!("{name}={value:e}"),
+        None => part.to_owned(),
+    }
+}
+
 /// Splits the labels of paths into what differs and what is shared; the method is always named.
 pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
@@ -194,7 +203,7 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
     let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
     let each = parts.iter().map(|own| {
         let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
-        differing.map(|(_, part)| part.as_str()).collect::<Vec<_>>().join(", ")
+        differing.map(|(_, part)| short(part)).collect::<Vec<_>>().join(", ")
     });
     let shared = parts
         .first()

@@ -66,6 +66,8 @@ pub fn with_unit(value: f64, unit: &str) -> String {
 /// What the surface of a column settles by in the end, m.
 pub fn final_settlement(case: &Case) -> Option<f64> {
     match case.scene {
+        // Each layer has its own share.
+        _ if !case.column.soils.is_empty() => None,
         SceneKind::Terzaghi => Some(column_parameters(&case.column, &case.material).final_settlement()),
         SceneKind::XieLeo => {
             let strain = 1.0 - elementary::exp(-case.column.load / case.material.oedometric_modulus());

@@ -13,27 +13,37 @@ use crate::render::report::StudyResults;
 use crate::render::report::labels::{QUOTED_CELLS, first_measure, grouped};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_mpm::scene::SceneKind;
 
 /// Points per cell of the runs whose profiles are drawn: the first of these that a study has.
 const SHOWN_POINTS: [usize; 2] = [2, 4];
 
 /// Profiles of the runs of a study on the paper's mesh, one run per method; empty for a study of one method.
 pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
-    let shown = shown_records(results.records);
-    if shown.len() < 2 || results.study.scene.has_plane_fields() {
+    let scene = results.study.scene;
+    let shown = shown_records(results.records, matches!(scene, SceneKind::Layered | SceneKind::YieldFront));
+    if shown.len() < 2 || scene.has_plane_fields() {
         return Ok(Vec::new());
     }
-    let mut blocks = vec![Block::Heading("Profiles on ten cells".to_owned())];
+    let heading = match shown[0].case.cells {
+        QUOTED_CELLS => "Profiles on ten cells".to_owned(),
+        cells => format!("Profiles on {cells} cells"),
+    };
+    let mut blocks = vec![Block::Heading(heading)];
     let mut figures = Vec::new();
     // The first and the last method of the study: the plainest and the paper's.
     for record in shown.first().into_iter().chain(shown.last()) {
         figures.push(isochrones(results, record)?);
     }
-    if !coincide(results, &shown) {
+    // A half-space has no settlement in the end.
+    let is_half_space = scene == SceneKind::YieldFront;
+    if !is_half_space && !coincide(results, &shown) {
         figures.push(consolidation(results, &shown)?);
     }
     blocks.push(Block::Figures(figures));
-    blocks.extend(sampling_note(&shown).map(Block::Paragraph));
+    if !is_half_space && shown[0].case.column.soils.is_empty() {
+        blocks.extend(sampling_note(&shown).map(Block::Paragraph));
+    }
     Ok(blocks)
 }
 
@@ -52,9 +62,11 @@ fn coincide(results: &StudyResults<'_>, shown: &[&Record]) -> bool {
     })
 }
 
-/// The first sound run of each method on the paper's mesh.
-fn shown_records(records: &[Record]) -> Vec<&Record> {
-    let is_sound = |record: &&Record| record.case.cells == QUOTED_CELLS && record.status == Status::Ok;
+/// The first sound run of each method on the paper's mesh; where pressures have a kink, on the coarsest of the study.
+fn shown_records(records: &[Record], has_kink: bool) -> Vec<&Record> {
+    let coarsest = records.iter().map(|record| record.case.cells).min().filter(|_| has_kink);
+    let cells = coarsest.unwrap_or(QUOTED_CELLS);
+    let is_sound = |record: &&Record| record.case.cells == cells && record.status == Status::Ok;
     let with =
         |points: &usize| records.iter().filter(is_sound).any(|record| record.case.points_per_cell == *points);
     let points_per_cell = SHOWN_POINTS.into_iter().find(with);
