@@ -88,3 +88,18 @@ fn a_study_of_the_mesh_says_what_one_percent_costs_and_one_at_large_strain_what_
         "{told}"
     );
 }
+
+#[test]
+fn what_is_odd_about_a_study_is_told_before_its_results_and_not_again() {
+    let folder = folder_with(
+        "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\ncolumn.load = \"50 kPa\"\n[[sweep]]\nmethod = [\"MPM\"]\n\
+         integrator = [\"implicit\"]\ncells = [4]\n",
+    );
+    let tells = |words: &[&str]| call(folder.path(), words).err.contains("strains the column by");
+    assert!(tells(&["check", "short.toml"]), "nothing was run");
+    assert!(tells(&["plan", "short.toml"]) && tells(&["run", "short.toml"]));
+    for command in ["check", "report"] {
+        assert!(!tells(&[command, "short.toml"]), "{command} repeats it");
+        assert!(tells(&[command, "short.toml", "--records", "elsewhere"]), "{command} is the first to tell");
+    }
+}

@@ -380,6 +380,7 @@ fn figures_in_the_text_are_what_their_commands_print() {
     assert!(is_equal(share, found), "{share}: {}", told.err);
     let text = on_one_line(text_of("docs/methods.md"));
     let told = call(folder.path(), &["solve", "terzaghi", "--integrator", "implicit"]);
+    assert!(!told.out.contains("critical"), "no critical step bounds it: {}", told.out);
     let steps = between(&text, "`solve terzaghi --integrator implicit` takes ", " steps");
     assert!(
         told.out.lines().any(|line| line.starts_with(&format!("{steps} steps of"))),

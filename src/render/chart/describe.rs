@@ -247,8 +247,10 @@ pub struct SlopeTriangle {
 /// One value per cell on a rectangular grid. Its colours are near-white at zero and safe for the colour-blind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColourField {
-    /// Quantity and unit, written at the colour bar; empty where another figure has the bar of all.
+    /// Quantity and unit, written at the colour bar.
     pub label: String,
+    /// Whether it has a colour bar; of several that share a reach one is enough.
+    pub has_bar: bool,
     /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
     /// `None`.
     pub reach: Option<f64>,
@@ -294,8 +296,14 @@ mod tests {
             "series,\"x, m\",\"y\"\n\"a \"\"b\"\"\",0.1,2.0\n\"a \"\"b\"\"\",0.3,4.0\n"
         );
         let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0], vec![0.0, 2.0]);
-        let field =
-            ColourField { label: "p".to_owned(), reach: None, x_edges, y_edges, values: vec![5.0, 6.0] };
+        let field = ColourField {
+            label: "p".to_owned(),
+            has_bar: true,
+            reach: None,
+            x_edges,
+            y_edges,
+            values: vec![5.0, 6.0],
+        };
         chart.field = Some(field);
         assert!(chart.data_csv().ends_with("\"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n"), "{}", chart.data_csv());
     }

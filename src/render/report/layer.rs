@@ -24,7 +24,10 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     let mut blocks = Vec::new();
     let shown = shown_records(results.records);
     if let Some(first) = shown.first() {
-        blocks.push(Block::Heading(format!("Pressure at the points, {SHOWN_CELLS} cells over the height")));
+        let ratio = first.case.material.poissons_ratio;
+        blocks.push(Block::Heading(format!(
+            "Pressure at the points, {SHOWN_CELLS} cells over the height, ν = {ratio}"
+        )));
         let time_factor = first.case.time_factors[0];
         let mut figures = Vec::new();
         if let Some(field) = PlaneField::of(first, time_factor)? {
@@ -77,7 +80,8 @@ fn figure(
         ChartAxis::linear("height above the base y/H (–)"),
     );
     chart.field = Some(ColourField {
-        label: if is_exact { "p/q (–)".to_owned() } else { String::new() },
+        label: "p/q (–)".to_owned(),
+        has_bar: is_exact,
         reach: Some(reach),
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
