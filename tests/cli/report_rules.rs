@@ -250,7 +250,7 @@ fn a_shipped_study_is_reported_by_name_with_a_command_that_runs_it_there() {
 fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
     let study = "title = \"t\"\nscene = \"cosine-layer\"\noutput.time_factors = [0.1]\n[[sweep]]\n\
                  method = [\"GIMP\", \"GIMP-Bbar-patch\"]\nintegrator = [\"implicit\"]\ncells = [8]\n\
-                 poissons_ratio = [0.3, 0.49, 0.4999]\n";
+                 poissons_ratio = [0.25, 0.49, 0.4999]\n";
     let folder = folder_with(study);
     let told = call(folder.path(), &["report", "short.toml", "--out", "made"]);
     assert_eq!(told.code, 0, "{}", told.err);
@@ -260,8 +260,8 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
         answer.contains("1 keep displacement and pressure within 10 % up to ν = 0.4999: `GIMP-Bbar-patch`"),
         "{answer}"
     );
-    assert!(answer.contains("lost from ν = 0.3 on (off by up to "), "{answer}");
+    assert!(answer.contains("lost from ν = 0.25 on (off by up to "), "{answer}");
     assert!(answer.contains("Evidence: [`short`]"), "{answer}");
     let page = fs::read_to_string(folder.path().join("made/studies/short.html")).expect("a page");
-    assert_eq!(page.matches("p/q (–)").count(), 1, "three fields share one colour bar");
+    assert_eq!(page.matches(">p/q (–)<").count(), 1, "three fields share one colour bar");
 }
