@@ -121,10 +121,12 @@ fn finite_volumes(column: &ColumnParameters, time_factor: f64, cells: usize) -> 
     let mut pressure = vec![0.0; soils.len()];
     // A step ends where the growth does.
     for (from, to) in [(0.0, end.min(column.loading_time)), (end.min(column.loading_time), end)] {
-        let steps = ((to - from) / longest).ceil();
-        let dt = (to - from) / steps.max(1.0);
-        for step in 0..steps as usize {
-            let time = from + step as f64 * dt;
+        let steps =
+            (0..31).map(|power| 1_u32 << power).find(|steps| to - from <= longest * f64::from(*steps));
+        let steps = steps.expect("not that many");
+        let dt = (to - from) / f64::from(steps);
+        for step in 0..steps {
+            let time = from + f64::from(step) * dt;
             let moved = |by: &[f64], share: f64| -> Vec<f64> {
                 pressure.iter().zip(by).map(|(pressure, rate)| pressure + share * dt * rate).collect()
             };

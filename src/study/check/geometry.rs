@@ -296,11 +296,7 @@ impl Checker<'_> {
             let kind = case.scene.references()[0].of_soil(&case.material);
             let reference = Reference::new(kind, &column_parameters(&case.column, &case.material), &[]);
             if let Err(error) = &reference {
-                self.complain(
-                    load.clone(),
-                    error.to_string(),
-                    "see [column], [column.soils] and [material]",
-                );
+                self.complain(load.clone(), error.to_string(), "see [column], [column.soils] and [material]");
             }
             return reference.is_err();
         }

@@ -24,7 +24,7 @@ const STEP: f64 = 1e-5;
 /// A column of layers, from the surface down as its points are.
 #[derive(Clone, Debug)]
 pub struct Layers {
-    layers: Vec<Layer>,
+    stack: Vec<Layer>,
     /// Points of a layer less one.
     order: usize,
     element: Element,
@@ -90,17 +90,17 @@ impl Layers {
             base += thickness;
         }
         layers.reverse();
-        Ok(Self { layers, order, element })
+        Ok(Self { stack: layers, order, element })
     }
 
     /// Points below the surface.
     pub fn len(&self) -> usize {
-        self.layers.len() * self.order
+        self.stack.len() * self.order
     }
 
     /// Depths of the points.
     pub fn depths(&self) -> impl Iterator<Item = f64> {
-        self.layers.iter().flat_map(|layer| {
+        self.stack.iter().flat_map(|layer| {
             let [base, top] = layer.ends;
             self.element.points.iter().map(move |x| (1.0 - base - 0.5 * (top - base) * (1.0 + x)).max(0.0))
         })
@@ -108,18 +108,18 @@ impl Layers {
 
     /// `1 − J` at a depth where the skeleton lacks a share of the load; of the lower layer at an interface.
     pub fn shrinkage(&self, zeta: f64, lacking: f64) -> f64 {
-        let at = self.layers.iter().position(|layer| 1.0 - zeta > layer.ends[0]);
-        self.layers[at.unwrap_or(self.layers.len() - 1)].diffusion.shrinkage(lacking)
+        let at = self.stack.iter().position(|layer| 1.0 - zeta > layer.ends[0]);
+        self.stack[at.unwrap_or(self.stack.len() - 1)].diffusion.shrinkage(lacking)
     }
 
     /// `∫ (1 − J) dζ` over the column at the end of consolidation.
     pub fn final_shrinkage(&self) -> f64 {
-        self.layers.iter().map(|layer| (layer.ends[1] - layer.ends[0]) * layer.diffusion.shrinkage(0.0)).sum()
+        self.stack.iter().map(|layer| (layer.ends[1] - layer.ends[0]) * layer.diffusion.shrinkage(0.0)).sum()
     }
 
     /// Functions of the depth through the values at the points below the surface.
     pub fn profile(&self, ratio: &DVector<f64>, absent: f64) -> Profile {
-        let pieces = self.layers.iter().enumerate().map(|(at, layer)| {
+        let pieces = self.stack.iter().enumerate().map(|(at, layer)| {
             let values = self.of_layer(at, ratio);
             let shrinkage = values.map(|ratio| layer.diffusion.shrinkage(ratio + absent));
             Piece {
@@ -142,7 +142,7 @@ impl Layers {
         let (taken, storage) = self.balance(ratio, load);
         let rate = taken.component_div(&storage);
         let mut jacobian = DMatrix::zeros(self.len(), self.len());
-        for (at, layer) in self.layers.iter().enumerate() {
+        for (at, layer) in self.stack.iter().enumerate() {
             let values = self.of_layer(at, ratio);
             let coefficients = layer.coefficients(&values, load.absent);
             let [before, after] = [-STEP, STEP].map(|step| layer.coefficients(&values, load.absent + step));
@@ -173,7 +173,7 @@ impl Layers {
     /// What every point takes in, and its storage.
     fn balance(&self, ratio: &DVector<f64>, load: LoadAt) -> (DVector<f64>, DVector<f64>) {
         let (mut taken, mut storage) = (DVector::zeros(self.len()), DVector::zeros(self.len()));
-        for (at, layer) in self.layers.iter().enumerate() {
+        for (at, layer) in self.stack.iter().enumerate() {
             let values = self.of_layer(at, ratio);
             let coefficients = layer.coefficients(&values, load.absent);
             let mut flux = &layer.slope * &values;

@@ -177,8 +177,11 @@ fn finite_volumes(soil: &Material, cells: usize, loads: &[(f64, f64)]) -> (f64, 
     let (mut stress, mut largest) = (vec![0.0; cells], vec![soil.preconsolidation; cells]);
     let (mut settlement, mut load) = (0.0, 0.0);
     for &(share, seconds) in loads {
-        let steps = (seconds / (0.2 * size * size / (mobility * reload))).ceil();
-        for step in 0..steps as usize {
+        let longest = 0.25 * size * size / (mobility * reload);
+        let steps = (0..31).map(|power| 1_u32 << power).find(|steps| seconds <= longest * f64::from(*steps));
+        let steps = steps.expect("not that many");
+        let dt = seconds / f64::from(steps);
+        for step in 0..steps {
             // The load of the phase comes on with its first step.
             let more = if step == 0 { share - load } else { 0.0 };
             let flux = |i: usize| match pressure.get(i + 1) {
@@ -188,7 +191,7 @@ fn finite_volumes(soil: &Material, cells: usize, loads: &[(f64, f64)]) -> (f64, 
             let flows: Vec<f64> = (0..cells).map(flux).collect();
             for i in 0..cells {
                 let outflow = flows[i] - if i == 0 { 0.0 } else { flows[i - 1] };
-                let out = seconds / steps * outflow / size;
+                let out = dt * outflow / size;
                 // Where it has yielded it yields on as its stress grows.
                 let yields = stress[i] >= largest[i] && water * more + out > 0.0;
                 let modulus = if yields { virgin } else { reload };
