@@ -150,14 +150,13 @@ pub use oedometer_exact as exact;
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;
 pub use campaign::runner::{RunOptions, Selected, run_studies, run_study};
-pub use case::norm::Norm;
-pub use case::quantity::{Quantity, Sample};
+pub use case::planned::Tier;
+pub use case::quantity::{Norm, Quantity, Sample};
 pub use case::solver::Solver;
-pub use case::tier::Tier;
 pub use case::{Case, Task};
 pub use cli::{main, main_with};
 pub use golden::compare::compare;
-pub use golden::tolerance::spread_by_group;
+pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;
 pub use judge::race::RaceRow;
@@ -179,7 +178,6 @@ pub use render::table::Table;
 pub use render::tables::measures;
 pub use study::check::Study;
 pub use study::file::StudySource;
-pub use study::perturbed::LastDigit;
 
 // What a problem is, and how it is solved.
 pub use oedometer_mpm::explicit::{Drag, ExplicitSettings};

@@ -1,8 +1,7 @@
 //! Exact solutions over times and depths.
 
 use crate::api::scene_of;
-use crate::study::asked::Asked;
-use crate::study::overrides::Assignments;
+use crate::study::overrides::{Asked, Assignments};
 use oedometer_exact::{ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.

@@ -9,8 +9,7 @@ use crate::import::runs::Run;
 use crate::import::{SampledState, states_of};
 use crate::judge::score::Score;
 use crate::judge::score::results::Results;
-use crate::study::asked::Asked;
-use crate::study::overrides::{Assignments, Outputs};
+use crate::study::overrides::{Asked, Assignments, Outputs};
 use oedometer_formats::ImportError;
 use std::path::{Path, PathBuf};
 

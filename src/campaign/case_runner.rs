@@ -1,7 +1,7 @@
 //! Runs the cases of a study with this program or an attached solver, and times them alone.
 
 use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
-use crate::campaign::run_report::{Progress, RunError};
+use crate::campaign::runner::{Progress, RunError};
 use crate::campaign::stop;
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task};

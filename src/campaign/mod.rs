@@ -2,8 +2,6 @@
 
 pub mod case_run;
 pub mod case_runner;
-mod clock;
-pub mod run_report;
 pub mod runner;
 pub mod shares;
 pub mod stop;

@@ -4,18 +4,13 @@ pub mod contender;
 pub mod keys;
 pub mod label;
 pub mod limits;
-pub mod norm;
 pub mod planned;
 pub mod quantity;
-pub mod shared;
 pub mod solver;
-pub mod step_cost;
-pub mod tier;
 pub mod work_estimate;
 
-use crate::case::shared::Shared;
+use crate::case::planned::Shared;
 use crate::case::solver::Solver;
-pub use norm::Norm;
 use oedometer_mpm::explicit::ExplicitSettings;
 use oedometer_mpm::method::{Configuration, Method};
 use oedometer_mpm::run::TimeStepRule;
@@ -26,11 +21,11 @@ use oedometer_mpm::scene::column::{Column, column_parameters};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
-pub use quantity::{Quantity, Sample};
+pub use planned::Tier;
+pub use quantity::{Norm, Quantity, Sample};
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
-pub use tier::Tier;
 
 /// State and operators of a point, bytes.
 const BYTES_A_POINT: f64 = 500.0;

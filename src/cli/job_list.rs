@@ -2,7 +2,7 @@
 
 use crate::campaign::shares::{Parting, balance_of, shares_of};
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::stream::say;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;

@@ -1,6 +1,6 @@
 //! Progress of long work on standard error: a bar with an estimate on terminals, only failures elsewhere.
 
-use crate::campaign::run_report::{LongestCase, Progress};
+use crate::campaign::runner::{LongestCase, Progress};
 use crate::case::work_estimate::estimated_seconds;
 use crate::cli::stream::say;
 use crate::cli::time_notes::{note_on_longest, note_on_run, side_by_side};

@@ -1,7 +1,7 @@
 //! Writes the tables of a study from its stored records.
 
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::stream::say;
 use crate::record::Record;
 use crate::record::csv::long_tables::{LongTable, columns_csv};

@@ -1,6 +1,6 @@
 //! Notes on long runs before they start: the estimated time, and what would take less.
 
-use crate::campaign::run_report::LongestCase;
+use crate::campaign::runner::LongestCase;
 use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task};

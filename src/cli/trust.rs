@@ -4,7 +4,7 @@
 //! Allowed are studies from inside this program, whatever `--allow-solvers` or its variable says, and what somebody at a
 //! terminal said yes to: that is remembered by a digest of the commands and of the adapter's files.
 
-use crate::campaign::run_report::Tally;
+use crate::campaign::runner::Tally;
 use crate::case::solver::Solver;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place;

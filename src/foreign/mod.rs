@@ -4,8 +4,6 @@ pub mod attachment;
 pub mod case_file;
 mod ending;
 mod process;
-mod program_digest;
 pub mod reading;
 mod staging;
 mod started_processes;
-mod wholeness;

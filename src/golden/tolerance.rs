@@ -1,7 +1,11 @@
-//! The tolerance of each golden value, from the effect of round-off, and limits on the tolerances of a file: one that
-//! hides an error of the method is refused.
+//! The tolerance of each golden value, from how far round-off alone was seen to move it when the last digit of an input
+//! changes, and the bounds on what a file may allow: a tolerance leaves room for round-off, and one that lets an error of
+//! the method pass is refused.
 
+use crate::case::planned::PlannedCase;
 use crate::golden::{GoldenFile, is_counter, parts};
+use crate::study::check::Study;
+use oedometer_soil::wording::words;
 use std::collections::BTreeMap;
 
 /// Factor between the largest change seen and a tolerance that leaves room for other machines.
@@ -128,6 +132,44 @@ impl GoldenFile {
         })
     }
 }
+
+/// The input whose last digit changes. Every operator's entries follow, and with them every rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LastDigit {
+    /// Young's modulus, upwards.
+    Stiffness,
+    /// Hydraulic conductivity, downwards.
+    Conductivity,
+}
+
+words!(
+    LastDigit:
+    Stiffness "last digit of the stiffness", Conductivity "last digit of the conductivity",
+);
+
+impl LastDigit {
+    /// Changes the digit.
+    pub fn change(self, youngs_modulus: &mut f64, hydraulic_conductivity: &mut f64) {
+        match self {
+            Self::Stiffness => *youngs_modulus = youngs_modulus.next_up(),
+            Self::Conductivity => *hydraulic_conductivity = hydraulic_conductivity.next_down(),
+        }
+    }
+}
+
+impl Study {
+    /// The study with the last digit of an input of every case changed; its cases keep their labels.
+    #[must_use]
+    pub fn perturbed(&self, digit: LastDigit) -> Self {
+        let planned = self.planned.iter().cloned().map(|mut planned: PlannedCase| {
+            let soil = &mut *planned.case.material;
+            digit.change(&mut soil.youngs_modulus, &mut soil.hydraulic_conductivity);
+            planned
+        });
+        Self { planned: planned.collect(), ..self.clone() }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,6 @@
 //! alone runs something, commands of an attached solver.
 
 pub(crate) mod comparison;
-pub(crate) mod orders;
 pub(crate) mod repository;
-pub(crate) mod rounds;
 pub(crate) mod state;
 pub(crate) mod timeline;

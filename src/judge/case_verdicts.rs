@@ -1,8 +1,7 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
 use crate::judge::explanation::place_of_attached;
-use crate::judge::judgement::Judgement;
-use crate::judge::verdict::{BELOW, Check, IN, Verdict, VerdictOutcome};
+use crate::judge::verdict::{BELOW, Check, IN, Judgement, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
 use crate::measure::statistics::{larger, largest};
 use crate::record::{Balance, LayerBalance, Record};
@@ -260,7 +259,8 @@ time_step = [{ growth = 0.05 }]
         let mut records = records_of(&study);
         let demand = CaseDemand { one_set_within: Some(1e-9), ..CaseDemand::default() };
         let selection = crate::study::expectation::Selection::default();
-        let expectation = CaseExpectation { selection, demand, tier: crate::case::tier::Tier::Ci, line: 1 };
+        let expectation =
+            CaseExpectation { selection, demand, tier: crate::case::planned::Tier::Ci, line: 1 };
         let verdicts = |records: &[Record]| -> Vec<(bool, String)> {
             let judged = expectation.judge(records);
             judged.into_iter().map(|one| (one.verdict.pass, one.verdict.reason)).collect()

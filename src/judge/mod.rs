@@ -3,11 +3,9 @@
 //! Verdicts are mathematics on plain numbers; `paths` turns records into series of numbers. What has no value is
 //! returned as a named reason, never as a number that could pass a test.
 
-pub mod attached_diagnosis;
 pub mod case_verdicts;
 pub mod comparison;
 pub mod explanation;
-pub mod judgement;
 pub mod path_context;
 pub mod paths;
 pub mod proposals;

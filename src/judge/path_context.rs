@@ -5,7 +5,7 @@ use crate::case::{Case, Norm, Quantity, Sample};
 use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
 use crate::measure::fields::{PlaneField, exact_samples, relative_error, reversal};
-use crate::measure::footing::load_factor;
+use crate::measure::other_measures::load_factor;
 use crate::measure::theory::known_reference;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
@@ -213,7 +213,7 @@ fn between(heights: &[f64], field: &[f64], height: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::norm::Norm;
+    use crate::case::quantity::Norm;
     use crate::case::quantity::Sample;
     use crate::judge::paths::{first_norm, paths};
     use oedometer_convergence::{Class, Classification};

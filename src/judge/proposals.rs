@@ -5,8 +5,8 @@
 
 use crate::case::keys::{KEYS, Key, Value};
 use crate::case::{Case, Quantity, Sample, Tier};
-use crate::judge::judgement::judge_expectation;
 use crate::judge::paths::{Path, StudyPaths, first_measure};
+use crate::judge::verdict::judge_expectation;
 use crate::study::check::Study;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
 use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};

@@ -65,7 +65,7 @@ pub fn thin(study: &Study, record: &mut Record) {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::tier::Tier;
+    use crate::case::planned::Tier;
     use crate::golden::GoldenError;
     use crate::judge::study_check::StudyCheck;
     use crate::study::file::StudySource;

@@ -3,7 +3,6 @@
 pub mod balances;
 pub mod dimensionless_groups;
 pub mod fields;
-pub mod footing;
 pub mod other_measures;
 pub mod record;
 pub mod record_checks;

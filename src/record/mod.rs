@@ -10,8 +10,7 @@ pub mod store;
 pub mod whole_file;
 
 use crate::case::Case;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::record::provenance::{Machine, Provenance};
 pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};

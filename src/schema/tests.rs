@@ -1,6 +1,6 @@
 use super::*;
 use crate::campaign::runner::{RunOptions, run_study};
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;

@@ -3,16 +3,14 @@
 
 use crate::case::Case;
 use crate::case::keys::{Key, Value};
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::planned::Tier;
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::case::solver::Solver;
-use crate::case::tier::Tier;
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::FailureKind;
-use oedometer_soil::wording::typed;
-use oedometer_soil::wording::words;
+use oedometer_soil::wording::{typed, words};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt;

@@ -2,9 +2,8 @@
 
 use crate::case::Task;
 use crate::case::keys::Key;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{Inputs, add_inputs, add_units, take_inputs};

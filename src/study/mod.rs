@@ -1,13 +1,11 @@
 //! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`, `sweep`), and as judged (`expectation`).
 
-pub mod asked;
 pub mod check;
 pub mod diagnostic;
 pub mod expectation;
 pub mod file;
 pub mod inputs;
 pub mod overrides;
-pub mod perturbed;
 pub mod reading;
 pub mod shipped;
 pub mod solver;

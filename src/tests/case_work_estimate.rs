@@ -1,7 +1,7 @@
 //! The work of a case before it runs.
 
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::case::work_estimate::{
     MOST_PROBE_STEPS, estimated_seconds, estimated_steps, estimated_updates, estimated_work, work_of,
 };

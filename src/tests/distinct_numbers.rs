@@ -1,13 +1,12 @@
 //! Tables and figures of records in which every number is another one: each cell has the number that its column names.
 
 use crate::campaign::runner::records_of;
-use crate::case::norm::Norm;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
+use crate::case::quantity::Norm;
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
-use crate::render::report::cost;
+use crate::render::report::{StudyResults, cost};
 use crate::render::table::{Cell, Table};
 use crate::render::tables::{measures, runs};
 use crate::study::check::Study;

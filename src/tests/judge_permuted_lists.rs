@@ -2,9 +2,9 @@
 //! stands first.
 
 use crate::campaign::runner::records_of;
-use crate::case::tier::Tier;
-use crate::judge::judgement::judge_study;
+use crate::case::planned::Tier;
 use crate::judge::study_check::StudyCheck;
+use crate::judge::verdict::judge_study;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 

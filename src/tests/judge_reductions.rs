@@ -4,8 +4,8 @@
 use crate::campaign::runner::records_of;
 use crate::campaign::shares::balance_of;
 use crate::case::Case;
+use crate::case::planned::Tier;
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::tier::Tier;
 use crate::golden::GoldenError;
 use crate::judge::comparison::cheapest_method::mapped_soils;
 use crate::judge::comparison::stability_map::maps_of;
@@ -18,8 +18,7 @@ use crate::record::{Balance, LayerBalance, Record, Status, WallSample};
 use crate::render::answers::paper;
 use crate::render::tables::measures::checks_table;
 use crate::study::check::Study;
-use crate::study::expectation::Selection;
-use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation};
+use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, Selection};
 use crate::study::file::StudySource;
 use oedometer_convergence::{ErrorBound, ErrorSeries, SeriesDemand};
 use oedometer_mpm::critical_step::observed::CriticalStep;
@@ -62,7 +61,7 @@ fn with_pressures(record: &mut Record, errors: [f64; 3]) {
     let mut errors = errors.into_iter();
     for row in &mut record.errors {
         if (row.quantity, row.sample, &*row.reference) == (Quantity::Pressure, Sample::Points, REFERENCE)
-            && row.norm == crate::case::norm::Norm::L2
+            && row.norm == crate::case::quantity::Norm::L2
         {
             row.value = errors.next().expect("three outputs");
         }

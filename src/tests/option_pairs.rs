@@ -5,7 +5,7 @@
 //! changes knowingly. What cannot go together is told by the checker itself.
 
 use crate::case::keys::{Key, Kind, Value};
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::case::{Case, Task};
 use crate::study::check::Study;
 use crate::study::file::StudySource;

@@ -2,8 +2,7 @@
 //! implementation: where volumetric locking shows.
 
 use crate::campaign::case_run::run_case;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::record::Record;
 use crate::study::check::Study;
 use crate::study::file::StudySource;

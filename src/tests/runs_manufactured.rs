@@ -1,8 +1,7 @@
 //! Whole runs of the manufactured scenes against the figures of an independent implementation.
 
 use crate::campaign::case_run::run_case;
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;

@@ -17,7 +17,6 @@
 mod class;
 mod demand;
 mod fit;
-mod limiter;
 mod orders;
 mod pareto;
 mod series;
@@ -25,8 +24,7 @@ mod uncertainty;
 
 pub use class::{Class, Classification, Context, FLOOR_LEVELS, Floor, classify};
 pub use demand::{ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand};
-pub use fit::floor::hidden_floor;
-pub use limiter::{Limiter, LimiterKind};
+pub use fit::floor::{Limiter, LimiterKind, hidden_floor};
 pub use orders::{SlopeFit, WINDOW, finest_order, pair_orders, slope};
 pub use pareto::{CostPoint, ParetoChange, front};
 pub use series::{ErrorSeries, SeriesLevel, Undefined};

@@ -1,6 +1,6 @@
 //! `oedometer accept`: the present values of a study become its golden values.
 
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::commands::check::run_quietly;
 use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::destination::is_on;
@@ -8,14 +8,13 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{golden_folder, named};
 use crate::cli::stream::say;
 use crate::cli::trust::TrustArguments;
-use crate::golden::tolerance::spread_by_group;
+use crate::golden::tolerance::{LastDigit, spread_by_group};
 use crate::golden::{GoldenFile, values_of};
 use crate::judge::study_check::StudyCheck;
 use crate::record::Record;
 use crate::record::provenance::Provenance;
 use crate::render::checks::verdicts::objections_of;
 use crate::study::check::Study;
-use crate::study::perturbed::LastDigit;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `accept`.

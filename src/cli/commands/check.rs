@@ -1,8 +1,7 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use crate::campaign::run_report::{RunReport, Tally};
-use crate::campaign::runner::{RunOptions, Selected, run_studies_thinned};
-use crate::case::tier::Tier;
+use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
+use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run};
 use crate::cli::destination::{append, is_on, path_in, write_document};
 use crate::cli::exit::{Ended, Exit, sentence};
@@ -13,9 +12,9 @@ use crate::cli::stream::{print_data, say};
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;
-use crate::judge::judgement::Judgement;
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::verdict::Judgement;
 use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::render::checks::{annotations_of, junit, verdicts};

@@ -9,8 +9,7 @@ use crate::cli::stream::{print_data, say};
 use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
-use crate::history::rounds::{self, with_command};
-use crate::history::state::State;
+use crate::history::state::{self, State, with_command};
 use crate::render::history_tables::{comparison_page, comparison_rows, comparison_tables};
 use crate::render::page::render_html;
 use std::path::{Path, PathBuf};
@@ -94,7 +93,7 @@ fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Res
     let mut studies = [before?, after?];
     arguments.trust.mark_all(&mut studies, &named)?;
     let rounds = usize::try_from(arguments.rounds).unwrap_or(1);
-    Ok(rounds::states_of_commands(&studies, commands, rounds))
+    Ok(state::states_of_commands(&studies, commands, rounds))
 }
 
 /// A state as it is named: a folder, or a revision of the repository around the current folder.

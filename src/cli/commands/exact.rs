@@ -4,16 +4,14 @@ use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
 use crate::cli::stream::{print_data, say};
-use crate::study::asked::Asked;
-use crate::study::overrides::{Assignments, numbers};
+use crate::study::overrides::{Asked, Assignments, numbers};
 use clap::ValueEnum;
-use oedometer_exact::ShelfProblem;
-use oedometer_exact::consolidation;
 use oedometer_exact::field_values::Accuracy;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::{ShelfProblem, consolidation};
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";

@@ -4,7 +4,7 @@
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::stop;
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, load_after_run};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_tables};

@@ -1,7 +1,7 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{chosen_as, studies_of_this_project};

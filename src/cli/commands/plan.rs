@@ -1,9 +1,9 @@
 //! `oedometer plan`: lists cases with hashes and estimated times, missing cases, and the commands of shares.
 
-use crate::campaign::run_report::LongestCase;
+use crate::campaign::runner::LongestCase;
 use crate::campaign::shares::Parting;
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::case::work_estimate::{estimated_seconds, estimated_updates};
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load};
 use crate::cli::exit::{Ended, Exit};

@@ -1,26 +1,23 @@
 //! `oedometer run`: runs the cases of study files and writes their records and one tidy CSV per study.
 
 use crate::campaign::case_runner::time_study;
-use crate::campaign::run_report::{RunError, RunReport, Tally};
-use crate::campaign::runner::{RunOptions, Selected, run_studies};
+use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, Tally, run_studies};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::StudyArguments;
 use crate::cli::progress::StudyBar;
-use crate::cli::slurm;
 use crate::cli::stream::say;
-use crate::cli::study_files;
 use crate::cli::study_tables::{is_compressed, write_table};
 use crate::cli::trust::{self, TrustArguments};
+use crate::cli::{slurm, study_files};
 use crate::foreign::reading::mapping_of;
-use crate::judge::judgement::Absent;
+use crate::judge::verdict::Absent;
 use crate::record::csv::table_file::TableForm;
 use crate::record::provenance::Provenance;
 use crate::record::store::RecordStore;
-use crate::study::check::Purpose;
-use crate::study::check::Study;
+use crate::study::check::{Purpose, Study};
 use crate::study::file::StudySource;
 use clap::ValueEnum;
 use oedometer_soil::wording::count_of;

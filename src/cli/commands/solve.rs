@@ -1,7 +1,7 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use crate::campaign::case_run::{Cores, run_case_within};
-use crate::campaign::run_report::LongestCase;
+use crate::campaign::runner::LongestCase;
 use crate::case::Case;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
@@ -12,8 +12,7 @@ use crate::judge::soundness;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::render::tables::measures;
-use crate::study::check::Purpose;
-use crate::study::check::Study;
+use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;

@@ -1,9 +1,8 @@
 //! `oedometer stability`: the critical step of a case, predicted and observed.
 
 use crate::campaign::runner::{RunOptions, run_study};
-use crate::case::tier::Tier;
-use crate::cli::commands::run::jobs_of;
-use crate::cli::commands::run::tell_warnings;
+use crate::case::planned::Tier;
+use crate::cli::commands::run::{jobs_of, tell_warnings};
 use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};

@@ -9,7 +9,7 @@ mod scripts;
 
 use crate::campaign::shares::Parting;
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
 use crate::cli::slurm::scheduler::{Job, cancel, most_tasks, submit};

@@ -27,7 +27,7 @@ pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
 mod runs {
     use super::*;
     use crate::case::Task;
-    use crate::case::norm::Norm;
+    use crate::case::quantity::Norm;
     use crate::case::quantity::Quantity;
     use oedometer_mpm::run::results::outcome::FailureKind;
     use oedometer_mpm::scene::SceneKind;

@@ -1,6 +1,6 @@
 //! The cheapest method within a tolerance, and the methods that fail, over conductivity and stiffness.
 
-use crate::case::step_cost::seconds_per_step;
+use crate::case::work_estimate::seconds_per_step;
 use crate::judge::comparison::work_precision::worst_error;
 use crate::record::{Record, Status};
 use std::collections::{BTreeMap, BTreeSet};

@@ -3,7 +3,6 @@
 
 pub mod cheapest_method;
 pub mod peers;
-pub mod situation;
 pub mod stability_map;
 pub mod stiffness_sweep;
 pub mod twins;

@@ -1,15 +1,21 @@
 //! The race: every contender in every situation, by the same study. A situation is a study whose sweeps name the race;
-//! a contender has one cell in each.
+//! a contender has one cell in each, and what is measured of its runs stands there.
 
 pub mod grid;
-mod measures;
 
 use crate::case::contender::{CONTENDERS, Contender};
+use crate::case::{Quantity, Sample};
+use crate::judge::paths::{Path, first_error, first_measure};
 use crate::judge::race::grid::{Grid, GridRow, Score};
-use crate::judge::race::measures::{Runs, scatter_of, score_of};
-use crate::record::Record;
+use crate::judge::{path_context, soundness};
+use crate::measure::statistics::{largest, median};
+use crate::record::{Record, Status};
 use crate::study::check::Study;
-use oedometer_convergence::Class;
+use crate::study::expectation::Axis;
+use oedometer_convergence::{Class, Classification};
+use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::elementary;
 use std::collections::BTreeSet;
 
 /// An error of the size of the result itself is no usable result: a body that locks, a pressure that jumps.
@@ -127,19 +133,19 @@ fn cell_of(study: &Study, contender: &Contender, runs: &Runs<'_>, cells: usize) 
     let classified = runs.classified();
     RaceCell {
         name: contender.name,
-        errors: on_mesh.map_or([None; 3], measures::errors_of),
-        levels: runs.path.iter().map(|one| (one.case.cell_size(), measures::errors_of(one))).collect(),
+        errors: on_mesh.map_or([None; 3], errors_of),
+        levels: runs.path.iter().map(|one| (one.case.cell_size(), errors_of(one))).collect(),
         order: classified.as_ref().and_then(|found| found.order),
         class: classified.as_ref().map(|found| found.class),
         cost: [1e-2, 1e-3].map(|tolerance| runs.cost_to(tolerance)),
-        oscillation: on_mesh.and_then(measures::oscillation_of),
-        locking: on_mesh.and_then(measures::locking_of),
-        step_ratio: on_mesh.and_then(measures::step_ratio_of),
+        oscillation: on_mesh.and_then(oscillation_of),
+        locking: on_mesh.and_then(locking_of),
+        step_ratio: on_mesh.and_then(step_ratio_of),
         asymmetry: on_mesh.and_then(|record| record.stability.as_ref()?.asymmetry),
         score: on_mesh.and_then(score_of),
         scatter: runs.two_steps.and_then(|(one, other)| scatter_of(one, other)),
         ended,
-        complaint: on_mesh.and_then(measures::complaint_of),
+        complaint: on_mesh.and_then(complaint_of),
     }
 }
 
@@ -161,4 +167,146 @@ pub fn grid_of(situations: &[RaceRow<'_>]) -> Grid {
         contenders: CONTENDERS.iter().map(|one| one.name.to_owned()).collect(),
         rows: situations.iter().map(row).collect(),
     }
+}
+
+/// The runs of a contender: one path over the mesh, and one of its meshes again with another step.
+pub struct Runs<'a> {
+    /// From coarse to fine.
+    pub path: Vec<&'a Record>,
+    /// The run on a mesh, and that with half its step.
+    pub two_steps: Option<(&'a Record, &'a Record)>,
+}
+
+impl<'a> Runs<'a> {
+    /// Those of a contender among the records of a study. Where it has two steps on a mesh, the longer one is the race's.
+    pub fn of(study: &Study, contender: &Contender, records: &'a [Record]) -> Self {
+        let is_refused = study.not_applicable.iter().any(|(name, _)| *name == contender.name);
+        let mut own: Vec<&Record> =
+            records.iter().filter(|record| !is_refused && contender.runs(&record.case)).collect();
+        let step = |record: &Record| record.step_sizes.target;
+        own.sort_by(|a, b| a.case.cells.cmp(&b.case.cells).then(step(b).total_cmp(&step(a))));
+        let (mut path, mut two_steps) = (Vec::<&Record>::new(), None);
+        for record in own {
+            match path.last() {
+                Some(last) if last.case.cells == record.case.cells => two_steps = Some((*last, record)),
+                _ => path.push(record),
+            }
+        }
+        Self { path, two_steps }
+    }
+
+    /// The failure of the coarsest run that failed: its name, and where and why.
+    pub fn failure(&self) -> Option<(&'static str, String)> {
+        self.path.iter().find_map(|record| {
+            let failure = record.status.failure()?;
+            Some((failure.kind.name(), format!("on {} cells: {}", record.case.cells, failure.reason)))
+        })
+    }
+
+    /// The class of the pressure's series, of a footing of its load's, at the output of its largest error on the finest mesh.
+    pub fn classified(&self) -> Option<Classification> {
+        let finest = *self.path.last()?;
+        let reference = finest.references.first()?.name.as_str();
+        let (quantity, sample) = match finest.case.scene {
+            SceneKind::Footing => (Quantity::LoadFactor, Sample::Surface),
+            _ => (Quantity::Pressure, Sample::Points),
+        };
+        let error = |time: f64| first_error(finest, quantity, sample, reference, time);
+        let times = finest.case.time_factors.iter().copied().filter(|time| error(*time).is_some());
+        let time = times.max_by(|a, b| error(*a).unwrap_or(0.0).total_cmp(&error(*b).unwrap_or(0.0)))?;
+        let path = Path { axis: Axis::Cells, records: self.path.clone() };
+        let measure = first_measure(quantity, sample, reference, time);
+        Some(path.summary(&measure).classification)
+    }
+
+    /// Processor seconds to a score: between two meshes by powers of both; those of the coarsest mesh where it is good
+    /// enough; none where the finest is not.
+    pub fn cost_to(&self, tolerance: f64) -> Option<f64> {
+        let level = |record: &&Record| {
+            let seconds: Vec<f64> = record.wall.iter().filter_map(|sample| sample.cpu_seconds).collect();
+            Some((score_of(record)?, median(&seconds).filter(|seconds| *seconds > 0.0)?))
+        };
+        let levels: Vec<(f64, f64)> = self.path.iter().filter_map(level).collect();
+        let place = levels.iter().position(|(error, _)| *error <= tolerance)?;
+        let (error, cost) = levels[place];
+        let Some((coarse_error, coarse_cost)) = place.checked_sub(1).map(|before| levels[before]) else {
+            return Some(cost);
+        };
+        let share = elementary::ln(coarse_error / tolerance) / elementary::ln(coarse_error / error);
+        Some(coarse_cost * elementary::powf(cost / coarse_cost, share))
+    }
+}
+
+/// Largest errors over the outputs, of pressure and effective stress at the points and of the settlement; of a plane, of
+/// the displacement at the nodes; of a footing, of its load.
+pub fn errors_of(record: &Record) -> [Option<f64>; 3] {
+    let Some(reference) = record.references.first().filter(|_| record.status == Status::Ok) else {
+        return [None; 3];
+    };
+    let largest_of = |quantity, sample| {
+        let errors = record.case.time_factors.iter();
+        largest(errors.filter_map(|time| first_error(record, quantity, sample, &reference.name, *time)))
+    };
+    let settlement = largest_of(Quantity::Settlement, Sample::Surface);
+    [
+        largest_of(Quantity::Pressure, Sample::Points),
+        largest_of(Quantity::EffectiveStress, Sample::Points),
+        settlement
+            .or_else(|| largest_of(Quantity::Displacement, Sample::Nodes))
+            .or_else(|| largest_of(Quantity::LoadFactor, Sample::Surface)),
+    ]
+}
+
+/// What a run is ranked by: the largest of its errors; where nothing may move, what moves; where the critical step was
+/// asked for, the formula's step over the observed one.
+pub fn score_of(record: &Record) -> Option<f64> {
+    if record.stability.is_some() {
+        return step_ratio_of(record).map(f64::recip);
+    }
+    if record.case.scene.is_at_rest() && record.status == Status::Ok {
+        return largest(record.balance.iter().filter_map(|balance| balance.spurious_velocity));
+    }
+    largest(errors_of(record).into_iter().flatten())
+}
+
+/// Relative change of the score from one run to another.
+pub fn scatter_of(one: &Record, other: &Record) -> Option<f64> {
+    let (one, other) = (score_of(one)?, score_of(other)?);
+    Some((other / one - 1.0).abs())
+}
+
+/// The first complaint about the balances of a run that ended well.
+pub fn complaint_of(record: &Record) -> Option<String> {
+    if record.status == Status::Ok { soundness::complaints(record).into_iter().next() } else { None }
+}
+
+/// Oscillation index of the pressure at the last output.
+pub fn oscillation_of(record: &Record) -> Option<f64> {
+    let (reference, time) = (record.references.first()?, *record.case.time_factors.last()?);
+    let measure = first_measure(Quantity::Pressure, Sample::Points, &reference.name, time);
+    path_context::oscillation_of(record, &measure)
+}
+
+/// Computed over exact settlement at the first output; of a plane one minus the error of the displacement.
+pub fn locking_of(record: &Record) -> Option<f64> {
+    let (reference, time) = (record.references.first()?, *record.case.time_factors.first()?);
+    let of_reference =
+        |row: &&crate::record::ErrorRow| row.reference == reference.name && row.time_factor == time;
+    let rows = || record.errors.iter().filter(of_reference);
+    let settlement = rows().find(|row| row.quantity == Quantity::Settlement).map(|row| 1.0 + row.value);
+    settlement.or_else(|| {
+        let error = first_error(record, Quantity::Displacement, Sample::Nodes, &reference.name, time)?;
+        Some(1.0 - error)
+    })
+}
+
+/// Critical step over the formula's: observed, or else predicted for an explicit run.
+pub fn step_ratio_of(record: &Record) -> Option<f64> {
+    if let Some(found) = &record.stability {
+        return Some(found.observed? / found.combined_limit);
+    }
+    let case = &record.case;
+    let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
+    let ratio = record.step_sizes.predicted_critical / limit;
+    (case.is_explicit() && ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }

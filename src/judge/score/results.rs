@@ -10,7 +10,7 @@ use crate::judge::score::diagnosis::diagnosis;
 use crate::judge::score::score_series::{ScoredSeries, TimeGroups, series_of, time_factors};
 use crate::judge::score::{Score, score};
 use crate::record::ErrorRow;
-use crate::study::asked::Asked;
+use crate::study::overrides::Asked;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::ReferenceKind;

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Norm, Quantity, Sample};
 use crate::measure::fields::{FieldDifference, exact_samples};
-use crate::measure::footing::load_error;
+use crate::measure::other_measures::load_error;
 use crate::record::ErrorRow;
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};

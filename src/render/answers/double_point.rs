@@ -138,7 +138,7 @@ fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::tier::Tier;
+    use crate::case::planned::Tier;
     use crate::study::check::Study;
     use crate::study::file::StudySource;
 

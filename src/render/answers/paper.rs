@@ -8,9 +8,8 @@ use crate::render::answers::{Answer, Links, Question, links_to};
 use crate::render::chart::{Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
-use crate::render::report::theory_lines;
+use crate::render::report::{StudyResults, theory_lines};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::Column;
@@ -136,7 +135,7 @@ pub(crate) fn largest_error(record: &Record, reference: &str) -> Option<(f64, f6
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::tier::Tier;
+    use crate::case::planned::Tier;
     use crate::study::check::Study;
     use crate::study::file::StudySource;
 

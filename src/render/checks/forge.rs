@@ -2,9 +2,8 @@
 //! `JUnit` in the Jenkins dialect.
 
 use crate::golden::compare::Change;
-use crate::judge::judgement::Judgement;
 use crate::judge::study_check::StudyCheck;
-use crate::judge::verdict::VerdictOutcome;
+use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::checks::failures_of;
 use crate::render::tables::golden_changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};

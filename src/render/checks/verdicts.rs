@@ -1,9 +1,8 @@
 //! Verdicts and golden values of studies, as text in lines that fit a terminal and as Markdown.
 
 use crate::golden::compare::{CaseChange, Change, Difference};
-use crate::judge::judgement::Judgement;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
-use crate::judge::verdict::VerdictOutcome;
+use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::checks::{TITLES, failures_of};
 use crate::render::error::RenderError;
 use crate::render::number;

@@ -88,7 +88,7 @@ fn worst_of(record: &Record) -> Vec<&MeasureRow> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::tier::Tier;
+    use crate::case::planned::Tier;
     use crate::study::check::Study;
     use crate::study::file::StudySource;
 

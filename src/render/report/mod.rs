@@ -14,10 +14,10 @@ pub mod study_page;
 mod survival;
 pub(crate) mod theory_lines;
 
-use crate::case::tier::Tier;
-use crate::judge::judgement::{Judgement, judge_paths};
+use crate::case::planned::Tier;
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
+use crate::judge::verdict::{Judgement, judge_paths};
 use crate::record::{Record, Status};
 use crate::render::chart::Chart;
 use crate::render::page::{Figure, slug};

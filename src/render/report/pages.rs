@@ -1,6 +1,6 @@
 //! The page that lists all studies, and how their numbers were made.
 
-use crate::case::norm::Norm;
+use crate::case::quantity::Norm;
 use crate::render::page::{Block, Page, Section, slug};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::{capitalised, grouped};

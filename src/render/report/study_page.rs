@@ -1,8 +1,8 @@
 //! The page of one study: its question, expectations, figures, tables and checks.
 
-use crate::judge::attached_diagnosis::diagnoses;
-use crate::judge::judgement::Judgement;
 use crate::judge::proposals::proposals;
+use crate::judge::study_check::diagnoses;
+use crate::judge::verdict::Judgement;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{

@@ -85,7 +85,7 @@ fn end_of(record: &Record) -> Cell {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::tier::Tier;
+    use crate::case::planned::Tier;
     use crate::study::check::Study;
     use crate::study::file::StudySource;
 

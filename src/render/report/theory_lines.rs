@@ -1,7 +1,6 @@
 //! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::measure::theory::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
     theory_consolidation, theory_isochrones,

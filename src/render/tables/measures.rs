@@ -1,7 +1,6 @@
 //! Tables of one record.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
 use crate::record::{Record, Status};

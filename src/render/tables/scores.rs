@@ -1,7 +1,6 @@
 //! Tables of a foreign result compared with references.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::Quantity;
+use crate::case::quantity::{Norm, Quantity};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace, error_key};
 use crate::record::ErrorRow;

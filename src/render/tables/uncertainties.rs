@@ -1,6 +1,6 @@
 //! The table of values without an exact solution, with their numerical uncertainty.
 
-use crate::judge::judgement::Judgement;
+use crate::judge::verdict::Judgement;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_convergence::{Behaviour, ErrorModel};
 

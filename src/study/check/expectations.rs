@@ -1,9 +1,8 @@
 //! Checks `[[expect]]` and `[[expect_case]]` blocks, and that some case can answer each.
 
 use crate::case::keys::{MOST_CELLS, MOST_POINTS, Value};
-use crate::case::norm::Norm;
 use crate::case::planned::PlannedCase;
-use crate::case::quantity::{Quantity, Sample};
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::case::{Case, Task};
 use crate::study::check::{Checker, Purpose};
 use crate::study::expectation::{

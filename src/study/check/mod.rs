@@ -7,10 +7,8 @@ mod sweeps;
 mod values;
 
 use crate::case::keys::{Key, Value};
-use crate::case::planned::{PlannedCase, Planner};
-use crate::case::shared::Shared;
+use crate::case::planned::{PlannedCase, Planner, Shared, Tier};
 use crate::case::solver::Solver;
-use crate::case::tier::Tier;
 use crate::case::{Case, Task};
 use crate::record::Record;
 use crate::study::check::expectations::Subject;

@@ -2,8 +2,8 @@
 
 use crate::case::Case;
 use crate::case::keys::MOST_CELLS;
+use crate::case::planned::Tier;
 use crate::case::solver::{Attached, DIGEST_DIGITS, Solver};
-use crate::case::tier::Tier;
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile};

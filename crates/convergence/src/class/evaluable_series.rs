@@ -2,8 +2,7 @@
 
 use crate::class::{Class, Classification, Context, Floor};
 use crate::fit::approach_to_limit::{Approach, CancellingFit};
-use crate::fit::floor::fit_floor;
-use crate::limiter::{Limiter, LimiterKind, advice, identify};
+use crate::fit::floor::{Limiter, LimiterKind, advice, fit_floor, identify};
 use crate::orders::{WINDOW, log_ratio, pair_order, slope_of};
 use crate::series::Undefined;
 use oedometer_soil::elementary::powf;

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::limiter::{Limiter, LimiterKind};
+use crate::fit::floor::{Limiter, LimiterKind};
 use oedometer_soil::wording::words;
 
 /// How a series of errors behaves under refinement; decided before any order is quoted.

@@ -1,7 +1,7 @@
 //! Every series of errors gets its class, and nonsense never passes as asymptotic.
 
 use crate::class::{Class, Classification, Context, classify};
-use crate::limiter::{Limiter, LimiterKind};
+use crate::fit::floor::{Limiter, LimiterKind};
 use crate::series::{ErrorSeries, SeriesLevel};
 use proptest::prelude::*;
 

@@ -2,10 +2,9 @@
 
 mod files;
 
-use crate::campaign::run_report::{RunReport, Tally};
-use crate::campaign::runner::RunOptions;
+use crate::campaign::runner::{RunOptions, RunReport, Tally};
 use crate::case::Case;
-use crate::case::tier::Tier;
+use crate::case::planned::Tier;
 use crate::cli::commands::check::refuse_unfinished;
 use crate::cli::commands::compare::state_of;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};

@@ -1,7 +1,6 @@
 //! The verdict on scores: warnings, likely causes, and whether the results pass.
 
-use crate::case::norm::Norm;
-use crate::case::quantity::Quantity;
+use crate::case::quantity::{Norm, Quantity};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::stream::say;
 use crate::judge::score::completeness::Lack;
