@@ -26,6 +26,8 @@ const FOLDER: &str = "records";
 /// Constant bytes at the beginning of every member: magic and method of gzip, its flag of an extra field, no date, no
 /// system, then the length of the extra field and the name and length of its one subfield.
 const START: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, FIELD + 4, 0, b'O', b'e', FIELD, 0];
+/// Letters of a header whose case is done, and of one that is worth another run.
+const ENDS: [u8; 2] = [b'R', b'L'];
 /// Length of what the subfield holds.
 const FIELD: u8 = 33;
 /// Length of a header.
@@ -45,8 +47,8 @@ const WINDOW: usize = 1 << 20;
 pub struct Entry {
     /// Hash of the case.
     pub case: u64,
-    /// How the case ended.
-    pub end: CaseEnd,
+    /// Whether the case is worth another run: it ran out of its time, or its attached solver failed.
+    pub is_late: bool,
     /// Tag of the program that made it.
     pub program: u64,
     /// Tag of the build of that program.
@@ -57,30 +59,22 @@ pub struct Entry {
     length: u32,
 }
 
-/// How a case ended, as far as its header tells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CaseEnd {
-    /// Every output reached.
-    Ok,
-    /// Failed, by a name in its record.
-    Failed,
-    /// Ran out of its time, or its attached solver failed.
-    Late,
-}
-
-impl CaseEnd {
-    const LETTERS: [(Self, u8); 3] = [(Self::Ok, b'R'), (Self::Failed, b'F'), (Self::Late, b'L')];
-}
-
 impl Entry {
     /// The entry of a record that is about to be appended.
-    pub fn new(case: u64, end: CaseEnd, origin: &Provenance) -> Self {
-        Self { case, end, program: origin.program_tag(), build: origin.build_tag(), generation: 0, length: 0 }
+    pub fn new(case: u64, is_late: bool, origin: &Provenance) -> Self {
+        Self {
+            case,
+            is_late,
+            program: origin.program_tag(),
+            build: origin.build_tag(),
+            generation: 0,
+            length: 0,
+        }
     }
 
     /// Whether the record may be taken up by a program: one of its version and sources, and not out of its time.
     pub fn is_taken_up_by(&self, program: &Provenance) -> bool {
-        self.program == program.program_tag() && self.end != CaseEnd::Late
+        self.program == program.program_tag() && !self.is_late
     }
 
     /// Reads the header at the beginning of some bytes; `None` if no member begins there.
@@ -89,7 +83,7 @@ impl Entry {
         let word = |at: usize| field[at..at + 8].try_into().ok().map(u64::from_le_bytes);
         let half = |at: usize| field[at..at + 4].try_into().ok().map(u32::from_le_bytes);
         let entry = Self {
-            end: CaseEnd::LETTERS.iter().find(|(_, letter)| *letter == field[0])?.0,
+            is_late: ENDS.iter().position(|letter| *letter == field[0])? == 1,
             generation: half(1)?,
             case: word(5)?,
             program: word(13)?,
@@ -102,10 +96,9 @@ impl Entry {
     /// The header that [`Entry::read`] reads.
     fn header(&self) -> [u8; HEADER] {
         let mut header = [0; HEADER];
-        let letter = CaseEnd::LETTERS.iter().find(|(end, _)| *end == self.end).map_or(b'R', |found| found.1);
         let parts: [&[u8]; 7] = [
             &START,
-            &[letter],
+            &[ENDS[usize::from(self.is_late)]],
             &self.generation.to_le_bytes(),
             &self.case.to_le_bytes(),
             &self.program.to_le_bytes(),
@@ -430,21 +423,6 @@ impl Packs {
         self.append_member(&member)
     }
 
-    /// Takes over the record of a case from another store as it is, where that has a whole one; whether it did.
-    ///
-    /// # Errors
-    /// When the file system refuses.
-    pub fn take_over(&self, other: &Self, case: u64) -> Result<bool, StoreError> {
-        let whole = other.texts(case).and_then(|_| other.state().index.member(case));
-        let Some((entry, mut member)) = whole.and_then(|member| Some((Entry::read(&member)?, member))) else {
-            return Ok(false);
-        };
-        let header = Entry { generation: self.generation()?, ..entry }.header();
-        member[..HEADER].copy_from_slice(&header);
-        self.append_member(&member)?;
-        Ok(true)
-    }
-
     fn append_member(&self, member: &[u8]) -> Result<(), StoreError> {
         let mut state = self.state();
         let State { index, writer } = &mut *state;
@@ -482,7 +460,7 @@ mod tests {
     use std::io::Cursor;
 
     fn entry(case: u64, generation: u32) -> Entry {
-        Entry { case, end: CaseEnd::Ok, program: 1 << 60, build: 5, generation, length: 0 }
+        Entry { case, is_late: false, program: 1 << 60, build: 5, generation, length: 0 }
     }
 
     fn member(case: u64, generation: u32, text: &str) -> Vec<u8> {

@@ -143,16 +143,26 @@ impl Origins {
         self.counts.iter().find(|(_, count)| *count == most).map(|(origin, _)| origin)
     }
 
+    /// Some of the origins with the numbers of their records, those that are alike as one.
+    fn counted(
+        &self,
+        is_meant: impl Fn(&Provenance) -> bool,
+        are_alike: impl Fn(&Provenance, &Provenance) -> bool,
+    ) -> Vec<(&Provenance, usize)> {
+        let mut found: Vec<(&Provenance, usize)> = Vec::new();
+        for (origin, count) in self.counts.iter().filter(|(origin, _)| is_meant(origin)) {
+            match found.iter_mut().find(|(known, _)| are_alike(known, origin)) {
+                Some((_, all)) => *all += count,
+                None => found.push((origin, *count)),
+            }
+        }
+        found
+    }
+
     /// The programs, in words with the number of their records, where there is more than one: their records
     /// must not be taken together.
     pub fn several_programs(&self) -> Option<String> {
-        let mut programs: Vec<(&Provenance, usize)> = Vec::new();
-        for (origin, count) in &self.counts {
-            match programs.iter_mut().find(|(known, _)| known.is_of_one_program_with(origin)) {
-                Some((_, all)) => *all += count,
-                None => programs.push((origin, *count)),
-            }
-        }
+        let programs = self.counted(|_| true, Provenance::is_of_one_program_with);
         let word = |(origin, count): &(&Provenance, usize)| {
             let tree = if origin.dirty { ", changed since their commit" } else { "" };
             format!("{count} of version {} and sources {}{tree}", origin.version, origin.sources)
@@ -167,15 +177,9 @@ impl Origins {
     }
 
     fn difference(&self, (name, word): Property, main: &Provenance) -> Option<String> {
-        let mut others: Vec<(&str, usize)> = Vec::new();
-        for (origin, count) in self.counts.iter().filter(|(origin, _)| word(origin) != word(main)) {
-            match others.iter_mut().find(|(known, _)| *known == word(origin)) {
-                Some((_, all)) => *all += count,
-                None => others.push((word(origin), *count)),
-            }
-        }
+        let others = self.counted(|one| word(one) != word(main), |one, other| word(one) == word(other));
         let counted: Vec<String> =
-            others.iter().map(|(other, count)| format!("`{other}` in {count}")).collect();
+            others.iter().map(|(other, count)| format!("`{}` in {count}", word(other))).collect();
         (!counted.is_empty()).then(|| format!("{name} {} instead of `{}`", counted.join(", "), word(main)))
     }
 }

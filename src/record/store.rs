@@ -1,10 +1,10 @@
 //! Records on disk: one folder per case in a small study, packs in a large one.
 
 use crate::case::Case;
-use crate::record::pack::{CaseEnd, Damage, Entry, Packs};
+use crate::record::pack::{Damage, Entry, Packs};
 use crate::record::provenance::{Origins, Provenance};
 use crate::record::whole_file::{Layout, StoreError, is_whole, sealed, write_rebuildable};
-use crate::record::{Record, SCHEMA, Status, WallSample};
+use crate::record::{Record, SCHEMA, WallSample};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs;
@@ -103,34 +103,9 @@ impl RecordStore {
         }
     }
 
-    /// Whether a pack has a whole record of a case which a program of these sources brought to its end: then there is
-    /// nothing to read of it.
-    pub fn is_packed_and_done(&self, case: &Case) -> bool {
-        let is_done =
-            |entry: Entry| entry.end == CaseEnd::Ok && entry.is_taken_up_by(&Provenance::of_this_program());
-        self.packs.entry(case.number()).is_some_and(is_done) && self.packs.texts(case.number()).is_some()
-    }
-
-    /// The record of a case that failed.
-    pub fn failed(&self, case: &Case) -> Option<Record> {
-        if self.packs.entry(case.number()).is_some_and(|entry| entry.end == CaseEnd::Ok) {
-            return None;
-        }
-        self.kept(case).filter(|record| record.status != Status::Ok)
-    }
-
     /// Whether there is a whole record of a case.
     pub fn has(&self, case: &Case) -> bool {
         self.texts(&case.hash()).is_some()
-    }
-
-    /// Takes over the record of a case from another store as it is, where both are packed and it has a whole one
-    /// there; whether it did.
-    ///
-    /// # Errors
-    /// When the file system refuses.
-    pub fn take_over(&self, other: &Self, case: &Case) -> Result<bool, StoreError> {
-        if self.is_packed { self.packs.take_over(&other.packs, case.number()) } else { Ok(false) }
     }
 
     /// What made the records of some cases; of packed ones that one build made only the first is read.
@@ -250,15 +225,13 @@ impl RecordStore {
 
     fn append(&self, record: &Record) -> Result<(), StoreError> {
         let json = |source| StoreError::Json { path: self.folder.clone(), source };
-        let end = match record.status {
-            Status::Ok => CaseEnd::Ok,
-            Status::Failed(_) if record.status.is_worth_another_run() => CaseEnd::Late,
-            Status::Failed(_) => CaseEnd::Failed,
-        };
         let line = WallLine { hash: record.hash.clone(), wall: record.wall.clone() };
         let wall = serde_json::to_string(&line).map_err(json)?;
         let text = sealed(record, Layout::OneLine).map_err(json)? + "\n" + &wall + "\n";
-        self.packs.append(Entry::new(number_of(&record.hash), end, &record.provenance), &text)
+        self.packs.append(
+            Entry::new(number_of(&record.hash), record.status.is_worth_another_run(), &record.provenance),
+            &text,
+        )
     }
 
     fn write_files(&self, record: &Record) -> Result<(), StoreError> {

@@ -136,10 +136,8 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
 /// Brings the record of a case to the target, with the wall times of all stores that have it; whether there is one then.
 fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore]) -> anyhow::Result<bool> {
     let having: Vec<&RecordStore> = others.iter().filter(|store| store.has(case)).collect();
-    match (target.has(case), having.as_slice()) {
-        (is_there, []) => return Ok(is_there),
-        (false, [only]) if target.take_over(only, case)? => return Ok(true),
-        _ => {}
+    if having.is_empty() {
+        return Ok(target.has(case));
     }
     let kept = target.kept(case);
     let mut found = kept.clone().map(|record| (record, target));

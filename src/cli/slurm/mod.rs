@@ -16,9 +16,9 @@ use crate::cli::slurm::scheduler::{Job, cancel, most_tasks, submit};
 use crate::cli::slurm::scripts::{Scripts, merge_words};
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
-use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_whole;
+use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
@@ -219,7 +219,9 @@ impl<'a> Campaign<'a> {
         let mut unforeseen = 0;
         for (study, cases) in &self.studies {
             let store = RecordStore::for_cases(&self.results, &study.name, study.planned.len());
-            let failed: Vec<Record> = cases.iter().filter_map(|case| store.failed(case)).collect();
+            let failed: Vec<Record> = cases.iter().filter_map(|case| store.kept(case)).collect();
+            let failed: Vec<Record> =
+                failed.into_iter().filter(|record| record.status != Status::Ok).collect();
             unforeseen += failed.iter().filter(|record| !study.foresees(record)).count();
             say!("{}: {} of {} cases, {} failed", study.name, cases.len(), cases.len(), failed.len());
         }
