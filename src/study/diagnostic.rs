@@ -7,8 +7,6 @@ use std::ops::Range;
 
 /// Width of a rendered diagnostic: fixed, so that output does not depend on the terminal.
 const RENDER_WIDTH: usize = 110;
-/// Longest line that is quoted whole, bytes; of a longer one as much is quoted.
-const LONGEST_LINE: usize = 200;
 /// Longest message, and longest help, letters.
 const LONGEST_MESSAGE: usize = 2000;
 /// Names that are listed where none is near.
@@ -64,64 +62,19 @@ impl Diagnostic {
     fn render(&self, level: Level<'_>, name: &str, source: &str) -> String {
         let message = bounded(&self.message, LONGEST_MESSAGE);
         let title = level.primary_title(message);
-        let excerpt = self.span.as_ref().and_then(|span| Excerpt::of_long(source, &inside(source, span)));
-        let mut group = match (&self.span, &excerpt) {
-            (_, Some(excerpt)) => {
-                let place =
-                    annotate_snippets::Origin::path(name).line(excerpt.line).char_column(excerpt.column);
-                title.element(place).element(
-                    Snippet::source(excerpt.text)
-                        .line_start(excerpt.line)
-                        .annotation(AnnotationKind::Primary.span(excerpt.span.clone())),
-                )
-            }
-            (Some(span), None) => title.element(
+        let mut group = match &self.span {
+            Some(span) => title.element(
                 Snippet::source(source)
                     .path(name)
                     .annotation(AnnotationKind::Primary.span(inside(source, span))),
             ),
-            (None, None) => title.element(annotate_snippets::Origin::path(name)),
+            None => title.element(annotate_snippets::Origin::path(name)),
         };
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(bounded(help, LONGEST_MESSAGE)));
         }
         let renderer = Renderer::plain().term_width(RENDER_WIDTH).decor_style(DecorStyle::Ascii);
         renderer.render(&[group])
-    }
-}
-
-/// The part of a line that is quoted where the line is too long to be quoted whole: what is no study may have one line
-/// of a million letters, or of secrets.
-struct Excerpt<'a> {
-    /// Line, from 1.
-    line: usize,
-    /// Letter in it, from 1.
-    column: usize,
-    text: &'a str,
-    /// The marked letters, bytes of the text.
-    span: Range<usize>,
-}
-
-impl<'a> Excerpt<'a> {
-    /// The excerpt at a span on character boundaries; none where all its lines are short.
-    fn of_long(source: &'a str, span: &Range<usize>) -> Option<Self> {
-        let start = source[..span.start].rfind('\n').map_or(0, |before| before + 1);
-        let end = source[span.end..].find('\n').map_or(source.len(), |after| span.end + after);
-        if source[start..end].split('\n').all(|line| line.len() <= LONGEST_LINE) {
-            return None;
-        }
-        let end = source[start..].find('\n').map_or(source.len(), |after| start + after);
-        let floor =
-            |index: usize| (0..=index).rev().find(|index| source.is_char_boundary(*index)).unwrap_or(0);
-        let from = floor(span.start.saturating_sub(LONGEST_LINE / 4)).max(start);
-        let to = floor((from + LONGEST_LINE).min(end)).max(from);
-        let marked = |index: usize| index.clamp(from, to) - from;
-        Some(Self {
-            line: source[..start].matches('\n').count() + 1,
-            column: source[start..span.start].chars().count() + 1,
-            text: &source[from..to],
-            span: marked(span.start)..marked(span.end),
-        })
     }
 }
 
@@ -133,17 +86,11 @@ fn bounded(text: &str, most: usize) -> String {
     }
 }
 
-/// A span held inside a source and on character boundaries.
+/// A span held inside a source, on character boundaries and within the line in which it begins.
 fn inside(source: &str, span: &Range<usize>) -> Range<usize> {
-    let floor = |mut index: usize| {
-        index = index.min(source.len());
-        while !source.is_char_boundary(index) {
-            index -= 1;
-        }
-        index
-    };
-    let start = floor(span.start);
-    start..floor(span.end).max(start)
+    let start = source.floor_char_boundary(span.start);
+    let line = source[start..].find('\n').map_or(source.len(), |end| start + end);
+    start..source.floor_char_boundary(span.end).clamp(start, line.max(start))
 }
 
 /// The candidate nearest to a misspelt word, if one is near at all.
