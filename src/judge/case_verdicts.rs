@@ -67,11 +67,7 @@ impl CaseDemand {
                 worst(|balance| balance.water_imbalance),
                 self.water_drift_below.map(below),
             ),
-            (
-                "water over pores, less one",
-                worst_layer(|one| one.pore_water),
-                self.pore_water.map(|[above, below]| Bounds { above, below }),
-            ),
+            ("water over pores, less one", worst_layer(|one| one.pore_water), self.pore_water),
             (
                 "water that left, less s/(n_0 H)",
                 worst_layer(|one| one.water_left_error),
@@ -181,8 +177,8 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     };
     let (quantity, sample) = (measure.quantity.name(), measure.sample.name());
     let what = format!("{quantity} {} {sample} at T_v = {time}", measure.norm);
-    let bounds = Bounds { above: range.above, below: range.below };
-    let mut check = Check { name: "error".to_owned(), ..value_found(&what, Some(row.value.abs()), bounds) };
+    let found = value_found(&what, Some(row.value.abs()), range.bounds);
+    let mut check = Check { name: "error".to_owned(), ..found };
     if let Some(place) = place_of_attached(record, row).filter(|_| !check.pass) {
         check.reason = format!("{}; {place}", check.reason);
     }
@@ -238,7 +234,7 @@ time_step = [{ growth = 0.05 }]
         };
         let error = row.value.abs();
         let found = |record: &Record, above: f64, below: f64| {
-            error_found(&ErrorRange { measure: measure.clone(), above, below }, record)
+            error_found(&ErrorRange { measure: measure.clone(), bounds: Bounds { above, below } }, record)
         };
         assert!(found(&record, 0.9 * error, 1.1 * error).pass);
         assert!(found(&record, error, 1.1 * error).pass, "the lower end belongs to the range");
@@ -277,7 +273,7 @@ time_step = [{ growth = 0.05 }]
         assert!(verdicts(&records)[0].1.contains("no such case with one point set"));
         // Nothing moves here, so there is nothing to hold; and what is not as it must be fails.
         let demand = CaseDemand {
-            pore_water: Some([1e-3, 2e-3]),
+            pore_water: Some(Bounds { above: 1e-3, below: 2e-3 }),
             water_left_within: Some(1e-3),
             ..CaseDemand::default()
         };

@@ -88,9 +88,13 @@ fn bounded(text: &str, most: usize) -> String {
 
 /// A span held inside a source, on character boundaries and within the line in which it begins.
 fn inside(source: &str, span: &Range<usize>) -> Range<usize> {
-    let start = source.floor_char_boundary(span.start);
+    let floor = |index: usize| {
+        let boundaries = (0..=index.min(source.len())).rev();
+        boundaries.into_iter().find(|index| source.is_char_boundary(*index)).unwrap_or(0)
+    };
+    let start = floor(span.start);
     let line = source[start..].find('\n').map_or(source.len(), |end| start + end);
-    start..source.floor_char_boundary(span.end).clamp(start, line.max(start))
+    start..floor(span.end).clamp(start, line)
 }
 
 /// The candidate nearest to a misspelt word, if one is near at all.

@@ -168,10 +168,8 @@ pub struct Bounds {
 pub struct ErrorRange {
     /// Which error.
     pub measure: Measure,
-    /// It must be smaller than this.
-    pub below: f64,
-    /// It must be at least this.
-    pub above: f64,
+    /// What it must be.
+    pub bounds: Bounds,
 }
 
 /// What is wanted of a case; everything asked is judged.
@@ -188,7 +186,7 @@ pub struct CaseDemand {
     /// Largest imbalance of the water at any output, over what the load presses out.
     pub water_drift_below: Option<f64>,
     /// Bounds on the largest size, at any output, of the water in the soil over its pores, minus one: of two point sets.
-    pub pore_water: Option<[f64; 2]>,
+    pub pore_water: Option<Bounds>,
     /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
     pub water_left_within: Option<f64>,
     /// Bounds on the largest pressure of any water point of two point sets, between outputs too, over the load.

@@ -90,7 +90,7 @@ fn a_drift_or_a_burst_at_any_output_fails_and_is_told() {
         (CaseDemand { spurious_velocity: bounds, ..CaseDemand::default() }, |one, to| {
             one.spurious_velocity = Some(to);
         }),
-        (CaseDemand { pore_water: Some([0.0, 1e-3]), ..CaseDemand::default() }, |one, to| {
+        (CaseDemand { pore_water: bounds, ..CaseDemand::default() }, |one, to| {
             one.layers.as_mut().expect("layers").pore_water = to;
         }),
         (CaseDemand { water_left_within: Some(1e-3), ..CaseDemand::default() }, |one, to| {

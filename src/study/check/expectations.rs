@@ -136,7 +136,7 @@ impl Checker<'_> {
             critical_step_within: bound(self, &table.critical_step_within, "critical_step_within"),
             solid_drift_below: bound(self, &table.solid_drift_below, "solid_drift_below"),
             water_drift_below: bound(self, &table.water_drift_below, "water_drift_below"),
-            pore_water: self.bounds(&table.pore_water).map(|bounds| [bounds.above, bounds.below]),
+            pore_water: self.bounds(&table.pore_water),
             water_left_within: bound(self, &table.water_left_within, "water_left_within"),
             largest_pressure: self.bounds(&table.largest_pressure),
             one_set_within: bound(self, &table.one_set_within, "one_set_within"),
@@ -376,10 +376,10 @@ impl Checker<'_> {
         let (sample, norm) = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref())?;
         let reference = self.expected_reference(table.reference.as_ref(), range.span(), subject)?;
         let time_factor = self.time_factor_of(table.time_factor.as_ref(), range.span())?;
-        let Bounds { above, below } = self.bounds(&table.error)?;
+        let bounds = self.bounds(&table.error)?;
         let reference = reference.name().to_owned();
         let measure = Measure { quantity: table.quantity, sample, norm, reference, time_factor, probe: None };
-        Some(ErrorRange { measure, below, above })
+        Some(ErrorRange { measure, bounds })
     }
 
     /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A complaint where no
