@@ -1,12 +1,10 @@
 //! Runs one case, from its inputs to its record, and how long the processor worked on it, for which other programs do
 //! not count.
 
-use crate::case::solver::Solver;
 use crate::case::work_estimate::MOST_PROBE_STEPS;
-use crate::case::{Case, Task};
+use crate::case::{Case, Solver, Task};
 use crate::measure::record::{record_of, record_of_critical_step, record_of_stopped_search};
-use crate::record::provenance::Machine;
-use crate::record::{Record, Status, WallSample};
+use crate::record::{Machine, Record, Status, WallSample};
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::critical_step::formula;

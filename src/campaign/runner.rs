@@ -4,13 +4,10 @@
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
-use crate::case::Case;
-use crate::case::planned::Tier;
 use crate::case::work_estimate::{estimated_work, work_of};
-use crate::record::provenance::{Origins, Provenance};
-use crate::record::store::{Found, RecordStore};
+use crate::case::{Case, Tier};
 use crate::record::whole_file::StoreError;
-use crate::record::{Record, Status};
+use crate::record::{Found, Origins, Provenance, Record, RecordStore, Status};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
 use std::cell::Cell;

@@ -1,8 +1,6 @@
 //! The contenders of the race, one line each: what `method = ["race"]` runs.
 
-use crate::case::Case;
-use crate::case::keys::{Key, Value};
-use crate::case::solver::Solver;
+use crate::case::{Case, Key, Solver, Value};
 use oedometer_mpm::method::{
     Basis, Configuration, Memory, Method, PressureIntegration, Recovery, StrainGradient,
 };

@@ -3,8 +3,7 @@
 //! What a key means, its unit, its range and its place in a case stand here once. Parsing, checks, sweeps,
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
-use crate::case::solver::Solver;
-use crate::case::{Case, step_label};
+use crate::case::{Case, Solver, step_label};
 use oedometer_exact::parameters::Base;
 use oedometer_mpm::explicit::Drag;
 use oedometer_mpm::explicit::scheme::Scheme;

@@ -1,7 +1,6 @@
 //! Labels of cases: the method, the meshes and what differs from the defaults.
 
-use crate::case::keys::{Key, Value};
-use crate::case::{Case, Task, USUAL_POINTS, step_label};
+use crate::case::{Case, Key, Task, USUAL_POINTS, Value, step_label};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::arrangement::Arrangement;
 use oedometer_soil::conductivity::ConductivityMean;

@@ -9,8 +9,7 @@ pub mod quantity;
 pub mod solver;
 pub mod work_estimate;
 
-use crate::case::planned::Shared;
-use crate::case::solver::Solver;
+pub use keys::{KEYS, Key, Kind, Value};
 use oedometer_mpm::explicit::ExplicitSettings;
 use oedometer_mpm::method::{Configuration, Method};
 use oedometer_mpm::run::TimeStepRule;
@@ -21,9 +20,10 @@ use oedometer_mpm::scene::column::{Column, column_parameters};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
-pub use planned::Tier;
+pub use planned::{PlannedCase, Planner, Shared, Tier};
 pub use quantity::{Norm, Quantity, Sample};
 use serde::{Deserialize, Serialize};
+pub use solver::{Attached, Solver};
 use std::cell::RefCell;
 use std::sync::Arc;
 

@@ -1,8 +1,6 @@
 //! An attached solver of a study, ready to run its cases.
 
-use crate::case::Case;
-use crate::case::quantity::Sample;
-use crate::case::solver::Solver;
+use crate::case::{Case, Sample, Solver};
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::ending::{difference, states_at_outputs};
 use crate::foreign::process::{Ending, Finished, Order};
@@ -12,8 +10,7 @@ use crate::foreign::{ending, process};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
 use crate::measure::record::record_of_attached;
-use crate::record::provenance::Machine;
-use crate::record::{AttachedRun, Record, Status, WallSample};
+use crate::record::{AttachedRun, Machine, Record, Status, WallSample};
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;

@@ -1,7 +1,6 @@
 //! Writes `case.json`, which tells an attached solver what to solve.
 
-use crate::case::Case;
-use crate::case::keys::Key;
+use crate::case::{Case, Key};
 use oedometer_exact::soil_layers::SoilLayer;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;

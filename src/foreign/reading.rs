@@ -1,19 +1,16 @@
 //! Reads the result files of a solver as states, and reports how they were read.
 
-use crate::case::Case;
-use crate::case::quantity::Sample;
-use crate::import::SampledState;
+use crate::case::{Case, Sample};
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::Preset;
-use crate::import::not_ended;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, files_of, runs_of};
+use crate::import::{SampledState, not_ended};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::ExternalSolver;
 use clap::ValueEnum;
-use oedometer_formats::ImportError;
-use oedometer_formats::input_file;
+use oedometer_formats::{ImportError, input_file};
 use oedometer_soil::wording::short;
 use std::path::PathBuf;
 

@@ -1,7 +1,6 @@
 //! Inputs of the cases of a golden file, and which of them changed: a changed input explains changed values.
 
-use crate::case::Case;
-use crate::case::keys::Key;
+use crate::case::{Case, Key};
 use crate::study::inputs::unit_of;
 use oedometer_soil::wording::count_of;
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,7 @@
 //! Every series along an axis that is refined gets one: the order, where its class has one, and the error at the finest
 //! level. The room is less than what a worse solver takes: half an order, or twice the error.
 
-use crate::case::keys::{KEYS, Key, Value};
-use crate::case::{Case, Quantity, Sample, Tier};
+use crate::case::{Case, KEYS, Key, Quantity, Sample, Tier, Value};
 use crate::judge::paths::{Path, StudyPaths, first_measure};
 use crate::judge::verdict::judge_expectation;
 use crate::study::check::Study;

@@ -6,8 +6,9 @@ use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::{LONG_AFTER, snapshot_errors};
 use crate::measure::other_measures::{load_factor, measures_of};
 use crate::measure::theory::known_reference;
-use crate::record::provenance::Provenance;
-use crate::record::{AttachedRun, Balance, ErrorRow, HistoryRow, Record, ReferenceUse, SCHEMA, Status};
+use crate::record::{
+    AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
+};
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::critical_step::observed::CriticalStep;
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};

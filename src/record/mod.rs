@@ -9,13 +9,13 @@ pub mod provenance;
 pub mod store;
 pub mod whole_file;
 
-use crate::case::Case;
-use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::record::provenance::{Machine, Provenance};
+use crate::case::{Case, Norm, Quantity, Sample};
 pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
+pub use provenance::{Machine, Origins, Provenance};
 use serde::{Deserialize, Serialize};
+pub use store::{Found, RecordStore};
 
 /// Version of the record's layout.
 pub const SCHEMA: u32 = 2;

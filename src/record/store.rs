@@ -2,9 +2,8 @@
 
 use crate::case::Case;
 use crate::record::pack::{Damage, Entry, Packs};
-use crate::record::provenance::{Origins, Provenance};
 use crate::record::whole_file::{Layout, StoreError, is_whole, sealed, write_rebuildable};
-use crate::record::{Record, SCHEMA, WallSample};
+use crate::record::{Origins, Provenance, Record, SCHEMA, WallSample};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs;

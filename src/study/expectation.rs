@@ -1,11 +1,7 @@
 //! What a study expects of its own results: of series of cases, and of single cases. Hard cases are judged by how they
 //! end, where their critical step lies, how large an error or a drift is.
 
-use crate::case::Case;
-use crate::case::keys::{Key, Value};
-use crate::case::planned::Tier;
-use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::case::solver::Solver;
+use crate::case::{Case, Key, Norm, Quantity, Sample, Solver, Tier, Value};
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;

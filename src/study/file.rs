@@ -1,9 +1,6 @@
 //! A study as typed: every value with its place in the text, before any check.
 
-use crate::case::Task;
-use crate::case::keys::Key;
-use crate::case::planned::Tier;
-use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::case::{Key, Norm, Quantity, Sample, Task, Tier};
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{Inputs, add_inputs, add_units, take_inputs};

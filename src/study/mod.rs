@@ -11,3 +11,6 @@ pub mod shipped;
 pub mod solver;
 pub mod sweep;
 pub mod units;
+
+pub use check::{Purpose, Study};
+pub use file::StudySource;

@@ -2,10 +2,9 @@
 //! judges both and its messages point at what was typed; and what an exact solution or a score is asked for.
 
 use crate::case::Case;
-use crate::study::check::{Purpose, Study};
 use crate::study::diagnostic::StudyError;
-use crate::study::file::StudySource;
 use crate::study::units::{has_unit, in_si};
+use crate::study::{Purpose, Study, StudySource};
 use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;

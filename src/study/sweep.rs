@@ -1,7 +1,6 @@
 //! Sweeps: lists of choices, multiplied out or tied to a path.
 
-use crate::case::Case;
-use crate::case::keys::{Key, Value};
+use crate::case::{Case, Key, Value};
 
 /// The values of one key in a sweep.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,6 @@
 //! Errors and oscillation of the methods over the stiffness of the water and of the skeleton, through consolidation.
 
-use crate::case::solver::Solver;
-use crate::case::{Case, Quantity, Sample};
+use crate::case::{Case, Quantity, Sample, Solver};
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};

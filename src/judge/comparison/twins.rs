@@ -1,9 +1,7 @@
 //! Situations, what makes a run hard, derived from its inputs; and runs that differ in one input alone: the cost and the
 //! benefit of the input in each situation.
 
-use crate::case::keys::{Key, Value};
-use crate::case::solver::Solver;
-use crate::case::{Quantity, Sample};
+use crate::case::{Key, Quantity, Sample, Solver, Value};
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::median;
 use crate::record::{Record, Status};

@@ -1,7 +1,6 @@
 //! Matches the times of the results to be scored and compares each with the references.
 
-use crate::case::Case;
-use crate::case::quantity::Quantity;
+use crate::case::{Case, Quantity};
 use crate::import::mapping::Mapping;
 use crate::import::runs::Run;
 use crate::import::{SampledState, not_ended};

@@ -1,7 +1,6 @@
 //! The tidy CSV of a study: one row per measure.
 
-use crate::case::Case;
-use crate::case::keys::{KEYS, Key};
+use crate::case::{Case, KEYS, Key};
 use crate::record::csv::lines_of;
 use crate::record::{ERROR_COLUMNS, Record, WallSample};
 

@@ -1,10 +1,9 @@
 //! Checks `[[expect]]` and `[[expect_case]]` blocks, and that some case can answer each.
 
-use crate::case::keys::{MOST_CELLS, MOST_POINTS, Value};
-use crate::case::planned::PlannedCase;
-use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::case::{Case, Task};
-use crate::study::check::{Checker, Purpose};
+use crate::case::keys::{MOST_CELLS, MOST_POINTS};
+use crate::case::{Case, Norm, PlannedCase, Quantity, Sample, Task, Value};
+use crate::study::Purpose;
+use crate::study::check::Checker;
 use crate::study::expectation::{
     Axis, Bounds, CaseDemand, CaseExpectation, ErrorRange, Measure, NEXT_FINER, NO_REFERENCE, Selection,
     SeriesExpectation,

@@ -1,8 +1,6 @@
 //! Checks geometry, material and loads: the tables `[column]`, `[layer]`, `[manufactured]` and `[material]`.
 
-use crate::case::keys::{Key, Value};
-use crate::case::planned::PlannedCase;
-use crate::case::{Case, Task};
+use crate::case::{Case, Key, PlannedCase, Task, Value};
 use crate::study::check::Checker;
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::StudyFile;

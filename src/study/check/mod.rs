@@ -6,10 +6,7 @@ pub mod solvers;
 mod sweeps;
 mod values;
 
-use crate::case::keys::{Key, Value};
-use crate::case::planned::{PlannedCase, Planner, Shared, Tier};
-use crate::case::solver::Solver;
-use crate::case::{Case, Task};
+use crate::case::{Case, Key, PlannedCase, Planner, Shared, Solver, Task, Tier, Value};
 use crate::record::Record;
 use crate::study::check::expectations::Subject;
 use crate::study::check::geometry::load_of;

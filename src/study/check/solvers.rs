@@ -1,9 +1,8 @@
 //! Checks attached solvers and existing results: names, commands, placeholders, files; and makes their digest.
 
-use crate::case::Case;
 use crate::case::keys::MOST_CELLS;
-use crate::case::planned::Tier;
-use crate::case::solver::{Attached, DIGEST_DIGITS, Solver};
+use crate::case::solver::DIGEST_DIGITS;
+use crate::case::{Attached, Case, Solver, Tier};
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile};

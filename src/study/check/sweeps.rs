@@ -1,11 +1,10 @@
 //! Checks `[[sweep]]` blocks: their axes, the cases they multiply out to, and the integrators and labels of these.
 
 use crate::case::contender::{CONTENDERS, Contender, RACE};
-use crate::case::keys::{Key, Value};
-use crate::case::planned::PlannedCase;
 use crate::case::work_estimate::estimated_seconds;
-use crate::case::{Case, Task};
-use crate::study::check::{Checker, Common, Purpose};
+use crate::case::{Case, Key, PlannedCase, Task, Value};
+use crate::study::Purpose;
+use crate::study::check::{Checker, Common};
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};

@@ -1,8 +1,7 @@
 //! Checks of single values: inputs by the table of keys, methods, step rules, numbers in their range.
 
-use crate::case::Case;
-use crate::case::keys::{Key, Kind, Range, Value};
-use crate::case::solver::Solver;
+use crate::case::keys::Range;
+use crate::case::{Case, Key, Kind, Solver, Value};
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};

@@ -1,5 +1,4 @@
-use crate::study::check::Study;
-use crate::study::file::StudySource;
+use crate::study::{Study, StudySource};
 use std::fs;
 use std::path::Path;
 
