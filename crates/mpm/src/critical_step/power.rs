@@ -58,5 +58,11 @@ mod tests {
         // The composite gradient strains more nodes than the forces act on; the patch spreads pressures likewise.
         assert_eq!(is_adjoint(of("GC-SRI-patch")), [false, false], "{:?}", of("GC-SRI-patch"));
         assert!(is_adjoint(of("GIMP-SRI-patch"))[0] && !is_adjoint(of("GIMP-SRI-patch"))[1]);
+        // So is B-bar by cells and by nodes: its forces do the power of the strains whose volumes it shares out.
+        for (name, expected) in
+            [("GIMP-Bbar", [true, true]), ("VP-Bbar", [true, true]), ("GIMP-Bbar-patch", [false, false])]
+        {
+            assert_eq!(is_adjoint(of(name)), expected, "{name}: {:?}", of(name));
+        }
     }
 }
