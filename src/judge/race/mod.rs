@@ -308,5 +308,74 @@ pub fn step_ratio_of(record: &Record) -> Option<f64> {
     let case = &record.case;
     let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
     let ratio = record.step_sizes.predicted_critical / limit;
-    (case.is_explicit() && ratio.is_finite() && ratio > 0.0).then_some(ratio)
+    // The formula itself stands where no limit is known.
+    (case.is_explicit() && ratio.is_finite() && ratio > 0.0 && ratio != 1.0).then_some(ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::record::WallSample;
+
+    fn records(integrator: &str) -> Vec<Record> {
+        records_of(&format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [1e-3]\n[[sweep]]\nmethod = ['GIMP']\n\
+             integrator = ['{integrator}']\ncells = [2, 4, 8]\n"
+        ))
+    }
+
+    #[test]
+    fn the_cost_of_an_error_lies_between_its_meshes_by_powers() {
+        let mut records = records("implicit");
+        for (record, (error, seconds)) in records.iter_mut().zip([(0.1, 1.0), (0.01, 8.0), (0.004, 27.0)]) {
+            record.errors.iter_mut().for_each(|row| row.value = error);
+            record.wall = [0.5, 1.0, 40.0]
+                .map(|times| WallSample { cpu_seconds: Some(times * seconds), ..WallSample::default() })
+                .to_vec();
+        }
+        let runs = Runs { path: records.iter().collect(), two_steps: None };
+        let cost = |tolerance: f64| runs.cost_to(tolerance).expect("a mesh reaches it");
+        assert_eq!(cost(0.2), 1.0, "the coarsest mesh is good enough");
+        // From 0.1 at 1 s to 0.01 at 8 s: a share of log10 2 of the way.
+        assert!((cost(0.05) / 8.0_f64.powf(2.0_f64.log10()) - 1.0).abs() < 1e-12, "{}", cost(0.05));
+        assert!((cost(0.01) - 8.0).abs() < 1e-12 && (cost(0.004) - 27.0).abs() < 1e-12);
+        assert_eq!(runs.cost_to(0.003), None);
+    }
+
+    #[test]
+    fn a_step_is_over_the_formula_s_only_where_a_limit_is_known() {
+        let mut record = records("explicit").remove(0);
+        let case = &record.case;
+        let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
+        record.step_sizes.predicted_critical = 1.5 * limit;
+        let ratio = step_ratio_of(&record).expect("a limit");
+        assert!((ratio - 1.5).abs() < 1e-12);
+        record.step_sizes.predicted_critical = limit;
+        assert_eq!(step_ratio_of(&record), None, "the formula stands where no limit is known");
+    }
+
+    #[test]
+    fn locking_is_of_the_first_output_and_of_a_plane_what_the_displacement_lacks() {
+        let mut record = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.5]\n[[sweep]]\nmethod = ['GIMP']\n\
+             integrator = ['implicit']\ncells = [4]\n",
+        )
+        .remove(0);
+        for row in &mut record.errors {
+            row.value = match row.quantity {
+                Quantity::Settlement if row.time_factor == 0.1 => -0.25,
+                Quantity::Displacement if row.time_factor == 0.1 => 0.125,
+                _ => 0.5,
+            };
+        }
+        assert_eq!(locking_of(&record), Some(0.75));
+        record.errors.retain(|row| row.quantity != Quantity::Settlement);
+        assert_eq!(locking_of(&record), Some(0.875));
+        // A pressure that goes up and down at the last output alone.
+        let heights = record.snapshots[1].points.pressure.len();
+        record.snapshots[1].points.pressure =
+            (0..heights).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!(oscillation_of(&record).is_some_and(|index| index > 0.5), "{:?}", oscillation_of(&record));
+    }
 }
