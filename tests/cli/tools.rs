@@ -323,7 +323,11 @@ fn planted_faults_name_functions_and_tests_that_exist() {
         let function = word("function").rsplit(':').next().expect("a name");
         let source = fs::read_to_string(root().join(file)).expect(file);
         assert!(source.contains(&format!("fn {function}")), "{name}: {file} has no function {function}");
-        assert!(fault.get("result").is_some() != fault.get("before").is_some(), "{name}: one effect");
+        let effects = ["result", "before", "instead"].into_iter().filter(|key| fault.get(*key).is_some());
+        assert_eq!(effects.count(), 1, "{name}: one effect");
+        if let Some(right) = fault.get("instead").and_then(|pair| pair[0].as_str()) {
+            assert!(source.contains(right), "{name}: {file} has no `{right}`");
+        }
         if let Some(study) = word("caught_by").strip_prefix("check ") {
             let is_there = root().join(format!("studies/{study}.toml")).is_file();
             assert!(is_there, "{name}: no study {study}");

@@ -5,7 +5,7 @@
 
 Each entry of faults.toml names a function and says how it goes wrong: `result` is an expression that replaces what the
 function returns (`result` stands for the right value), `before` is a statement at its start, which may shadow an
-argument. All faults are compiled into a copy of the tree behind a switch, OEDOMETER_FAULT, so there is one build. Then
+argument, `instead` is an expression in it and the one that takes its place. All faults are compiled into a copy of the tree behind a switch, OEDOMETER_FAULT, so there is one build. Then
 `caught_by`, a study of `oedometer check` or a test, must pass with all switches off and fail with this one on. Writes
 OUTCOME.md; exits with 1 where a fault is not caught. Needs Python 3.11 and cargo.
 """
@@ -87,6 +87,12 @@ def plant(text, fault):
     brace, end, returned = function(text, fault["function"])
     body = text[brace + 1 : end - 1]
     on = switch(fault["name"])
+    if "instead" in fault:
+        right, wrong = fault["instead"]
+        if body.count(right) != 1:
+            raise ValueError(f"`{fault['function']}` has `{right}` {body.count(right)} times")
+        either = body.replace(right, f"(if {on} {{ {wrong} }} else {{ {right} }})")
+        return text[: brace + 1] + either + text[end - 1 :]
     if "before" in fault:
         # `let x = ...` must last beyond the switch: both ways assign the same name.
         shadow = re.fullmatch(r"let (mut )?(\w+)(: [^=]+)? = (.*);", fault["before"], re.S)
