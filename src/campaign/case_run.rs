@@ -242,6 +242,8 @@ fn seconds_of(clock: rustix::time::ClockId) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
     use std::time::{Duration, Instant};
 
     #[test]
@@ -270,5 +272,32 @@ mod tests {
         std::thread::scope(|scope| scope.spawn(work).join().expect("no panic"));
         assert!(thread_seconds().expect("told before") - thread < 0.05);
         assert!(process_seconds().expect("told before") - process >= 0.05);
+    }
+
+    #[test]
+    fn a_history_goes_from_a_thousandth_to_the_last_output_by_equal_ratios() {
+        let of = |times: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\ncolumn.height = 2.0\noutput.time_factors = {times}\n[[sweep]]\n\
+                 method = ['GIMP']\nintegrator = ['implicit']\ncells = [4]\n"
+            );
+            let study = Study::check(&StudySource { name: "s.toml".to_owned(), text }).expect("sound");
+            let case = study.planned[0].case.clone();
+            let course =
+                Course { cores: Cores::one(true), kernel: Kernel::Fastest, time_limit: TimeLimit::default() };
+            (schedule_of(&case, course), column_parameters(&case.column, &case.material))
+        };
+        let (schedule, column) = of("[0.1, 2.0]");
+        let factors: Vec<f64> = schedule.history.iter().map(|time| column.time_factor(*time)).collect();
+        assert_eq!(factors.len(), 48);
+        assert!((factors[0] / 1e-3 - 1.0).abs() < 1e-12 && (factors[47] / 2.0 - 1.0).abs() < 1e-12);
+        // 47 equal ratios from 1e-3 to 2.
+        let ratio = 2000.0_f64.powf(1.0 / 47.0);
+        assert!(
+            factors.windows(2).all(|pair| (pair[1] / pair[0] / ratio - 1.0).abs() < 1e-12),
+            "{factors:?}"
+        );
+        assert_eq!(schedule.outputs.len(), 2);
+        assert!(of("[0.001]").0.history.is_empty());
     }
 }

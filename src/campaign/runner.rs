@@ -414,6 +414,8 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::file::StudySource;
+    use std::sync::Mutex;
 
     #[test]
     fn tallies_are_joined_count_by_count() {
@@ -427,5 +429,24 @@ mod tests {
         let mut all = tally(1);
         all.join(tally(10));
         assert_eq!(all, tally(11));
+    }
+
+    fn study() -> Study {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [1e-3, 0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['explicit', 'implicit']\ncells = [2, 4]\n";
+        Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound")
+    }
+
+    #[test]
+    fn the_work_that_is_told_adds_up_to_what_was_planned() {
+        let (planned, advanced) = (Mutex::new(0), Mutex::new(0));
+        let tell = |progress: Progress| match progress {
+            Progress::Planned { work, .. } => *planned.lock().expect("no thread panics") += work,
+            Progress::Advanced(work) => *advanced.lock().expect("no thread panics") += work,
+            Progress::Failed { .. } => panic!("a case failed"),
+        };
+        run_study(&study(), &RunOptions::whole(Tier::Full, 2), None, &tell);
+        let (planned, advanced) = (planned.into_inner(), advanced.into_inner());
+        assert_eq!(planned.expect("a number"), advanced.expect("a number"));
     }
 }

@@ -121,4 +121,18 @@ mod tests {
         assert_eq!(balanced(&[], 4), Vec::<u64>::new());
         assert_eq!(balanced(&[u64::MAX, u64::MAX, u64::MAX], 2), [0, 1, 0]);
     }
+
+    #[test]
+    fn a_balance_is_over_all_shares_the_empty_ones_too() {
+        let records = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2, 3, 5]\n",
+        );
+        let cases: Vec<&Case> = records.iter().map(|record| &record.case).collect();
+        let seconds: Vec<f64> = cases.iter().map(|case| estimated_seconds(case)).collect();
+        let balance = balance_of(&cases, &[1, 0, 1], 4);
+        assert!((balance.largest - seconds[0] - seconds[2]).abs() < 1e-15, "{balance:?}");
+        assert!((balance.mean - seconds.iter().sum::<f64>() / 4.0).abs() < 1e-15, "{balance:?}");
+        assert_eq!((balance.longest_case, balance.empty), (seconds[2], 2));
+    }
 }

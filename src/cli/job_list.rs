@@ -136,4 +136,37 @@ mod tests {
             r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --resume"
         );
     }
+
+    #[test]
+    fn a_word_is_quoted_where_a_shell_would_read_it_otherwise() {
+        for (word, expected) in
+            [("", "''"), ("a b", "'a b'"), ("$x", "'$x'"), ("a-b_c.d/e=f:1,2", "a-b_c.d/e=f:1,2")]
+        {
+            assert_eq!(quoted(word), expected);
+        }
+    }
+
+    #[test]
+    fn shares_are_counted_from_one_and_those_without_a_wanted_case_are_left_out() {
+        let records = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2, 3, 4, 5, 6, 7]\n",
+        );
+        let source = crate::study::shipped::shipped_study("terzaghi-mesh").expect("a shipped study");
+        let study = Study::check(&source).expect("sound");
+        let list = JobList {
+            files: vec!["s.toml".into()],
+            results: "out".into(),
+            tier: Tier::Full,
+            tasks: 3,
+            parting: Parting::Hash,
+            allow_solvers: false,
+        };
+        let all = [(&study, records.iter().map(|record| &record.case).collect::<Vec<_>>())];
+        let own = |case: &Case| case.number() % 3 + 1;
+        for wanted in [&all[0].1[..], &all[0].1[2..3], &[]] {
+            let expected: BTreeSet<u64> = wanted.iter().map(|case| own(case)).collect();
+            assert_eq!(list.shares_with(&all, &[(&study, wanted.to_vec())]), expected);
+        }
+    }
 }

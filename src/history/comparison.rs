@@ -414,4 +414,39 @@ mod tests {
         let lost = changes([4e-2, 1e-2, 4e-2]);
         assert!(lost[0].after.class != lost[0].before.class, "{lost:?}");
     }
+
+    #[test]
+    fn a_study_of_one_state_only_is_told_with_the_name_of_that_state() {
+        let of = |name: &str, studies: &[&str]| State {
+            name: name.to_owned(),
+            studies: studies.iter().map(|study| ((*study).to_owned(), state(&BEFORE, "1e6"))).collect(),
+            notes: vec![format!("note of {name}")],
+        };
+        let (before, after) = (of("old", &["both", "gone"]), of("young", &["both", "new", "newer"]));
+        let (found, notes) = compare_states(&before, &after, &[]);
+        assert_eq!(found.iter().map(|one| one.study.as_str()).collect::<Vec<_>>(), ["both"]);
+        let expected = [
+            "note of old",
+            "note of young",
+            "1 study is in old only: gone",
+            "2 studies are in young only: new, newer",
+        ];
+        assert_eq!(notes, expected);
+        let (found, notes) = compare_states(&before, &after, &["gone".to_owned(), "none".to_owned()]);
+        assert!(found.is_empty());
+        assert_eq!(notes[2..], ["1 study is in old only: gone", "neither state has a study `none`"]);
+    }
+
+    #[test]
+    fn seconds_are_summed_over_the_cases_of_both_states() {
+        let with = |cases: &[(&str, [f64; 3])]| {
+            let seconds = cases.iter().map(|(case, runs)| ((*case).to_owned(), runs.to_vec()));
+            StudyState { seconds: seconds.collect(), ..state(&BEFORE, "1e6") }
+        };
+        let before = with(&[("a", [3.0, 1.0, 2.0]), ("b", [10.0, 30.0, 20.0]), ("gone", [9.0; 3])]);
+        let after = with(&[("a", [4.0, 6.0, 5.0]), ("b", [40.0; 3]), ("new", [7.0; 3])]);
+        let [old, new] = Seconds::of_both(&before, &after).expect("times of both");
+        assert_eq!(old, Seconds { median: 22.0, least: 11.0, most: 33.0 });
+        assert_eq!(new, Seconds { median: 45.0, least: 44.0, most: 46.0 });
+    }
 }

@@ -234,6 +234,7 @@ impl State {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::record::WallSample;
 
     #[test]
     fn a_round_adds_its_times_to_those_of_the_first_and_tells_values_that_differ() {
@@ -253,5 +254,20 @@ mod tests {
         records[0].errors[0].value *= 2.0;
         records[0].errors[0].absolute *= 2.0;
         assert_eq!(round(&records), (3 * once, 1));
+    }
+
+    #[test]
+    fn the_seconds_of_a_state_are_the_processor_s_where_they_are_known() {
+        let mut records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2, 3]\n",
+        );
+        records[0].wall = [(5.0, Some(3.0)), (7.0, None)]
+            .map(|(seconds, cpu_seconds)| WallSample { seconds, cpu_seconds, ..WallSample::default() })
+            .to_vec();
+        records[1].wall.clear();
+        let state = StudyState::of_records("s", &records);
+        assert_eq!(state.seconds.get(&records[0].case.label()), Some(&vec![3.0, 7.0]));
+        assert_eq!(state.seconds.len(), 1, "what was not timed has none");
     }
 }

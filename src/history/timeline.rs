@@ -161,4 +161,29 @@ mod tests {
         assert!((found - 4.0).abs() < 1e-14, "8 and 2: {found}");
         assert_eq!(mean_ratio(&before, &after, |name| name == "gone"), 1.0);
     }
+
+    #[test]
+    fn a_step_counts_what_moved_and_apart_from_it_what_has_no_partner() {
+        let golden = |values: &[(&str, f64)]| GoldenFile {
+            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..GoldenFile::of("study", &[], "test")
+        };
+        let [a, b, c] = ["a", "b", "c"].map(|case| format!("{case} | pressure points l2 terzaghi T_v=0.1"));
+        let before = golden(&[(&a, 1e-2), (&b, 2e-2), ("a | steps", 4.0), ("a | point updates", 8.0)]);
+        let after = golden(&[(&a, 3e-2), (&c, 2e-2), ("a | steps", 6.0), ("a | point updates", 8.0)]);
+        let commit = Commit { hash: "0".repeat(40), date: "2026-11-25".to_owned(), subject: "s".to_owned() };
+        let first = Step::of(&commit, None, None, &before);
+        assert_eq!((first.values, first.moved, first.unpaired, first.error_index), (4, 0, 0, 1.0));
+        let step = Step::of(&commit, Some(&first), Some(&before), &after);
+        assert_eq!(
+            (step.values, step.moved, step.unpaired),
+            (4, 2, 2),
+            "an error and the steps; `b` and `c`"
+        );
+        assert!((step.error_index - 3.0).abs() < 1e-14, "{}", step.error_index);
+        assert!((step.work_index - 1.5_f64.sqrt()).abs() < 1e-14, "{}", step.work_index);
+        assert!((step.largest_change - 2.0 / 3.0).abs() < 1e-14, "{}", step.largest_change);
+        let next = Step::of(&commit, Some(&step), Some(&after), &after);
+        assert_eq!((next.moved, next.unpaired, next.error_index), (0, 0, step.error_index));
+    }
 }

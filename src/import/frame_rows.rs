@@ -415,4 +415,60 @@ mod tests {
         assert_eq!(cells(&[0.0, 2.0]), Some(1));
         assert_eq!(cells_over_height(&Frame::default(), &mapping, 2.0), None);
     }
+
+    #[test]
+    fn a_body_is_as_wide_as_its_nodes_or_as_its_points_with_half_a_spacing_beyond_them() {
+        let source = StudySource {
+            name: "map.toml".to_owned(),
+            text: "[columns]\ny = \"coordinates[1]\"\np = \"p\"\nu_y = \"\"\n[units]\nlength = \"cm\"\n"
+                .to_owned(),
+        };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+        let width = |lines: &[f64]| {
+            let places: Vec<[f64; 3]> =
+                [25.0, 75.0].into_iter().flat_map(|y| lines.iter().map(move |x| [*x, y, 0.0])).collect();
+            let values = vec![1.0; places.len()];
+            let pressure = Array {
+                name: "p".to_owned(),
+                on: Association::Points,
+                components: 1,
+                tuples: values.len(),
+                values,
+            };
+            let frame = Frame { coordinates: places, arrays: vec![pressure], ..Frame::default() };
+            FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body).expect("its columns").width()
+        };
+        let is = |found: Option<f64>, width: f64| found.is_some_and(|found| (found - width).abs() < 1e-12);
+        assert!(is(width(&[10.0, 30.0, 50.0]), 0.6), "{:?}", width(&[10.0, 30.0, 50.0]));
+        assert!(is(width(&[10.0, 30.0]), 0.4), "{:?}", width(&[10.0, 30.0]));
+        assert_eq!(width(&[10.0]), None);
+    }
+
+    #[test]
+    fn a_number_of_the_whole_state_is_that_of_every_row() {
+        let text = "[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\nvolume = \"v\"\n".to_owned();
+        let source = StudySource { name: "map.toml".to_owned(), text };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+        let array = |name: &str, on: Association, values: &[f64]| Array {
+            name: name.to_owned(),
+            on,
+            components: 1,
+            tuples: values.len(),
+            values: values.to_vec(),
+        };
+        let arrays = vec![
+            array("y", Association::Points, &[0.25, 0.75]),
+            array("p", Association::Points, &[3.0, 5.0]),
+            array("v", Association::Whole, &[0.5]),
+        ];
+        let frame = Frame { arrays, ..Frame::default() };
+        let found = FrameRows::find(&frame, Path::new("f.npz"), &mapping, body).expect("its columns");
+        let mut rows = Vec::new();
+        found.take_rows(1.0, None, &mut rows).expect("two rows");
+        let told: Vec<[f64; 3]> =
+            rows.iter().map(|row| [row.initial_height, row.pressure, row.volume]).collect();
+        assert_eq!(told, [[0.25, 3.0, 0.5], [0.75, 5.0, 0.5]]);
+    }
 }

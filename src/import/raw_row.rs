@@ -210,6 +210,9 @@ mod tests {
         let sample = sample(mapping, row);
         assert!((sample.pressure - (20e3 - 1.5 * 9810.0)).abs() < 1e-9);
         assert!((sample.effective_stress + 30e3).abs() < 1e-9, "-50 kPa + 20 kPa");
+        let down = format!("{mapping}sign = {{ y = \"down\" }}\n");
+        let below = self::sample(&down, row);
+        assert!((below.pressure - (20e3 - 0.5 * 9810.0)).abs() < 1e-9, "half a metre under the surface");
     }
 
     #[test]

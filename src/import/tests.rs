@@ -97,3 +97,32 @@ fn a_repeated_row_is_told_from_a_second_column_of_samples() {
     let states = states(CONVENTION, text).expect("rows");
     assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
 }
+
+#[test]
+fn an_origin_is_in_the_unit_of_the_places() {
+    let mapping = PLANE_CONVENTION
+        .replace("length = \"m\"", "length = \"cm\"")
+        .replace("x = 0.0", "x = 500.0")
+        .replace("y = 0.0", "y = 200.0");
+    assert!(mapping.contains("cm") && mapping.contains("500.0"), "{mapping}");
+    let states = states(&mapping, "t,x,y,p,u_x,u_y\n1,550,225,3,0.1,0.2\n").expect("a row");
+    assert!((states[0].initial_distance[0] - 0.5).abs() < 1e-12, "{states:?}");
+    assert!((states[0].initial_height[0] - 0.25).abs() < 1e-12, "{states:?}");
+}
+
+#[test]
+fn a_settlement_is_that_of_the_nearest_time_within_a_thousandth_of_it() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let mapping = format!("{STRANGE}[settlement]\nfile = \"curve.csv\"\nt = \"day\"\ns = \"mm\"\n");
+    let source = StudySource { name: "map.toml".to_owned(), text: mapping };
+    let mapping = Mapping::read(&source).expect("a mapping");
+    let rows = [1, 2, 3].map(|day| format!("{day}; 25; -3; 2; 4\n")).concat();
+    std::fs::write(at("result.csv"), format!("day; depth; pwp; settled; sig\n{rows}")).expect("a file");
+    // Half a thousandth off, two thousandths off, and two of which the nearer counts.
+    std::fs::write(at("curve.csv"), "day; mm\n1.0005; 7\n1.996; 8\n2.999; 9\n3.002; 10\n").expect("a file");
+    let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 81.75 };
+    let run = runs_of(&[vec![at("result.csv")]], &mapping, body).expect("rows").remove(0);
+    let found: Vec<Option<f64>> = run.states.iter().map(|state| state.surface_displacement).collect();
+    assert_eq!(found, [Some(-7.0 * 1e-3), None, Some(-9.0 * 1e-3)]);
+}

@@ -203,7 +203,9 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::measure::record_checks;
+    use crate::record::{CriticalStep, Probe};
     use crate::study::expectation::Measure;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     const STUDY: &str = r#"title = "One case"
 scene = "terzaghi"
@@ -330,5 +332,43 @@ time_step = [{ growth = 0.05 }]
         assert!(!check.pass && check.reason.contains("not below"), "{}", check.reason);
         record.balance.clear();
         assert!(!demand.checks(&record)[0].pass, "without a balance there is no drift to pass");
+    }
+
+    #[test]
+    fn a_critical_step_is_met_where_it_is_near_and_both_probes_end_as_predicted() {
+        let probe = |share: f64, fails: bool| Probe {
+            share,
+            step: share,
+            predicted_growth: None,
+            steps: 100,
+            reaches_end: false,
+            failure: fails.then(|| Failure {
+                kind: FailureKind::Unstable,
+                step: 90,
+                time: 90.0,
+                growth: None,
+                reason: "it grew".to_owned(),
+            }),
+        };
+        let passes = |observed: Option<f64>, fails: [bool; 2]| {
+            let mut record = record();
+            record.stability = Some(CriticalStep {
+                predicted: 1.0,
+                creeping_from: None,
+                observed,
+                wave_limit: 2.0,
+                drag_limit: 3.0,
+                combined_limit: 4.0,
+                unknown: None,
+                probes: vec![probe(0.97, fails[0]), probe(1.03, fails[1])],
+                asymmetry: None,
+            });
+            critical_step_found(0.02, &record).pass
+        };
+        assert!(passes(Some(1.019), [false, true]) && passes(Some(0.981), [false, true]));
+        assert!(!passes(Some(1.021), [false, true]) && !passes(Some(0.979), [false, true]));
+        assert!(!passes(Some(1.0), [false, false]), "a larger step runs too");
+        assert!(!passes(Some(1.0), [true, true]), "a smaller step fails too");
+        assert!(!passes(None, [false, true]) && !passes(Some(f64::NAN), [false, true]));
     }
 }

@@ -281,11 +281,36 @@ mod tests {
     #[test]
     fn a_probe_lies_between_centres_and_never_beyond_them() {
         let (heights, field) = ([0.25, 0.75], [1.0, 3.0]);
-        assert_eq!(between(&heights, &field, 0.5), Some(2.0));
+        assert_eq!(between(&heights, &field, 0.375), Some(1.5));
         assert_eq!(between(&heights, &field, 0.25), Some(1.0));
         assert_eq!(between(&heights, &field, 0.75), Some(3.0));
         assert_eq!(between(&heights, &field, 0.2), None);
         assert_eq!(between(&heights, &field, 0.8), None);
         assert_eq!(between(&heights, &[], 0.5), None);
+    }
+
+    #[test]
+    fn the_formal_order_follows_the_operator_of_each_field() {
+        let mut case = records("{ growth = 0.02 }", "[4, 8]").remove(0).case;
+        let mut orders = |method: &str| {
+            let method = oedometer_mpm::method::Method::named(method).expect("a known method");
+            case.method = crate::case::solver::Solver::Own(method);
+            [
+                (Quantity::Pressure, Sample::Points),
+                (Quantity::EffectiveStress, Sample::Points),
+                (Quantity::Pressure, Sample::Centres),
+                (Quantity::Displacement, Sample::Nodes),
+            ]
+            .map(|(quantity, sample)| {
+                let reference = "terzaghi".to_owned();
+                let measure =
+                    Measure { quantity, sample, norm: Norm::L2, reference, time_factor: 0.2, probe: None };
+                formal_order(&case, &measure).unwrap_or(0.0)
+            })
+        };
+        assert_eq!(orders("GIMP-SRI"), [1.0, 1.0, 2.0, 2.0]);
+        assert_eq!(orders("GIMP-SRI-patch"), [2.0, 1.0, 2.0, 2.0]);
+        assert_eq!(orders("GC-SRI-patch"), [2.0, 2.0, 2.0, 2.0]);
+        assert_eq!(orders("VP"), [2.0, 1.0, 2.0, 2.0]);
     }
 }

@@ -293,4 +293,21 @@ mod tests {
         }
         assert_eq!(Axis::ALL.map(|axis| all.along(axis).len()), [24, 16, 24, 1]);
     }
+
+    #[test]
+    fn a_difference_from_the_next_finer_level_is_over_the_finer_one() {
+        let mut records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2]\ntime_step = [{ growth = 0.5 }, { growth = 0.3 }, { growth = 0.1 }]\n",
+        );
+        for (record, settlement) in records.iter_mut().zip([1.25, 1.0, 0.8]) {
+            record.snapshots[0].settlement = settlement;
+        }
+        let measure = first_measure(Quantity::Settlement, Sample::Surface, NEXT_FINER, 0.05);
+        let all = StudyPaths::of(&records);
+        let levels = all.along(Axis::TimeStep)[0].signed_levels(&measure);
+        let found: Vec<f64> = levels.iter().filter_map(|(_, difference)| *difference).collect();
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().all(|difference| (difference - 0.25).abs() < 1e-15), "{found:?}");
+    }
 }

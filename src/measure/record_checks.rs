@@ -349,3 +349,30 @@ pub fn complaints(record: &Record) -> Vec<String> {
     });
     at_start.chain(at_outputs).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+
+    #[test]
+    fn the_water_that_may_be_missing_is_that_of_the_discretisation_and_the_storage() {
+        let of = |scene: &str, more: &str| {
+            let text = format!(
+                "title = 't'\nscene = '{scene}'\n{more}\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                 integrator = ['implicit']\ncells = [4]\n"
+            );
+            let mut record = records_of(&text).remove(0);
+            record.groups.storage = 0.25;
+            water_bound(&record)
+        };
+        let is =
+            |found: Result<f64, &str>, bound: f64| found.is_ok_and(|found| (found - bound).abs() < 1e-15);
+        // A fifth is all of a storage of a quarter.
+        assert!(is(of("terzaghi", ""), 3e-4 + 0.2), "{:?}", of("terzaghi", ""));
+        assert!(is(of("xie-leo", ""), 5e-2 + 0.2), "{:?}", of("xie-leo", ""));
+        assert!(is(of("cosine-layer", ""), 1e-9), "{:?}", of("cosine-layer", ""));
+        let jittered = of("terzaghi", "points.jitter = 0.1");
+        assert!(jittered.is_err_and(|why| why.contains("scattered points overlap")));
+    }
+}

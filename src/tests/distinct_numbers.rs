@@ -3,12 +3,13 @@
 use crate::campaign::runner::records_of;
 use crate::case::planned::Tier;
 use crate::case::quantity::Norm;
+use crate::golden::compare::{Change, Difference};
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
 use crate::render::page::Block;
 use crate::render::report::{StudyResults, cost};
 use crate::render::table::{Cell, Table};
-use crate::render::tables::{measures, runs};
+use crate::render::tables::{golden_changes, measures, runs};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 
@@ -324,6 +325,16 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));
     }
+    let table = runs::attached_table(std::slice::from_ref(&record)).expect("one attached run");
+    for (header, cell) in [
+        ("wall, least", Cell::Seconds(2.0)),
+        ("wall, median", Cell::Seconds(3.0)),
+        ("processor", Cell::Seconds(2.5)),
+        ("memory", Cell::Number(7.5)),
+        ("by its own account", Cell::Seconds(6.5)),
+    ] {
+        assert_eq!(*under(&table, 0, header), cell, "{header}");
+    }
     let notes = runs::attached_notes(&record).join("\n");
     for said in [
         "wall time at least 2 s, median 3 s of 3 runs",
@@ -333,4 +344,29 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     ] {
         assert!(notes.contains(said), "{said}: {notes}");
     }
+}
+
+#[test]
+fn a_golden_value_that_moved_stands_with_both_values_and_what_it_grew_by() {
+    let difference = |golden: Option<f64>, found: Option<f64>| Difference {
+        name: "its name".to_owned(),
+        change: Change::Moved,
+        golden,
+        found,
+        tolerance: 1e-5,
+    };
+    let table = golden_changes::differences_table(&[difference(Some(0.5), Some(0.25))]);
+    for (header, cell) in [
+        ("change", Cell::Text("moved".to_owned())),
+        ("value", Cell::Text("its name".to_owned())),
+        ("golden", Cell::Text("0.5".to_owned())),
+        ("now", Cell::Text("0.25".to_owned())),
+        ("difference", Cell::Error(-0.25)),
+        ("tolerance", Cell::Error(1e-5)),
+    ] {
+        assert_eq!(*under(&table, 0, header), cell, "{header}");
+    }
+    let table = golden_changes::differences_table(&[difference(None, Some(0.25))]);
+    assert!(matches!(under(&table, 0, "golden"), Cell::Missing(_)));
+    assert!(matches!(under(&table, 0, "difference"), Cell::Missing(_)));
 }

@@ -89,3 +89,27 @@ fn rows_are_what_the_usual_writer_makes_of_the_same_fields() {
         }
     }
 }
+
+#[test]
+fn a_measure_stands_with_its_error_and_the_size_of_its_difference() {
+    let mut record = records_of(&STUDY.replace("poisson_ratio = []\n", "")).remove(0);
+    record.errors.clear();
+    let measure = |name: &str, time_factor: Option<f64>, found: f64, exact: f64| crate::record::MeasureRow {
+        name: name.to_owned(),
+        time_factor,
+        reference: "theirs".to_owned(),
+        found,
+        exact,
+    };
+    record.measures = vec![measure("low", Some(0.1), 2.0, 5.0), measure("still", None, -3.0, 0.0)];
+    let table = tidy::header_line() + &tidy::rows_of("s", &record).expect("rows");
+    let place = |name: &str| tidy::columns().iter().position(|column| *column == name).expect("a column");
+    let all = rows(&table);
+    let at = |row: usize, name: &str| all[row][place(name)].to_owned();
+    let number = |row: usize, name: &str| at(row, name).parse::<f64>().expect("a number");
+    assert_eq!([at(0, "quantity"), at(0, "time_factor"), at(0, "norm")], ["low", "0.1", "relative"]);
+    assert!((number(0, "value") + 0.6).abs() < 1e-15 && number(0, "absolute_error") == 3.0, "{table}");
+    assert_eq!([at(1, "quantity"), at(1, "time_factor"), at(1, "norm")], ["still", "", "absolute"]);
+    assert_eq!([number(1, "value"), number(1, "absolute_error")], [-3.0, 3.0]);
+    assert_eq!(at(0, "reference"), "theirs");
+}

@@ -295,4 +295,14 @@ mod tests {
         let solution = YieldFront::new(&column([2e6, 4e6, 1e-6, 0.4, 3e4, 8e4])).unwrap();
         assert!(solution.accuracy(1e4).unwrap().bound() > 0.1);
     }
+
+    #[test]
+    fn long_after_the_stress_up_to_the_preconsolidation_was_elastic_and_the_rest_virgin() {
+        let mut column = column([1.2e6, 6e6, 1e-8, 0.4, 2e4, 6e4]);
+        column.height = 3.0;
+        // From 20 to 60 kPa with 6 MPa, to 120 kPa with 1.2 MPa.
+        let strain = 4e4 / 6e6 + 6e4 / 1.2e6;
+        let found = YieldFront::new(&column).unwrap().final_settlement();
+        assert!((found / (3.0 * strain) - 1.0).abs() < 1e-14, "{found}");
+    }
 }

@@ -218,4 +218,14 @@ mod tests {
             assert!(whole::<u8>(&[wrong]).is_err(), "{wrong}");
         }
     }
+
+    #[test]
+    fn every_code_of_numpy_is_the_number_that_it_says_and_a_truth_is_a_byte() {
+        for (code, scalar) in
+            [("b1", Scalar::U8), ("i2", Scalar::I16), ("u4", Scalar::U32), ("f4", Scalar::F32)]
+        {
+            assert_eq!(Scalar::of_code(code), Some(scalar), "{code}");
+        }
+        assert_eq!(Scalar::of_code("c16"), None);
+    }
 }

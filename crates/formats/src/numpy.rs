@@ -196,4 +196,16 @@ mod tests {
         let header = "{'descr': '<f8', 'shape': (99999999999, 99999999999, 9), }";
         assert!(values(&npy(header, &[])).is_err_and(|why| why.contains("more numbers")));
     }
+
+    #[test]
+    fn the_second_version_has_a_longer_length_of_the_header() {
+        let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }";
+        let length = u32::try_from(header.len()).expect("short").to_le_bytes();
+        let data: Vec<u8> = [7.0_f64, 9.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+        for version in [2, 3] {
+            let start = [b"\x93NUMPY", &[version, 0][..], &length].concat();
+            let array = values(&[&start, header.as_bytes(), &data].concat()).expect("an array");
+            assert_eq!(array.values, [7.0, 9.0], "version {version}");
+        }
+    }
 }

@@ -31,6 +31,9 @@ fn what_is_remembered_follows_commands_environment_and_files_and_no_sweep() {
     assert_ne!(digest(at, "env = { A = \"1\" }\n", "\"toy\""), own);
     assert_ne!(digest(at, "version = [\"sh\", \"-c\", \"true\"]\n", "\"toy\""), own);
     assert_ne!(digest(other.path(), "", "\"toy\""), own, "in another folder it starts another file");
+    let mut renamed = study(at, "", "\"toy\"");
+    renamed.name = "other".to_owned();
+    assert_ne!(digest_of(&renamed, &starting(&renamed)), own, "another study is asked about by itself");
     fs::write(at.join("adapter.sh"), "rm -r elsewhere").expect("a file");
     assert_ne!(digest(at, "", "\"toy\""), own, "the adapter is another one");
 }
@@ -50,4 +53,13 @@ fn a_study_starts_nothing_until_somebody_allows_it() {
     remember(&folder.path().join("state"), "def", "s").expect("written");
     let text = fs::read_to_string(folder.path().join("state").join(REMEMBERED)).expect("a file");
     assert_eq!(text, "abc s\ndef s\n");
+}
+
+#[test]
+fn cases_that_were_not_allowed_to_run_are_no_success_and_hide_no_failure() {
+    let tally = |held_back: usize| Tally { held_back, ..Tally::default() };
+    assert_eq!(end_with(tally(0), Exit::Pass), Exit::Pass);
+    assert_eq!(end_with(tally(0), Exit::VerdictFailed), Exit::VerdictFailed);
+    assert_eq!(end_with(tally(2), Exit::Pass), Exit::IncompleteMerge);
+    assert_eq!(end_with(tally(2), Exit::VerdictFailed), Exit::VerdictFailed);
 }

@@ -131,4 +131,17 @@ time_step = [{ growth = 0.005 }]
         let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
         assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());
     }
+
+    #[test]
+    fn the_noise_of_a_session_is_how_far_a_run_is_off_itself() {
+        let mut records = records_of(&STUDY.replace("[5, 10, 20, 40, 80]", "[5, 10]"));
+        for record in &mut records {
+            // Every other time is a quarter longer.
+            record.wall = [1.0, 1.25, 1.0, 1.25, 1.0, 1.25, 7.0]
+                .map(|seconds| WallSample { seconds, alone: true, ..WallSample::default() })
+                .to_vec();
+        }
+        let noise = WorkPrecision::of(&records, "terzaghi").expect("timed runs").noise_floor;
+        assert!((noise.expect("six rounds") - 0.2).abs() < 1e-12, "{noise:?}");
+    }
 }

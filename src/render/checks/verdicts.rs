@@ -395,4 +395,17 @@ mod tests {
         }
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
     }
+
+    #[test]
+    fn a_value_that_moved_is_told_by_how_many_tolerances() {
+        let moved = Difference {
+            name: "MPM | pressure".to_owned(),
+            change: Change::Moved,
+            golden: Some(0.5),
+            found: Some(0.75),
+            tolerance: 0.0625,
+        };
+        let told = difference(&moved);
+        assert!(told.contains("0.75 was 0.5") && told.contains("4 times its tolerance"), "{told}");
+    }
 }

@@ -122,4 +122,24 @@ mod tests {
         records[0].measures.clear();
         assert_eq!(told(&records), "");
     }
+
+    #[test]
+    fn each_group_of_all_runs_is_the_largest_wherever_it_stands() {
+        let text = "title = \"t\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.2] }\n[[sweep]]\n\
+                    method = [\"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [2, 3, 4]\n";
+        let study =
+            Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
+        let mut records = records_of(text);
+        for (record, [storage, strain, inertia]) in
+            records.iter_mut().zip([[0.3, 0.02, 0.001], [0.1, 0.05, 0.004], [0.2, 0.03, 0.007]])
+        {
+            let groups = &mut record.groups;
+            (groups.storage, groups.finite_strain, groups.inertia) = (storage, strain, inertia);
+        }
+        let block = worst_checks(&StudyResults::new(&study, &records, Tier::Full));
+        let Block::Details { blocks, .. } = block else { panic!("what the reader opens") };
+        let [Block::Table(table)] = &blocks[..] else { panic!("one table") };
+        let last: Vec<&Cell> = table.rows.iter().rev().take(3).map(|row| &row[1]).collect();
+        assert_eq!(last, [&Cell::Error(0.007), &Cell::Error(0.05), &Cell::Error(0.3)]);
+    }
 }

@@ -243,3 +243,51 @@ pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
          fall like that of the mesh, and on Q2–P1 elements they all but cancel at T_v = 1",
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::judge::comparison::work_precision::Cheapest;
+    use crate::measure::statistics::WallSpread;
+
+    #[test]
+    fn every_number_of_the_wall_times_stands_under_its_name() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP', 'MPM']\n\
+             integrator = ['implicit']\ncells = [4]\n",
+        );
+        let run = |place: usize, median: f64, error: f64, on_front: bool| TimedRun {
+            record: &records[place],
+            error,
+            wall: WallSpread { count: 5, median, deviation: 0.0013, minimum: 0.009, maximum: 0.041 },
+            on_front,
+        };
+        let (best, other) = (run(0, 0.011, 0.0071, true), run(1, 0.023, 0.0092, false));
+        let precision = WorkPrecision {
+            cheapest: vec![
+                Cheapest { tolerance: 1e-2, run: Some(best.clone()) },
+                Cheapest { tolerance: 1e-3, run: None },
+            ],
+            runs: vec![best, other],
+            noise_floor: Some(0.07),
+        };
+        let table = cheapest_table(&precision);
+        let (label, counters) = (records[0].case.label(), &records[0].counters);
+        let expected = [
+            Cell::Percent(1e-2),
+            Cell::Code(label),
+            Cell::Error(0.0071),
+            Cell::Number(11.0),
+            Cell::Number(1.3),
+            Cell::Count(counters.steps),
+            Cell::Count(counters.point_updates),
+        ];
+        assert_eq!(table.rows[0], expected);
+        assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
+        let chart = chart_of(&precision);
+        assert_eq!(chart.series[0].points, [(0.011, 0.0071), (0.023, 0.0092)], "all runs of the integrator");
+        assert_eq!(chart.series[1].points, [(0.011, 0.0071)], "the front alone");
+        assert!(caption(&precision).contains("differs by 7 %"));
+    }
+}

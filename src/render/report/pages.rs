@@ -108,3 +108,39 @@ fn footer(results: &[StudyResults<'_>]) -> String {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    #[test]
+    fn a_study_is_marked_by_what_is_met_and_by_what_is_wrong_with_its_records() {
+        let of = |bounds: &[f64], wrong: usize| {
+            let expect = |below: &f64| {
+                format!("[[expect_case]]\ntime_factor = 0.2\nerror = {{ below = {below:e} }}\n")
+            };
+            let text =
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP']\n\
+                        integrator = ['implicit']\ncells = [4]\n"
+                    .to_owned() + &bounds.iter().map(expect).collect::<String>();
+            let source = StudySource { name: "s.toml".to_owned(), text: text.clone() };
+            let (study, records) = (Study::check(&source).expect("sound"), records_of(&text));
+            let mut results = StudyResults::new(&study, &records, Tier::Full);
+            results.unsound = vec![("a case".to_owned(), "why".to_owned()); wrong];
+            met_cell(&results)
+        };
+        for (bounds, wrong, mood, words) in [
+            (&[0.9, 0.8][..], 0, Mood::Pass, "2 of 2"),
+            (&[0.9, 1e-9], 0, Mood::Fail, "1 of 2"),
+            (&[0.9], 1, Mood::Fail, "1 of 1"),
+            (&[], 0, Mood::Note, "no expectations"),
+            (&[], 1, Mood::Fail, "no expectations"),
+        ] {
+            assert_eq!(of(bounds, wrong), Cell::Verdict(mood, words.to_owned()), "{bounds:?}");
+        }
+    }
+}

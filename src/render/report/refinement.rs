@@ -337,3 +337,53 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
             .collect()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::judge::paths::StudyPaths;
+    use crate::record::Record;
+    use oedometer_convergence::{Floor, Undefined};
+
+    /// Series of two methods with the floors and the finest orders that are given.
+    fn summaries<'a>(records: &'a [Record], given: [(Option<f64>, f64); 2]) -> Vec<SeriesSummary<'a>> {
+        let paths = StudyPaths::of(records);
+        let measure = first_measure(Quantity::Pressure, Sample::Points, "terzaghi", 0.2);
+        let summary = |(path, (floor, order)): (&Path<'a>, (Option<f64>, f64))| {
+            let mut summary = path.summary(&measure);
+            summary.classification.floor =
+                floor.map(|value| Floor { value, fitted: true, limits_from: 0.25, limiter: None });
+            summary.finest = Ok::<f64, Undefined>(order);
+            summary
+        };
+        paths.along(Axis::Cells).iter().zip(given).map(summary).collect()
+    }
+
+    #[test]
+    fn a_floor_is_that_of_the_only_series_with_one_or_of_all_that_have_about_the_same() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['MPM', 'GIMP']\n\
+             integrator = ['implicit']\ncells = [2, 4]\n",
+        );
+        let labels = ["a", "b"].map(str::to_owned);
+        let floor = |floors: [Option<f64>; 2]| {
+            shared_floor(&summaries(&records, floors.map(|floor| (floor, 1.0))), &labels)
+        };
+        assert_eq!(floor([None, None]), None);
+        assert_eq!(floor([None, Some(0.3)]), Some((0.3, "b".to_owned())));
+        let (both, name) = floor([Some(0.4), Some(0.42)]).expect("about the same");
+        assert!((both - 0.168_f64.sqrt()).abs() < 1e-15 && name == "all series", "{both} {name}");
+        assert_eq!(floor([Some(0.4), Some(0.8)]), None);
+        assert_eq!(floor([Some(0.8), Some(0.4)]), None);
+
+        let triangles = |orders: [f64; 2]| {
+            let mut chart = Chart::new("c", ChartAxis::log10("h"), ChartAxis::log10("e"));
+            add_triangles(&mut chart, &summaries(&records, orders.map(|order| (None, order))), &labels);
+            chart.triangles.iter().map(|one| (one.slope, one.beside.clone())).collect::<Vec<_>>()
+        };
+        assert_eq!(triangles([0.2, 3.0]), []);
+        assert_eq!(triangles([2.1, 0.9]), [(1.0, "b".to_owned()), (2.0, "a".to_owned())]);
+        assert_eq!(triangles([1.8, 1.9]), [(2.0, "a".to_owned())], "the first of several");
+    }
+}

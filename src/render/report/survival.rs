@@ -116,4 +116,16 @@ mod tests {
             (&Cell::missing(NOT_TRIED), &shown("GC-SRI-patch", 8))
         );
     }
+
+    #[test]
+    fn a_run_is_told_by_its_error_at_the_last_output() {
+        let text = STUDY.replace("[0.05]", "[0.05, 0.1, 0.4]");
+        let mut record = records_of(&text).remove(0);
+        for row in &mut record.errors {
+            row.value = if row.time_factor == 0.4 { 0.25 } else { 3.0 };
+        }
+        assert_eq!(end_of(&record), Cell::Verdict(Mood::Pass, number::error(0.25)));
+        record.errors.iter_mut().for_each(|row| row.value = 1.0);
+        assert_eq!(end_of(&record), Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(1.0))));
+    }
 }

@@ -104,3 +104,45 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
     }
     Table::of("convergence", columns, rows).notes(notes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::quantity::Sample;
+
+    #[test]
+    fn the_worst_place_of_an_error_stands_beside_it() {
+        let row = |value: f64| ErrorRow {
+            time_factor: 0.2,
+            quantity: Quantity::Pressure,
+            sample: Sample::Points,
+            norm: Norm::L2,
+            reference: "theirs".to_owned(),
+            value,
+            absolute: 0.5,
+        };
+        let worst = WorstPlace {
+            time_factor: 0.2,
+            quantity: Quantity::Pressure,
+            zeta: 0.75,
+            x: Some(0.25),
+            computed: 11.0,
+            exact: 13.0,
+            share: 0.4,
+        };
+        let score = Score { errors: vec![row(0.07)], worst: vec![worst], ..Score::default() };
+        let table = errors_table(&score, "t");
+        let expected = [
+            Cell::Number(0.2),
+            "pressure".into(),
+            "points".into(),
+            Cell::Error(0.07),
+            Cell::Number(0.75),
+            Cell::Number(0.25),
+            Cell::Percent(0.4),
+            Cell::Error(11.0),
+            Cell::Error(13.0),
+        ];
+        assert_eq!(table.rows, [expected.to_vec()]);
+    }
+}

@@ -294,6 +294,7 @@ mod expectations_that_cannot_be_judged {
     const STEPS: &str = "cells = [8]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }, { growth = 0.025 }, { growth = 0.0125 }]";
     const MESHES: &str = "cells = [4, 8, 16]";
     const ORDER: &str = "order = { value = 1.0 }";
+    const NEXT_FINER: &str = "axis = \"time_step\"\nreference = \"next-finer\"\norder = { value = 1.0 }";
 
     #[test]
     fn are_refused_at_their_line_with_the_key_that_is_missing() {
@@ -303,6 +304,12 @@ mod expectations_that_cannot_be_judged {
             (STEPS, "axis = \"time_step\"\norder = { value = 1.0 }", &["that of the mesh", "\"next-finer\""]),
             (MESHES, "axis = \"time_step\"\norder = { value = 1.0 }", &["have 1", "add `axis = \"cells\"`"]),
             ("cells = [4, 8]", ORDER, &["needs 3 levels: its cases have 2", "add values of `cells`"]),
+            // Differences from the next finer step are one fewer than the steps.
+            (
+                "cells = [8]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }, { growth = 0.025 }]",
+                NEXT_FINER,
+                &["needs 4 levels: its cases have 3"],
+            ),
         ] {
             let error = checked(swept, expected).expect_err(expected);
             assert!(error.contains("--> t.toml:") && error.contains("[[expect]]"), "{error}");
@@ -314,9 +321,8 @@ mod expectations_that_cannot_be_judged {
 
     #[test]
     fn are_taken_once_it_is_there() {
-        let next_finer = "axis = \"time_step\"\nreference = \"next-finer\"\norder = { value = 1.0 }";
         for (swept, expected) in
-            [(STEPS, next_finer), (MESHES, ORDER), ("cells = [4, 8]", "at = { cells = 8, below = 0.5 }")]
+            [(STEPS, NEXT_FINER), (MESHES, ORDER), ("cells = [4, 8]", "at = { cells = 8, below = 0.5 }")]
         {
             checked(swept, expected).expect(expected);
         }

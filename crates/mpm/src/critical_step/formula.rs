@@ -84,4 +84,18 @@ mod tests {
         let ratio = fastest_wave_speed(&soil, 0.17) / fastest_wave_speed(&soil, 0.3);
         assert!((ratio - 1.22).abs() < 0.01, "22 % faster at n = 0.17, got {ratio}");
     }
+
+    #[test]
+    fn a_semi_implicit_step_is_as_long_as_the_shortest_wave_of_the_drained_skeleton_allows() {
+        let soil = Material { hydraulic_conductivity: 2e-3, porosity: 0.4, ..Material::default() };
+        let inertia = 0.6 * 2650.0 + 0.36 / 0.4 * 1000.0;
+        // Of u'' + d u' + s u = 0 with a kick before the drift: s dt^2 = 4 + 2 d dt at the limit.
+        let (stiffness, damping) = (1.2e6 / inertia * 1600.0, 9810.0 / (2e-3 * inertia));
+        let step = semi_implicit_limit(&soil, 0.05, false);
+        let off = stiffness * step * step - 2.0 * damping * step - 4.0;
+        assert!(off.abs() < 1e-9 * stiffness * step * step, "{step:e}: {off:e}");
+        let undamped = semi_implicit_limit(&soil, 0.05, true);
+        let wave = 0.05 / (1.2e6_f64 / (0.6 * 2650.0 + 0.4 * 1000.0)).sqrt();
+        assert!((undamped / step.min(wave) - 1.0).abs() < 1e-12, "{undamped:e} {wave:e}");
+    }
 }

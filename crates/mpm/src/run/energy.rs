@@ -177,4 +177,18 @@ mod tests {
         still.note(energy(1e-9, 0.0, 0.0), false);
         assert!(still.note(energy(9e-9, 0.0, 0.0), false).is_some());
     }
+
+    #[test]
+    fn the_energy_of_a_stress_is_half_its_product_with_the_strain_that_made_it() {
+        let soil = Material { youngs_modulus: 3e6, poissons_ratio: 0.3, ..Material::default() };
+        let gradient = [[1e-3, 4e-4], [-2e-4, -3e-3]];
+        let stress = soil.stiffness().stress(&gradient);
+        // The shear strain is the mean of the gradients across; none out of the plane.
+        let strain = [[1e-3, 1e-4], [1e-4, -3e-3]];
+        let product: f64 = (0..4).map(|i| stress[i / 2][i % 2] * strain[i / 2][i % 2]).sum();
+        let found = strain_energy(&soil, &stress);
+        assert!((found / (0.5 * product) - 1.0).abs() < 1e-14, "{found:e}");
+        let confined = strain_energy(&soil, &[[2e3]]);
+        assert!((confined / (0.5 * 4e6 / soil.oedometric_modulus()) - 1.0).abs() < 1e-14, "{confined:e}");
+    }
 }

@@ -238,4 +238,20 @@ mod tests {
         assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
         assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
     }
+
+    #[test]
+    fn steps_that_grow_stop_at_the_most_that_they_may_be() {
+        let limit = StepLimit::Growing { first: 1e-3, growth: 0.1, most: 7e-3 };
+        let (mut time, mut largest) = (0.0, 0.0_f64);
+        // After the first output a tenth of the time is far more.
+        for output in [1.0, 2.0] {
+            while output - time > 1e-9 {
+                let row = limit.row(time, output);
+                largest = largest.max(row.dt);
+                time = row.end();
+            }
+        }
+        // Levels of a root of two from the first: the last below 7e-3 is 5.66e-3.
+        assert!(largest <= 7e-3 && largest > 5e-3, "{largest:e}");
+    }
 }

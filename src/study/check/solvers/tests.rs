@@ -116,3 +116,20 @@ fn what_cannot_be_a_solver_is_refused_at_its_place() {
     let searched = text(SOLVER, BESIDE).replacen("scene", "task = \"stability\"\nscene", 1);
     assert!(checked(folder.path(), &searched).expect_err("no search").contains("critical step"));
 }
+
+#[test]
+fn another_content_or_another_reading_of_a_result_is_another_case() {
+    let folder = folder();
+    let hash = |more: &str| {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\n[[result]]\nname = \"table\"\nfiles = [\"p-{{cells}}.csv\"]\ncells = [4]\n{more}\n"
+        );
+        checked(folder.path(), &text).expect("sound").planned[0].case.hash()
+    };
+    fs::write(folder.path().join("p-4.csv"), "t,y,p\n").expect("a file");
+    let own = hash("");
+    assert_eq!(hash(""), own);
+    assert_ne!(hash("time_step = 2.0"), own, "times that are read otherwise");
+    fs::write(folder.path().join("p-4.csv"), "t,y,p\n1,0,0\n").expect("a file");
+    assert_ne!(hash(""), own, "another content");
+}
