@@ -132,7 +132,7 @@ impl Results<'_> {
                 column_parameters(&case.column, &case.material).final_settlement()
             }
             Some(own) if own.kind() == ReferenceKind::Footing => own.settlement(1.0)?,
-            Some(own) => own.settlement(LONG_AFTER)?,
+            Some(own) => own.displacement_scale(LONG_AFTER)?,
         };
         let degree = |(time_factor, settlement, force): &(f64, f64, Option<f64>)| HistoryRow {
             time_factor: *time_factor,

@@ -3,7 +3,7 @@
 use crate::campaign::runner::records_of;
 use crate::case::Case;
 use crate::measure::other_measures::SPURIOUS_VELOCITY;
-use crate::measure::theory::{constant_recovery_error, theory_isochrones};
+use crate::measure::theory::{constant_recovery_error, known_reference, theory_isochrones};
 use crate::record::csv::tidy;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -50,4 +50,29 @@ fn the_error_of_a_constant_in_a_cell_is_that_of_the_oracle() {
     // Two points at a quarter of the cell from its centre: offset h/4, slope π/2.
     let expected = std::f64::consts::FRAC_PI_2 * 0.1 * 0.25;
     assert!((constant_recovery_error(&seed_case()) - expected).abs() < 1e-15);
+}
+
+#[test]
+fn the_degree_of_consolidation_of_a_run_is_that_of_its_solution() {
+    let clay = "[material]\nhydraulic_conductivity = 1e-6\nreload_modulus = 1.2e7\npreconsolidation = 0.5\n";
+    let soils = "column.soils = [{ thickness = 0.5 }, { thickness = 0.5, hydraulic_conductivity = 1e-5 }]\n";
+    for (scene, more, time_factor) in [
+        ("yield-front", clay, 0.002),
+        ("layered", soils, 0.5),
+        ("sealed-element", "material.water_bulk_modulus = 1e6\n", 0.1),
+    ] {
+        let record = records_of(&format!(
+            "title = \"t\"\nscene = \"{scene}\"\noutput.time_factors = [{time_factor}]\n{more}[[sweep]]\nmethod = \
+             [\"GIMP-SRI-patch\"]\nintegrator = [\"implicit\"]\ncells = [40]\ntime_step = [{{ growth = 0.02 }}]\n"
+        ))
+        .remove(0);
+        let own = known_reference(
+            &record.case,
+            record.references[0].name.parse().expect("its name"),
+            &[time_factor],
+        );
+        let exact = own.and_then(|own| own.degree_of_consolidation(time_factor)).expect("a degree");
+        let found = record.history.last().expect("an end").degree_of_consolidation;
+        assert!((found / exact - 1.0).abs() < 0.02, "{scene}: {found} for {exact}");
+    }
 }

@@ -121,17 +121,22 @@ impl ColumnInSeconds {
         }
     }
 
+    /// Settlement of the column when all excess pressure is gone, m. The solution of a front is that of a half-space,
+    /// which settles without end.
+    pub fn final_settlement(&self) -> f64 {
+        match &self.column {
+            Column::Layered(column) => column.final_settlement(),
+            Column::YieldFront(front) => front.final_settlement(),
+            Column::Sealed { strain, .. } => strain * self.height,
+        }
+    }
+
     /// Settlement over that of the end.
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let last = match &self.column {
-            Column::Layered(column) => column.final_settlement(),
-            Column::YieldFront(front) => front.final_settlement(),
-            Column::Sealed { strain, .. } => strain * self.height,
-        };
-        Ok(self.settlement(time_factor)? / last)
+        Ok(self.settlement(time_factor)? / self.final_settlement())
     }
 
     /// Terms used at a time factor, and what bounds the pressure's error over the load.

@@ -353,6 +353,7 @@ impl Reference {
         match &self.solution {
             Solution::Manufactured(solution) => Ok(solution.largest_displacement()),
             Solution::Shelf(problem) => Ok(problem.final_settlement().abs()),
+            Solution::InSeconds(column) => Ok(column.final_settlement()),
             _ => self.settlement(long_after),
         }
     }
