@@ -18,8 +18,8 @@ const QUESTION: Question = Question { heading: "What does the time step change?"
 /// What is said of one path along the step.
 struct Row<'a> {
     label: String,
-    /// The order of the differences between neighbouring steps, or their class.
-    order: String,
+    /// The order of the differences between neighbouring steps, or their class; `None` for too few steps.
+    order: Option<String>,
     /// The largest and the smallest step that reached the end.
     largest: &'a Record,
     smallest: &'a Record,
@@ -29,22 +29,47 @@ struct Row<'a> {
     unstable: Option<&'a Record>,
 }
 
-/// The study that refines the step of most methods.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
-    let of_study = |one| (one, longest_paths(one, Axis::TimeStep));
-    let studies = results.iter().filter(|one| !one.study.is_race).map(of_study);
-    let (one, paths) = studies.reduce(|most, next| if next.1.len() > most.1.len() { next } else { most })?;
-    let time = shown_time(&paths)?;
-    let own = one.study.references.first()?.name();
-    let labels = path_labels(&paths);
-    let rows = paths.iter().zip(&labels.each).filter_map(|(path, label)| row(path, label, own, time));
-    let rows: Vec<Row<'_>> = rows.collect();
-    if rows.is_empty() {
-        return None;
+/// A study along the step.
+struct Steps<'a> {
+    study: &'a str,
+    reference: &'static str,
+    time: f64,
+    rows: Vec<Row<'a>>,
+    /// What all rows share.
+    shared: String,
+}
+
+impl<'a> Steps<'a> {
+    /// `None` for a study that refines no step.
+    fn of(one: &'a StudyResults<'a>) -> Option<Self> {
+        let paths = longest_paths(one, Axis::TimeStep);
+        let time = shown_time(&paths)?;
+        let reference = one.study.references.first()?.name();
+        let labels = path_labels(&paths);
+        let rows = paths.iter().zip(&labels.each);
+        let rows: Vec<_> = rows.filter_map(|(path, label)| row(path, label, reference, time)).collect();
+        (!rows.is_empty()).then_some(Self {
+            study: &one.study.name,
+            reference,
+            time,
+            rows,
+            shared: labels.shared,
+        })
     }
-    let sentence = format!("{} Evidence: {}.", sentence(&rows, time), link(links, &one.study.name));
-    let table = table(&rows, own, time)
-        .notes((!labels.shared.is_empty()).then(|| format!("all with {}", labels.shared)));
+
+    /// Rows with an order; what else there is counts less.
+    fn worth(&self) -> (usize, usize) {
+        (self.rows.iter().filter(|row| row.order.is_some()).count(), self.rows.len())
+    }
+}
+
+/// The study that says the order in the step of most methods.
+pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+    let studies = results.iter().filter(|one| !one.study.is_race).filter_map(Steps::of);
+    let steps = studies.reduce(|most, next| if next.worth() > most.worth() { next } else { most })?;
+    let sentence = format!("{} Evidence: {}.", sentence(&steps.rows, steps.time), link(links, steps.study));
+    let table = table(&steps.rows, steps.reference, steps.time)
+        .notes((!steps.shared.is_empty()).then(|| format!("all with {}", steps.shared)));
     Some(QUESTION.told(sentence, vec![Block::Table(short(table, "on the page of the study"))]))
 }
 
@@ -58,8 +83,8 @@ fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>
     Some(Row {
         label: label.to_owned(),
         order: match stable.summary(&measure(NEXT_FINER)).classification {
-            found if found.class == Class::NotEvaluable => "none, of too few steps,".to_owned(),
-            found => order_or_class(&found),
+            found if found.class == Class::NotEvaluable => None,
+            found => Some(order_or_class(&found)),
         },
         largest,
         smallest,
@@ -68,14 +93,22 @@ fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>
     })
 }
 
-fn names<'r, 'a: 'r>(rows: impl IntoIterator<Item = &'r Row<'a>>) -> String {
-    rows.into_iter().map(|row| format!("`{}`", row.label)).collect::<Vec<_>>().join(", ")
+/// Names in a sentence before the rest is only counted.
+const MOST_NAMES: usize = 4;
+
+fn names(rows: &[&Row<'_>]) -> String {
+    let mut names: Vec<String> = rows.iter().take(MOST_NAMES).map(|row| format!("`{}`", row.label)).collect();
+    names.extend((rows.len() > MOST_NAMES).then(|| format!("{} more", rows.len() - MOST_NAMES)));
+    names.join(", ")
 }
+
+/// What is said where the steps are too few for an order.
+const NO_ORDER: &str = "none, of too few steps,";
 
 /// The orders, the paths with the same one together; then where steps are unstable; then what the step leaves of the error.
 fn sentence(rows: &[Row<'_>], time: f64) -> String {
-    let orders = grouped(rows.iter().map(|row| (row.order.as_str(), row)));
-    let orders = orders.into_iter().map(|(order, rows)| format!("{order} for {}", names(rows)));
+    let orders = grouped(rows.iter().map(|row| (row.order.as_deref().unwrap_or(NO_ORDER), row)));
+    let orders = orders.into_iter().map(|(order, rows)| format!("{order} for {}", names(&rows)));
     let orders = orders.collect::<Vec<_>>().join("; ");
     let unstable = rows.iter().filter_map(|row| {
         let step = labels::step(row.unstable?);
@@ -120,7 +153,7 @@ fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
         let stable = || Cell::missing("every step that was tried is stable");
         vec![
             Cell::Code(row.label.clone()),
-            row.order.trim_end_matches(',').into(),
+            row.order.as_deref().unwrap_or(NO_ORDER.trim_end_matches(',')).into(),
             labels::step(row.largest).into(),
             error(0),
             labels::step(row.smallest).into(),
