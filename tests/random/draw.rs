@@ -4,9 +4,10 @@ use crate::numbers::Numbers;
 use crate::options::{Options, rounded};
 use oedometer::Method;
 use std::f64::consts::PI;
+use std::fmt::Write;
 
 /// Scenes, those of columns and layers more often than the others.
-const SCENES: [&str; 18] = [
+const SCENES: [&str; 24] = [
     "terzaghi",
     "terzaghi",
     "terzaghi",
@@ -22,6 +23,12 @@ const SCENES: [&str; 18] = [
     "standing-wave",
     "mandel",
     "at-rest",
+    "layered",
+    "layered",
+    "yield-front",
+    "yield-front",
+    "sealed-element",
+    "footing",
     "manufactured-box",
     "manufactured-shear",
     "manufactured-vortex",
@@ -141,6 +148,8 @@ pub fn drawn(seed: u64, index: u64) -> Options {
     };
     if is_manufactured {
         draw_motion(&mut options, numbers);
+    } else if scene == "footing" {
+        draw_footing(&mut options, numbers);
     } else {
         draw_column(&mut options, numbers, is_plane);
     }
@@ -171,6 +180,61 @@ fn draw_motion(options: &mut Options, numbers: &mut Numbers) {
     } else {
         ("seconds", last * PI / frequency / numbers.count(20, 60) as f64)
     });
+}
+
+/// A plate of a few cells on a layer that is at least as large as its mechanism needs.
+fn draw_footing(options: &mut Options, numbers: &mut Numbers) {
+    options.integrator = "implicit";
+    options.cells = numbers.one_of(&[2, 2, 4]);
+    let width = options.set_rounded("layer.plate_width", numbers.decades(-1.0, 1.0));
+    let cell = width / (options.cells + 1) as f64;
+    for (key, least) in [("layer.length", 2.5), ("layer.height", 2.0)] {
+        options.set_number(key, cell * (least * width / cell).ceil());
+    }
+    options.set("layer.plate", numbers.one_of(&["rough", "smooth"]));
+    options.set("layer.undrained", numbers.one_of(&["total-stress", "two-phase"]));
+    let strength = options.set_rounded("material.undrained_strength", numbers.decades(2.0, 6.0));
+    options.set_rounded("material.youngs_modulus", strength * numbers.decades(2.0, 4.0));
+    options.set_rounded("material.poissons_ratio", numbers.between(0.2, 0.4999));
+    options.time_factors = vec![0.05];
+    options.time_step = Some(("growth", numbers.between(0.08, 0.2)));
+}
+
+/// Layers of a column, none of them thinner than a tenth of it, which sum to its height.
+fn draw_soils(options: &mut Options, numbers: &mut Numbers, soil: &Soil, height: f64) {
+    let mut layers = Vec::new();
+    let mut above = height;
+    for left in (0..numbers.count(1, 2)).rev() {
+        let thickness = rounded(above * numbers.between(0.1, 0.9 - 0.2 * left as f64));
+        above -= thickness;
+        layers.push(thickness);
+    }
+    layers.push(above);
+    let described = layers.iter().map(|thickness| {
+        let mut layer = format!("{{thickness={thickness:e}");
+        let mut name = |key: &str, value: f64| write!(layer, ",{key}={:e}", rounded(value)).expect("memory");
+        if numbers.chance(0.7) {
+            name("hydraulic_conductivity", soil.hydraulic_conductivity * numbers.decades(-3.0, 3.0));
+        }
+        if numbers.chance(0.5) {
+            name("youngs_modulus", soil.youngs_modulus * numbers.decades(0.0, 1.5));
+        }
+        if numbers.chance(0.5) {
+            name("porosity", soil.porosity * numbers.between(0.7, 1.2));
+        }
+        layer + "}"
+    });
+    let described: Vec<String> = described.collect();
+    options.set("column.soils", format!("[{}]", described.join(",")));
+}
+
+/// A clay that was loaded before, and its load beyond that: the front of yielding is far from the base at most times.
+fn draw_preconsolidation(options: &mut Options, numbers: &mut Numbers, soil: &Soil) {
+    let load = options.number("column.load").expect("it was drawn");
+    let stiffer = soil.oedometric_modulus() * numbers.decades(0.0, 2.0);
+    options.set_rounded("material.reload_modulus", stiffer);
+    let initial = options.set_rounded("column.initial_stress", load * numbers.between(0.0, 1.0));
+    options.set_rounded("material.preconsolidation", initial + load * numbers.between(0.05, 0.95));
 }
 
 /// Slopes of velocities and stresses where points may carry them.
@@ -208,6 +272,12 @@ fn draw_column(options: &mut Options, numbers: &mut Numbers, is_plane: bool) {
     draw_points(options, numbers);
     fill_width(options, table, height);
     let is_large = scene == "xie-leo";
+    if scene == "layered" || is_large && numbers.chance(0.2) {
+        draw_soils(options, numbers, &soil, height);
+    }
+    if scene == "yield-front" {
+        draw_preconsolidation(options, numbers, &soil);
+    }
     if is_large && numbers.chance(0.3) {
         options.set("material.law", numbers.one_of(&["porosity-dependent", "engineering", "log-linear"]));
         options.set("material.continuity", numbers.one_of(&["conservative", "constant-porosity-gradient"]));

@@ -121,7 +121,8 @@ impl Options {
         let mut text = format!("title = \"random\"\nscene = \"{}\"\n", self.scene);
         writeln!(text, "output.time_factors = [{}]", self.listed_times(", ")).expect("memory");
         for (key, value) in &self.settings {
-            let is_word = value.parse::<f64>().is_err() && value.parse::<bool>().is_err();
+            let is_word =
+                value.parse::<f64>().is_err() && value.parse::<bool>().is_err() && !value.starts_with('[');
             let value = if is_word { format!("{value:?}") } else { value.clone() };
             writeln!(text, "{key} = {value}").expect("memory");
         }

@@ -22,11 +22,13 @@ pub enum Relation {
     TotalAndFrozen,
     /// Metres, seconds and kilograms of another size: powers of two, so that no digit is rounded otherwise.
     Units,
-    /// A load of twice the size in a linear soil.
+    /// A load of a quarter of the size in a linear soil.
     Load,
+    /// Layers of one soil, and that soil.
+    Layers,
 }
 
-const RELATIONS: [Relation; 7] = [
+const RELATIONS: [Relation; 8] = [
     Relation::Kernels,
     Relation::HatAndGimp,
     Relation::CellsAndPoints,
@@ -34,6 +36,7 @@ const RELATIONS: [Relation; 7] = [
     Relation::TotalAndFrozen,
     Relation::Units,
     Relation::Load,
+    Relation::Layers,
 ];
 
 /// A pair.
@@ -59,9 +62,9 @@ pub fn drawn(seed: u64, index: u64) -> Related {
 
 /// The pair that a relation makes of a drawn case, where it fits.
 fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<(Options, Options)> {
-    let is_small = base.scene != "xie-leo" && !base.scene.starts_with("manufactured");
-    let is_column =
-        !base.scene.starts_with("manufactured") && !matches!(base.scene, "cosine-layer" | "mandel");
+    let is_small = !matches!(base.scene, "xie-leo" | "footing") && !base.scene.starts_with("manufactured");
+    let is_column = !base.scene.starts_with("manufactured")
+        && !matches!(base.scene, "cosine-layer" | "mandel" | "footing");
     let is_line = is_column && base.value("column.dimensions").is_none();
     let is_lattice = ["points.jitter", "points.offset", "points.filling", "points.sets"]
         .iter()
@@ -122,7 +125,7 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
         }
         Relation::Units => {
             rescale(&mut other, numbers);
-            !base.scene.starts_with("manufactured")
+            !base.scene.starts_with("manufactured") && base.value("column.soils").is_none()
         }
         Relation::Load => {
             for key in ["column.load", "layer.load"] {
@@ -130,7 +133,21 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
                     other.set_number(key, 0.25 * load);
                 }
             }
-            is_small && bare && base.scene != "at-rest" && !has_weight
+            let yields = base.scene == "yield-front";
+            is_small && bare && !yields && base.scene != "at-rest" && !has_weight
+        }
+        Relation::Layers => {
+            let height = base.number("column.height").unwrap_or(1.0);
+            if base.scene == "terzaghi" {
+                other.scene = "layered";
+            }
+            let lower = rounded(height * numbers.between(0.1, 0.9));
+            let layers = format!("[{{thickness={lower:e}}},{{thickness={:e}}}]", height - lower);
+            other.set("column.soils", layers);
+            let takes_layers = matches!(base.scene, "terzaghi" | "xie-leo");
+            // A patch that keeps to the soil of its point keeps to the layer, whatever the soils are.
+            let looks_across = !base.method.contains("patch-soils");
+            takes_layers && looks_across && !has_weight && base.value("column.soils").is_none()
         }
     };
     fits.then_some((base, other))
@@ -162,7 +179,7 @@ fn take_seconds(options: &mut Options, height: f64) {
 
 /// A load that strains a small-strain scene by so much: of far less, positions and volumes have no digits.
 fn strain_by(options: &mut Options, strain: f64) {
-    if let Some(soil) = Soil::of(options).filter(|_| options.scene != "xie-leo") {
+    if let Some(soil) = Soil::of(options).filter(|_| !matches!(options.scene, "xie-leo" | "yield-front")) {
         let key = if options.scene == "cosine-layer" { "layer.load" } else { "column.load" };
         options.set_rounded(key, strain * soil.oedometric_modulus());
     }
@@ -181,6 +198,11 @@ fn rescale(options: &mut Options, numbers: &mut Numbers) {
         ("layer.length", length),
         ("column.load", stress),
         ("layer.load", stress),
+        ("layer.plate_width", length),
+        ("column.initial_stress", stress),
+        ("material.reload_modulus", stress),
+        ("material.preconsolidation", stress),
+        ("material.undrained_strength", stress),
         ("material.youngs_modulus", stress),
         ("material.water_bulk_modulus", stress),
         ("material.grain_density", density),
@@ -267,7 +289,13 @@ fn largest_difference(a: &Record, b: &Record) -> (f64, String) {
                 && other.reference == row.reference
                 && (other.time_factor / row.time_factor - 1.0).abs() < 1e-12
         });
-        let difference = same.map_or(f64::INFINITY, |same| scale * (same.absolute - row.absolute).abs());
+        // Layers are compared with another reference than one soil.
+        let unmatched = if a.case.column.soils.is_empty() == b.case.column.soils.is_empty() {
+            f64::INFINITY
+        } else {
+            0.0
+        };
+        let difference = same.map_or(unmatched, |same| scale * (same.absolute - row.absolute).abs());
         let (quantity, sample) = (row.quantity.name(), row.sample.name());
         see(difference, format!("the error of the {quantity} at {sample}, T_v = {:e},", row.time_factor));
     }
