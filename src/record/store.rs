@@ -264,4 +264,4 @@ fn number_of(hash: &str) -> u64 {
 }
 
 #[cfg(test)]
-mod model;
+mod tests;

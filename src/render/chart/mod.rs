@@ -14,7 +14,4 @@ mod words;
 pub use describe::{Chart, ChartAxis, ColourField, PointName, Rule, Series, Size, SlopeTriangle, Style};
 
 #[cfg(test)]
-mod gallery;
-
-#[cfg(test)]
 mod tests;

@@ -1,8 +1,10 @@
 //! What every figure owes its reader. The gallery is written to the temporary folder to be looked
 //! at.
 
-use crate::render::chart::gallery::{convergence, gallery, nothing, pressure_field};
+mod gallery;
+
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use gallery::{convergence, gallery, nothing, pressure_field};
 
 fn svg(chart: &Chart) -> String {
     chart.svg().unwrap_or_else(|e| panic!("{e}"))

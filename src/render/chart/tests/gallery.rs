@@ -28,7 +28,7 @@ fn steps(n: u32) -> impl Iterator<Item = f64> {
 
 const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "TL-GC-SRI-patch"];
 
-pub(crate) fn convergence() -> Chart {
+pub(super) fn convergence() -> Chart {
     let h = [0.2, 0.1, 0.05, 0.025, 0.0125];
     let mut chart = Chart::new(
         "Terzaghi: error of the pore pressure under mesh refinement",
@@ -109,7 +109,7 @@ fn work_precision() -> Chart {
     chart
 }
 
-pub(crate) fn pressure_field() -> Chart {
+pub(super) fn pressure_field() -> Chart {
     let edges: Vec<f64> = steps(24).collect();
     let mut chart = Chart::new(
         "Pore pressure, full integration",
@@ -137,7 +137,7 @@ pub(crate) fn pressure_field() -> Chart {
     chart
 }
 
-pub(crate) fn nothing() -> Chart {
+pub(super) fn nothing() -> Chart {
     let series = Series::new("GIMP", vec![(f64::NAN, 1.0), (1.0, -1.0), (f64::INFINITY, 2.0)]);
     Chart::new("Nothing to see", ChartAxis::log10("h (m)"), ChartAxis::log10("error (–)")).with(series)
 }
@@ -182,7 +182,7 @@ fn column() -> Chart {
     chart
 }
 
-pub(crate) fn gallery() -> Vec<(&'static str, Chart)> {
+pub(super) fn gallery() -> Vec<(&'static str, Chart)> {
     vec![
         ("crowd", crowd()),
         ("column", column()),
