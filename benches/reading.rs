@@ -6,7 +6,7 @@
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
-use oedometer::api::read::read;
+use oedometer::api::read;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write;

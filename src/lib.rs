@@ -130,7 +130,6 @@ mod judge;
 mod measure;
 mod record;
 mod render;
-mod schema;
 mod study;
 
 /// Exact solutions, by one door:

@@ -3,7 +3,7 @@
 //! A hundred cases, always the same, run with every test. Thousands of every program's files, other ones each time:
 //! `cargo test --release --test damaged_files -- --ignored`; `DAMAGED_CASES` says how many of each.
 
-use oedometer::api::read::read;
+use oedometer::api::read;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};

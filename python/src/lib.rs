@@ -3,10 +3,9 @@
 //! Lists of numbers are passed as bytes of native doubles, which any buffer of Python has, and structured values as JSON.
 //! The module `oedometer` around this one gives them shapes and names.
 
-use oedometer::api;
 use oedometer::api::convergence::Demand;
-use oedometer::api::read::Meaning;
 use oedometer::api::score::Samples;
+use oedometer::api::{self, Meaning};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

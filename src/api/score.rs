@@ -1,6 +1,6 @@
 //! Scores a result given as lists against the references of a scene.
 
-use crate::api::read::{Meaning, runs_with};
+use crate::api::{Meaning, runs_with};
 use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::import::mapping::Mapping;

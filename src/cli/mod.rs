@@ -3,7 +3,6 @@
 //! Data go to standard output, everything else to standard error.
 
 pub mod commands;
-pub mod destination;
 pub mod exit;
 mod help;
 pub mod job_list;
@@ -13,10 +12,7 @@ pub mod progress;
 pub mod slurm;
 pub mod stream;
 pub mod study_files;
-pub mod study_tables;
-pub mod time_notes;
 pub mod trust;
-
 use crate::cli::commands::{
     accept, bisect, check, compare, completions, exact, explain, history, list, merge, new, plan, records,
     report, run, schema, score, solve, stability,

@@ -5,7 +5,6 @@
 
 mod expected;
 mod frame_rows;
-mod joined;
 pub mod mapping;
 pub mod raw_row;
 pub mod runs;

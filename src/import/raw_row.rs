@@ -1,8 +1,9 @@
 //! One row in the units and signs of its file, and its conversion to a sample in SI.
 
 use crate::case::Case;
-use crate::import::mapping::mapping_parts::StressKind;
-use crate::import::mapping::units::{HorizontalSense, StatedPlace, StressSign, StressUnit, VerticalSense};
+use crate::import::mapping::units::{
+    HorizontalSense, StatedPlace, StressKind, StressSign, StressUnit, VerticalSense,
+};
 use crate::import::mapping::{Column, Mapping};
 use crate::import::samples::SampleRow;
 use oedometer_formats::ImportError;

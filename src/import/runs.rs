@@ -3,11 +3,10 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
-use crate::import::joined;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;
 use crate::import::samples::{SampleRow, SampledState, states_of};
-use crate::import::step_times::{declared_time, step_of};
+use crate::import::step_times::{declared_time, join, members, step_of};
 use crate::import::table_rows::{attach_settlement, is_ended, take_rows};
 use oedometer_formats::{
     Association, Frame, ImportError, Kind, Step, Wanted, collection_of, read_states, steps_of,
@@ -115,7 +114,7 @@ fn runs_of_arrays(
     for path in given.iter().flatten() {
         let mut notes = Vec::new();
         let mut steps = steps_of(path, &mut notes)?;
-        steps.retain(|step| match &joined::members(&step.file, &mapping.join)[..] {
+        steps.retain(|step| match &members(&step.file, &mapping.join)[..] {
             [first, _, ..] => joined.insert(first.clone()),
             _ => true,
         });
@@ -124,7 +123,7 @@ fn runs_of_arrays(
             return Err(ImportError::content(&table.file, reason));
         }
         read_states(&steps, Wanted(&names), &mut |step, mut frame| {
-            joined::join(step, &mapping.join, Wanted(&names), &mut frame)?;
+            join(step, &mapping.join, Wanted(&names), &mut frame)?;
             let cells = cells_over_height(&frame, mapping, body.height);
             let key = key_of(step, steps.len() > 1, &frame, cells);
             let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {

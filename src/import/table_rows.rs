@@ -1,8 +1,7 @@
 //! Reads text tables by their declared layout as rows in SI.
 
 use crate::import::expected::left_out;
-use crate::import::mapping::mapping_parts::SettlementSeries;
-use crate::import::mapping::units::VerticalSense;
+use crate::import::mapping::units::{SettlementSeries, VerticalSense};
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::samples::{SampleRow, SampledState};

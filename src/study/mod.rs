@@ -1,4 +1,4 @@
-//! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`, `sweep`), and as judged (`expectation`).
+//! Studies: as typed (`file`, `inputs`, `reading`), as planned (`check`), and as judged (`expectation`).
 
 pub mod check;
 pub mod diagnostic;
@@ -9,7 +9,6 @@ pub mod overrides;
 pub mod reading;
 pub mod shipped;
 pub mod solver;
-pub mod sweep;
 pub mod units;
 
 pub use check::{Purpose, Study};

@@ -5,8 +5,8 @@
 
 use crate::case::keys::{KEYS, Key, Kind, Range};
 use crate::case::{Case, Task};
+use crate::cli::commands::schema::{Document, schema_of};
 use crate::record::csv::long_tables::columns_csv;
-use crate::schema::{Document, schema_of};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::typed;

@@ -3,10 +3,9 @@
 use crate::case::planned::Tier;
 use crate::cli::commands::check::run_quietly;
 use crate::cli::commands::run::{jobs_of, load};
-use crate::cli::destination::is_on;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{golden_folder, named};
-use crate::cli::stream::say;
+use crate::cli::stream::{is_on, say};
 use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::{LastDigit, spread_by_group};
 use crate::golden::{GoldenFile, values_of};

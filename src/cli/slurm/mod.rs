@@ -5,15 +5,13 @@
 //! requeued or submitted again goes on where the last one ended, and the shares stay the same.
 
 mod scheduler;
-mod scripts;
 
 use crate::campaign::shares::Parting;
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
-use crate::cli::slurm::scheduler::{Job, cancel, most_tasks, submit};
-use crate::cli::slurm::scripts::{Scripts, merge_words};
+use crate::cli::slurm::scheduler::{Job, Scripts, cancel, merge_words, most_tasks, submit};
 use crate::cli::stream::{print_data, say};
 use crate::cli::study_files;
 use crate::record::store::RecordStore;

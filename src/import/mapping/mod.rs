@@ -1,15 +1,12 @@
 //! The declared meaning of the columns of a file.
 
-pub mod mapping_parts;
 pub mod preset;
 pub mod units;
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::import::mapping::mapping_parts::{
-    DisplacementSource, Hydrostatic, RowFilter, SettlementSeries, StressKind, StressMeaning, Time,
-};
 use crate::import::mapping::units::{
-    HorizontalSense, LengthUnit, StatedPlace, StressSign, StressUnit, TimeUnit, VerticalSense,
+    DisplacementSource, HorizontalSense, Hydrostatic, LengthUnit, RowFilter, SettlementSeries, StatedPlace,
+    StressKind, StressMeaning, StressSign, StressUnit, Time, TimeUnit, VerticalSense,
 };
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::file::StudySource;

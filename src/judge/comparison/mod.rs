@@ -1,7 +1,6 @@
 //! Methods compared with each other: by cost, by situation, by stiffness, by one differing input, and
 //! with other programs.
 
-pub mod cheapest_method;
 pub mod peers;
 pub mod stability_map;
 pub mod stiffness_sweep;

@@ -4,7 +4,6 @@
 //! Every sentence is made from records. A question that the records do not answer is not put.
 
 mod audit;
-mod changes;
 mod converges;
 mod cost;
 mod double_point;
@@ -18,10 +17,10 @@ mod time_step;
 use crate::history::comparison::StudyComparison;
 use crate::judge::race::RaceRow;
 use crate::record::provenance::{Origins, Provenance};
+use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::StudyResults;
 use crate::render::report::labels::distinct;
-use crate::render::report::setting;
+use crate::render::report::{StudyResults, setting};
 use crate::render::table::{Mood, Table};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::count_of;
@@ -161,7 +160,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         cost::answer(results, &links),
         audit::answer(results, &links),
         double_point::answer(results, &links),
-        changes::answer(answers.changes, answers.against),
+        what_changed(answers.changes, answers.against),
     ];
     let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
@@ -214,9 +213,32 @@ fn verdict(results: &[StudyResults<'_>]) -> Callout {
     (mood, text)
 }
 
+const CHANGES: Question = Question { heading: "What changed?", id: "changes" };
+
+/// The studies that differ, as `oedometer compare` shows them.
+fn what_changed(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
+    let changes = changes?;
+    if changes.is_empty() {
+        let text = format!(
+            "Nothing: every value that these studies share with {against} agrees within its tolerance."
+        );
+        return Some(CHANGES.told(text, Vec::new()));
+    }
+    let worse = changes.iter().filter(|one| one.is_regression()).count();
+    let sentence = format!(
+        "Against {against} {} changed, of which {worse} got worse.",
+        count_of(changes.len(), "study", "studies")
+    );
+    let tables = comparison_tables(changes, [against, "this report"]);
+    let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
+    Some(CHANGES.told(sentence, tables.into_iter().map(block).collect()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::GoldenFile;
+    use crate::history::state::StudyState;
     use crate::render::table::{Cell, columns};
 
     #[test]
@@ -240,5 +262,21 @@ mod tests {
         let cut = short(table(12), "in the studies");
         assert_eq!((cut.rows.len(), cut.notes.as_slice()), (10, &["2 more: in the studies".to_owned()][..]));
         assert_eq!(short(table(10), "in the studies"), table(10));
+    }
+
+    #[test]
+    fn what_got_worse_is_counted_and_shown_and_nothing_is_said_to_be_nothing() {
+        let state = |error: f64| {
+            let values = [("GIMP cells=4 | pressure T_v=1".to_owned(), error)].into();
+            StudyState::of_golden(GoldenFile { values, ..GoldenFile::of("s", &[], "-") })
+        };
+        let changes = [("worse", 0.3), ("better", 0.1)]
+            .map(|(name, error)| StudyComparison::of(name, &state(0.2), &state(error)));
+        let Some(section) = what_changed(Some(&changes), "v1.0") else { panic!("they differ") };
+        let told = format!("{section:?}");
+        assert!(told.contains("Against v1.0 2 studies changed, of which 1 got worse"), "{told}");
+        assert!(told.contains("regressed") && told.contains("improved"), "{told}");
+        assert!(format!("{:?}", what_changed(Some(&[]), "v1.0")).contains("Nothing"));
+        assert!(what_changed(None, "v1.0").is_none());
     }
 }

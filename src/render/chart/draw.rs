@@ -1,4 +1,6 @@
 //! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
+
+use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, PlotAxis, Reason, Scale, TICK_FONT, drawable};
 use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
 use crate::render::chart::multiples::side_by_side;
@@ -7,7 +9,6 @@ use crate::render::chart::svg::{
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
-use crate::render::error::RenderError;
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};

@@ -1,11 +1,14 @@
-//! The results of `check` for a terminal, as Markdown, as annotations of a forge and as `JUnit`.
+//! The results of `check` for a terminal, as Markdown, as annotations of GitHub's workflows at the line of the study that
+//! asked for it, and as `JUnit` in the Jenkins dialect.
 
-mod forge;
 pub mod verdicts;
 
-pub use forge::{annotations_of, junit};
-
+use crate::golden::compare::Change;
 use crate::judge::study_check::StudyCheck;
+use crate::judge::verdict::{Judgement, VerdictOutcome};
+use crate::render::tables::golden_changes::sentence;
+use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
+use std::collections::BTreeMap;
 
 /// Something that failed, with the sentence on it.
 struct Failure<'a> {
@@ -30,4 +33,171 @@ fn failures_of(check: &StudyCheck) -> [Vec<Failure<'_>>; 3] {
     });
     let [failed, unsound] = of_cases;
     [unmet.collect(), failed, unsound]
+}
+
+/// Annotations before the rest is only counted: GitHub shows ten per step.
+const MOST: usize = 9;
+
+/// The annotations of checks, failures first, at most nine and one that counts the others.
+/// `file_of` gives the file of a study.
+pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<String>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for check in checks {
+        let file = file_of(&check.study);
+        let mut add = |level: &str, line: usize, title: &str, message: &str| {
+            let place =
+                file.as_ref().map_or(String::new(), |file| format!("file={},line={line},", property(file)));
+            let title = property(&format!("{}: {title}", check.study));
+            all.push(format!("::{level} {place}title={title}::{}", data(message)));
+        };
+        for failure in failures_of(check).into_iter().flatten() {
+            add("error", failure.line, failure.subject, &failure.sentence);
+        }
+        match &check.golden {
+            Err(error) => add("error", 1, "golden values", &error.to_string()),
+            Ok(_) => {
+                for group in &check.groups {
+                    let level = if group.change == Change::Stale { "warning" } else { "error" };
+                    add(level, 1, &format!("golden values {}", group.change.name()), &sentence(group));
+                }
+            }
+        }
+        for warning in &check.warnings {
+            add("warning", 1, "wall time", warning);
+        }
+    }
+    all.sort_by_key(|annotation| !annotation.starts_with("::error"));
+    let more = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    if more > 0 {
+        all.push(format!("::notice title=oedometer check::{more} more: see the summary"));
+    }
+    all
+}
+
+/// Text as the message of a workflow command.
+fn data(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+/// Text as a property of a workflow command.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+/// Golden values that `JUnit` names, the worst first.
+const MOST_NAMED: usize = 10;
+
+/// Checks as a `JUnit` document: one suite per study; one case per check of an expectation, named
+/// `study/method/quantity/check`, one per bad record, and one for the golden values.
+///
+/// # Errors
+/// If the document cannot be written.
+pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
+    let mut report = Report::new("oedometer");
+    for check in checks {
+        let mut suite = TestSuite::new(check.study.clone());
+        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+        for judgement in &check.judgements {
+            for mut case in cases_of(check, judgement) {
+                // Two expectations of one series are told apart by their place in the file.
+                let count = seen.entry(case.name.to_string()).or_default();
+                *count += 1;
+                if *count > 1 {
+                    case.name = format!("{} (line {})", case.name.as_str(), judgement.line).into();
+                }
+                suite.add_test_case(case);
+            }
+        }
+        let [_, failed, unsound] = failures_of(check);
+        for failure in failed.into_iter().chain(unsound) {
+            let name = format!("{}/{}/run", check.study, failure.subject);
+            suite.add_test_case(TestCase::new(name, status(false, &failure.sentence)));
+        }
+        let (agrees, sentence) = match &check.golden {
+            Ok(differences) if differences.is_empty() => (true, String::new()),
+            Ok(differences) => {
+                let groups: Vec<String> = check.groups.iter().map(sentence).collect();
+                let worst = differences.iter().take(MOST_NAMED).map(|one| one.name.as_str());
+                let worst = worst.collect::<Vec<_>>().join("; ");
+                (false, format!("{}. The worst: {worst}", groups.join(". ")))
+            }
+            Err(error) => (false, error.to_string()),
+        };
+        suite.add_test_case(TestCase::new(format!("{}/golden", check.study), status(agrees, &sentence)));
+        report.add_test_suite(suite);
+    }
+    report.to_string()
+}
+
+/// One case per check; a known failure counts as skipped, an unexpected pass as a failure.
+fn cases_of(check: &StudyCheck, judgement: &Judgement) -> Vec<TestCase> {
+    let name = format!("{}/{}", check.study, judgement.subject.replacen(": ", "/", 1));
+    let verdict = &judgement.verdict;
+    let case = |measured: &'_ crate::judge::verdict::Check| {
+        let status = if !measured.pass && verdict.outcome == VerdictOutcome::KnownFailure {
+            let mut skipped = TestCaseStatus::skipped();
+            skipped.set_message(verdict.reason.clone());
+            skipped
+        } else {
+            status(measured.pass, &measured.reason)
+        };
+        let mut case = TestCase::new(format!("{name}/{}", measured.name), status);
+        if let Some(value) = measured.measured {
+            case.add_property(Property::new(measured.name.clone(), format!("{value:.6e}")));
+        }
+        case.add_property(Property::new("class", verdict.classification.class.name()));
+        case
+    };
+    let mut cases: Vec<TestCase> = verdict.checks.iter().map(case).collect();
+    if verdict.outcome == VerdictOutcome::UnexpectedPass {
+        cases.push(TestCase::new(format!("{name}/known failure"), status(false, &verdict.reason)));
+    }
+    cases
+}
+
+fn status(pass: bool, sentence: &str) -> TestCaseStatus {
+    if pass {
+        return TestCaseStatus::success();
+    }
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    status.set_message(sentence);
+    status
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::study_check::CaseNote;
+
+    fn check(failures: usize) -> StudyCheck {
+        let note =
+            |number| CaseNote { case: format!("case {number}"), sentence: "unstable: 5 %,\nsoon".to_owned() };
+        StudyCheck {
+            study: "study".to_owned(),
+            failed_cases: (0..failures).map(note).collect(),
+            unsound: Vec::new(),
+            inputs: Vec::new(),
+            proposals: Vec::new(),
+            judgements: Vec::new(),
+            golden: Ok(Vec::new()),
+            groups: Vec::new(),
+            changes: Vec::new(),
+            agreeing: 0,
+            warnings: vec!["slow".to_owned()],
+        }
+    }
+
+    #[test]
+    fn nine_are_shown_and_the_others_counted() {
+        let lines = annotations_of(&[check(3)], |_| None);
+        assert_eq!(lines.len(), 4);
+        assert_eq!(lines[0], "::error title=study%3A case 0::unstable: 5 %25,%0Asoon");
+        assert!(lines[3].starts_with("::warning "), "failures come first: {lines:?}");
+        let lines = annotations_of(&[check(20)], |study| Some(format!("studies/{study}.toml")));
+        assert_eq!(lines.len(), 10);
+        assert!(lines[0].starts_with("::error file=studies/study.toml,line=1,title="));
+        assert_eq!(lines[9], "::notice title=oedometer check::12 more: see the summary");
+        assert!(annotations_of(&[StudyCheck { warnings: Vec::new(), ..check(0) }], |_| None).is_empty());
+    }
 }

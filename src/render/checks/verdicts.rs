@@ -4,11 +4,10 @@ use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::checks::{TITLES, failures_of};
-use crate::render::error::RenderError;
-use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::golden_changes::{self, judgement_of, summary};
 use crate::render::tables::uncertainties;
+use crate::render::{RenderError, number};
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 

@@ -10,9 +10,8 @@ mod writers;
 pub use writers::{render_html, render_markdown};
 
 use crate::render::chart::Chart;
-use crate::render::error::RenderError;
-use crate::render::number;
 use crate::render::table::{Mood, Table};
+use crate::render::{RenderError, number};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 

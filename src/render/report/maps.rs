@@ -1,7 +1,7 @@
 //! Maps over inputs: the cheapest method for one percent on each soil, and critical steps, predicted and observed.
 
-use crate::judge::comparison::cheapest_method::{MappedSoil, TOLERANCE, Way, mapped_soils};
 use crate::judge::comparison::stability_map::{MapAxis, MapScale, maps_of};
+use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE, Way, mapped_soils};
 use crate::measure::statistics::median;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;

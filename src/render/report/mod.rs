@@ -2,12 +2,11 @@
 
 mod checks;
 pub(crate) mod cost;
-mod footing;
 pub(crate) mod labels;
 pub(crate) mod layer;
 mod maps;
 pub mod pages;
-mod race;
+pub mod race;
 pub(crate) mod refinement;
 pub(crate) mod setting;
 pub mod study_page;

@@ -6,7 +6,7 @@ use crate::judge::verdict::Judgement;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::{
-    StudyResults, checks, cost, footing, layer, maps, race, refinement, setting, survival, theory_lines,
+    StudyResults, checks, cost, layer, maps, race, refinement, setting, survival, theory_lines,
 };
 use crate::render::table::Mood;
 use crate::render::tables::{runs, uncertainties};
@@ -32,7 +32,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     } else {
         blocks.extend(survival::survival(results).map(Block::Table));
         blocks.extend(maps::cheapest_methods(results));
-        blocks.extend(footing::blocks(results));
+        blocks.extend(layer::load_settlement(results));
         blocks.extend(layer::blocks(results)?);
         blocks.extend(theory_lines::blocks(results)?);
         for axis in Axis::REFINEMENTS {

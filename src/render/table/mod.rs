@@ -2,8 +2,7 @@
 
 mod writers;
 
-use crate::render::error::RenderError;
-use crate::render::number;
+use crate::render::{RenderError, number};
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,10 +1,10 @@
 //! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
-use crate::render::error::RenderError;
+
 use crate::render::escape::{
     csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
 };
-use crate::render::number;
 use crate::render::table::{Align, Cell, Table, marked};
+use crate::render::{RenderError, number};
 use std::fmt::Write as _;
 
 /// Length in letters from which a cell of HTML is a sentence that needs a wide column.

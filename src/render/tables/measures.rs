@@ -4,9 +4,8 @@ use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
 use crate::record::{Record, Status};
-use crate::render::error::RenderError;
-use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use crate::render::{RenderError, number};
 use oedometer_mpm::scene::SceneKind;
 use std::fmt::Write;
 

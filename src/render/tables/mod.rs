@@ -3,7 +3,6 @@
 pub mod explanation;
 pub mod golden_changes;
 pub mod measures;
-pub mod race;
 pub mod runs;
 pub mod scores;
 pub mod uncertainties;
