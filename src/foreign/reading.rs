@@ -2,14 +2,12 @@
 
 use crate::case::{Case, Sample};
 use crate::import::mapping::Mapping;
-use crate::import::mapping::preset::Preset;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, files_of, runs_of};
 use crate::import::{SampledState, not_ended};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::ExternalSolver;
-use clap::ValueEnum;
 use oedometer_formats::{ImportError, input_file};
 use oedometer_soil::wording::short;
 use std::path::PathBuf;
@@ -80,8 +78,7 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
         }
     });
     let own = own.transpose()?;
-    let preset = solver.preset.as_deref().and_then(|name| Preset::from_str(name, false).ok());
-    let mut mapping = Mapping::resolve(preset, own.as_ref(), is_plane)?;
+    let mut mapping = Mapping::resolve(solver.preset, own.as_ref(), is_plane)?;
     // A gate assumes nothing that is not declared.
     if let (Some(taken), Some(source)) =
         (mapping.taken_for_granted(is_plane).filter(|_| solver.is_given()), own)
@@ -213,7 +210,6 @@ fn digest_of(files: &[PathBuf]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::solver::PRESETS;
 
     #[test]
     fn a_pressure_that_the_load_cannot_cause_is_told_wherever_it_stands() {
@@ -238,15 +234,6 @@ mod tests {
         }
         case.column.self_weight = true;
         assert_eq!(told(&case, [2.0 * most; 3]), None, "the weight may");
-    }
-
-    #[test]
-    fn the_presets_of_study_files_are_those_of_the_import() {
-        let known: Vec<&str> = Preset::value_variants().iter().map(|preset| preset.name).collect();
-        assert_eq!(known, PRESETS);
-        for name in PRESETS {
-            assert!(Preset::from_str(name, false).is_ok(), "{name}");
-        }
     }
 
     #[test]

@@ -117,8 +117,8 @@ pub fn left_out(column: Column, quantity: Quantity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::mapping::preset::Preset;
     use crate::study::file::StudySource;
+    use crate::study::solver::Preset;
     use clap::ValueEnum;
 
     fn states(pressures: [usize; 3]) -> Vec<SampledState> {

@@ -1,9 +1,9 @@
 //! Rows of a state in arrays: finds the columns among arrays and coordinates, selects rows, forms displacements.
 
-use crate::import::mapping::preset::Preset;
 use crate::import::mapping::{Column, DeclaredBy, Mapping};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::samples::SampleRow;
+use crate::study::solver::Preset;
 use oedometer_formats::{Array, Association, Cells, Frame, ImportError};
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};

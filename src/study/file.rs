@@ -440,5 +440,5 @@ fn axes(_: &mut SchemaGenerator) -> Schema {
 }
 
 fn presets(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "enum": PRESETS })
+    json_schema!({ "enum": PRESETS.map(|preset| preset.name) })
 }

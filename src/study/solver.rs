@@ -1,21 +1,47 @@
 //! A checked external solver: its command, and how its result is read.
 
 use crate::case::solver::Attached;
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use std::path::PathBuf;
 
-/// Programs whose files are known; `import` has what their arrays mean.
-pub const PRESETS: [&str; 10] = [
-    "ogs",
-    "kratos",
-    "porepy",
-    "geotaichi",
-    "anura3d",
-    "cb-geo",
-    "kratos-poro",
-    "kratos-mpm",
-    "mpm-geomechanics",
-    "meshio",
+/// A program whose files are known; `import` has what their arrays mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Its name at the command line and in study files.
+    pub name: &'static str,
+    about: &'static str,
+    /// Names of arrays that show that a file is the program's.
+    pub signs: &'static [&'static str],
+}
+
+const fn preset(name: &'static str, about: &'static str, signs: &'static [&'static str]) -> Preset {
+    Preset { name, about, signs }
+}
+
+/// All presets.
+pub const PRESETS: [Preset; 10] = [
+    preset("ogs", "OpenGeoSys 6", &["OGS_VERSION", "pressure_interpolated"]),
+    preset("kratos", "KratosMultiphysics with its GeoMechanicsApplication", &["WATER_PRESSURE"]),
+    preset("porepy", "PorePy", &["mortar_side", "subdomain_id"]),
+    preset("geotaichi", "GeoTaichi's material points", &["t_current", "estress"]),
+    preset("anura3d", "Anura3D's material points, VTK", &["pressure_liquid", "displacement_solid"]),
+    preset("cb-geo", "CB-Geo mpm's particles, HDF5 or VTP", &["liquid_svars_0", "pore_pressures"]),
+    preset("kratos-poro", "KratosMultiphysics with its PoromechanicsApplication", &["LIQUID_PRESSURE"]),
+    preset("kratos-mpm", "KratosMultiphysics with its MPMApplication", &["MP_DISPLACEMENT"]),
+    preset("mpm-geomechanics", "MPM-Geomechanics", &["Pore Pressure", "Stress_ZZ"]),
+    preset("meshio", "meshio, scikit-fem, FEniCS and others with a pressure and a displacement", &[]),
 ];
+
+impl ValueEnum for Preset {
+    fn value_variants<'a>() -> &'a [Self] {
+        &PRESETS
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name).help(self.about))
+    }
+}
 
 /// Units of the time that a solver says it took, s.
 pub const SOLVE_UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0), ("h", 3600.0)];
@@ -49,7 +75,7 @@ pub struct ExternalSolver {
     /// Mapping file, below the folder.
     pub mapping: Option<String>,
     /// Program whose files are known.
-    pub preset: Option<String>,
+    pub preset: Option<Preset>,
     /// Command that prints its version; empty by default.
     pub version: Vec<String>,
     /// Longest wall time of one run, s.

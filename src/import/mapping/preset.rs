@@ -3,8 +3,8 @@
 use crate::import::mapping::{DeclaredBy, Mapping};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
+use crate::study::solver::{PRESETS, Preset};
+use include_dir::{Dir, File, include_dir};
 use oedometer_formats::{Array, Frame};
 
 /// The mapping of a column's result for which nothing is declared.
@@ -12,93 +12,16 @@ pub const CONVENTION: &str = include_str!("../presets/column.toml");
 /// The mapping of a layer's result for which nothing is declared.
 pub const PLANE_CONVENTION: &str = include_str!("../presets/layer.toml");
 
-/// A program whose files are known.
-#[derive(Clone, Copy, Debug)]
-pub struct Preset {
-    /// Its name at the command line and in study files.
-    pub name: &'static str,
-    about: &'static str,
-    /// Its mapping file.
-    pub text: &'static str,
-    /// Names of arrays that show that a file is the program's.
-    signs: &'static [&'static str],
-}
-
-/// All presets.
-const PRESETS: [Preset; 10] = [
-    Preset {
-        name: "ogs",
-        about: "OpenGeoSys 6",
-        text: include_str!("../presets/ogs.toml"),
-        signs: &["OGS_VERSION", "pressure_interpolated"],
-    },
-    Preset {
-        name: "kratos",
-        about: "KratosMultiphysics with its GeoMechanicsApplication",
-        text: include_str!("../presets/kratos.toml"),
-        signs: &["WATER_PRESSURE"],
-    },
-    Preset {
-        name: "porepy",
-        about: "PorePy",
-        text: include_str!("../presets/porepy.toml"),
-        signs: &["mortar_side", "subdomain_id"],
-    },
-    Preset {
-        name: "geotaichi",
-        about: "GeoTaichi's material points",
-        text: include_str!("../presets/geotaichi.toml"),
-        signs: &["t_current", "estress"],
-    },
-    Preset {
-        name: "anura3d",
-        about: "Anura3D's material points, VTK",
-        text: include_str!("../presets/anura3d.toml"),
-        signs: &["pressure_liquid", "displacement_solid"],
-    },
-    Preset {
-        name: "cb-geo",
-        about: "CB-Geo mpm's particles, HDF5 or VTP",
-        text: include_str!("../presets/cb-geo.toml"),
-        signs: &["liquid_svars_0", "pore_pressures"],
-    },
-    Preset {
-        name: "kratos-poro",
-        about: "KratosMultiphysics with its PoromechanicsApplication",
-        text: include_str!("../presets/kratos-poro.toml"),
-        signs: &["LIQUID_PRESSURE"],
-    },
-    Preset {
-        name: "kratos-mpm",
-        about: "KratosMultiphysics with its MPMApplication",
-        text: include_str!("../presets/kratos-mpm.toml"),
-        signs: &["MP_DISPLACEMENT"],
-    },
-    Preset {
-        name: "mpm-geomechanics",
-        about: "MPM-Geomechanics",
-        text: include_str!("../presets/mpm-geomechanics.toml"),
-        signs: &["Pore Pressure", "Stress_ZZ"],
-    },
-    Preset {
-        name: "meshio",
-        about: "meshio, scikit-fem, FEniCS and others with a pressure and a displacement",
-        text: include_str!("../presets/meshio.toml"),
-        signs: &[],
-    },
-];
-
-impl ValueEnum for Preset {
-    fn value_variants<'a>() -> &'a [Self] {
-        &PRESETS
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name).help(self.about))
-    }
-}
+/// The mappings of the presets, each a file of its name.
+static TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/import/presets");
 
 impl Preset {
+    /// Its mapping file.
+    pub fn text(self) -> &'static str {
+        let file = TEXTS.get_file(format!("{}.toml", self.name));
+        file.and_then(File::contents_utf8).unwrap_or_default()
+    }
+
     /// The preset of the program that writes the arrays of a state, if one of them shows it.
     pub fn of_frame(frame: &Frame) -> Option<&'static Self> {
         let is_sign = |preset: &Self, array: &Array| preset.signs.contains(&array.name.as_str());
@@ -108,7 +31,7 @@ impl Preset {
     /// Its mapping, overridden key by key by the user's own. Columns that only the preset names may be missing in a
     /// file.
     fn mapping(self, own: Option<&StudySource>, is_plane: bool) -> Result<Mapping, StudyError> {
-        let base = StudySource { name: format!("the preset {}", self.name), text: self.text.to_owned() };
+        let base = StudySource { name: format!("the preset {}", self.name), text: self.text().to_owned() };
         let mut merged = base.table()?;
         let mut optional = keys_of_columns(&merged);
         if let Some(own) = own {
@@ -191,6 +114,7 @@ impl Mapping {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::ValueEnum;
 
     fn named(name: &str) -> Preset {
         Preset::from_str(name, false).expect("a preset")

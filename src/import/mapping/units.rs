@@ -242,9 +242,9 @@ fn downward() -> VerticalSense {
 #[cfg(test)]
 mod tests {
     use crate::import::mapping::Mapping;
-    use crate::import::mapping::preset::Preset;
     use crate::import::raw_row::{RawRow, SolvedBody};
     use crate::study::file::StudySource;
+    use crate::study::solver::Preset;
     use clap::ValueEnum;
     use oedometer_formats::ImportError;
     use std::path::Path;

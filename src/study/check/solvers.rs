@@ -8,7 +8,7 @@ use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile};
 use crate::study::reading::Placed;
 use crate::study::solver::{
-    ExternalSolver, PLACEHOLDERS, PRESETS, SOLVE_UNITS, file_beside, placeholders_of,
+    ExternalSolver, PLACEHOLDERS, PRESETS, Preset, SOLVE_UNITS, file_beside, placeholders_of,
 };
 use oedometer_formats::input_file;
 use oedometer_mpm::method::Method;
@@ -240,9 +240,9 @@ impl Checker<'_> {
     }
 
     /// A program whose files are known.
-    fn preset_of(&mut self, typed: Option<&Placed<String>>) -> Option<String> {
-        let index = self.word(typed?, "preset", &PRESETS)?;
-        Some(PRESETS[index].to_owned())
+    fn preset_of(&mut self, typed: Option<&Placed<String>>) -> Option<Preset> {
+        let index = self.word(typed?, "preset", &PRESETS.map(|preset| preset.name))?;
+        Some(PRESETS[index])
     }
 
     /// The name of a file of the adapter, which must be there.

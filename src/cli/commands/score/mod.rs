@@ -7,13 +7,14 @@ use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_tables};
 use crate::cli::stream::{print_data, say};
-use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION, Preset};
+use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::judge::score::completeness::Lack;
 use crate::judge::score::results::{Comparison, Results, Scored};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::tables::scores;
 use crate::study::overrides::{Asked, Outputs};
+use crate::study::solver::Preset;
 use crate::study::units::in_si;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;
@@ -79,7 +80,7 @@ fn seconds(typed: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if arguments.show_mapping {
         if let Some(preset) = arguments.preset {
-            print_data(preset.text)?;
+            print_data(preset.text())?;
             return Ok(Exit::Pass);
         }
         let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
