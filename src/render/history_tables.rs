@@ -109,50 +109,38 @@ fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
 
 /// The inputs that differ; none where none does.
 fn inputs_table(found: &[&StudyComparison]) -> Option<Table> {
-    let rows: Vec<Vec<Cell>> = found
+    let rows = found
         .iter()
         .flat_map(|one| one.inputs.iter().map(move |input| (one, input)))
-        .map(|(one, input)| [vec![Cell::Code(one.study.clone())], input_cells(input)].concat())
-        .collect();
+        .map(|(one, input)| [vec![Cell::Code(one.study.clone())], input_cells(input)].concat());
     let header = "study | input | before | after | > cases";
-    (!rows.is_empty()).then(|| Table::of("inputs that differ", columns(header), rows))
+    Table::of("inputs that differ", columns(header), rows).unless_empty()
 }
 
 /// What moved, a row per kind of change; none where nothing did.
 fn moved_table(found: &[&StudyComparison]) -> Option<Table> {
-    let rows: Vec<Vec<Cell>> = found
-        .iter()
-        .flat_map(|one| one.groups.iter().map(move |group| (one, group)))
-        .map(|(one, group)| {
-            let [before, after] = values_of(&group.worst);
-            vec![
-                Cell::Code(one.study.clone()),
-                Cell::Text(summary(group)),
-                Cell::Code(group.worst.name.clone()),
-                before,
-                after,
-            ]
-        })
-        .collect();
+    let rows = found.iter().flat_map(|one| one.groups.iter().map(move |group| (one, group)));
+    let rows = rows.map(|(one, group)| {
+        let [before, after] = values_of(&group.worst);
+        let (study, value) = (Cell::Code(one.study.clone()), Cell::Code(group.worst.name.clone()));
+        vec![study, Cell::Text(summary(group)), value, before, after]
+    });
     let header = "study | what | worst value | > before | > after";
-    (!rows.is_empty()).then(|| Table::of("what moved", columns(header), rows))
+    Table::of("what moved", columns(header), rows).unless_empty()
 }
 
 /// The series whose order or class is another; none where there is none.
 fn orders_table(found: &[&StudyComparison]) -> Option<Table> {
-    let orders: Vec<Vec<Cell>> = found
-        .iter()
-        .flat_map(|one| one.orders.iter().map(move |change| (one, change)))
-        .map(|(one, change)| {
-            let mut row = vec![Cell::Code(one.study.clone()), Cell::Code(change.series.clone())];
-            for state in [&change.before, &change.after] {
-                row.extend([Cell::of(state.order, Cell::Number, "its class has none"), state.class.into()]);
-            }
-            row
-        })
-        .collect();
+    let rows = found.iter().flat_map(|one| one.orders.iter().map(move |change| (one, change)));
+    let rows = rows.map(|(one, change)| {
+        let mut row = vec![Cell::Code(one.study.clone()), Cell::Code(change.series.clone())];
+        for state in [&change.before, &change.after] {
+            row.extend([Cell::of(state.order, Cell::Number, "its class has none"), state.class.into()]);
+        }
+        row
+    });
     let header = "study | series | > order before | class before | > order after | class after";
-    (!orders.is_empty()).then(|| Table::of("orders and classes that changed", columns(header), orders))
+    Table::of("orders and classes that changed", columns(header), rows).unless_empty()
 }
 
 /// The value before and after, with digits that tell them apart.
@@ -232,12 +220,6 @@ const MOST_FIGURES: usize = 6;
 pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Page {
     let mut tables = comparison_tables(found, names).into_iter();
     let summary = tables.next().map(Block::Table);
-    let section = |heading: &str, id: &str, blocks: Vec<Block>| Section {
-        heading: heading.to_owned(),
-        id: id.to_owned(),
-        blocks,
-        ..Section::default()
-    };
     let mut figures = worst_first(found).into_iter().filter(|one| differs(one)).filter_map(arrows_of);
     let worst: Vec<Figure> = figures.by_ref().take(MOST_FIGURES).collect();
     let rest: Vec<Block> = figures.map(Block::Figure).collect();
@@ -251,9 +233,9 @@ pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Pa
         Block::Details { summary: format!("{}, {rows}", table.title), blocks: vec![Block::Table(table)] }
     });
     let mut sections = vec![
-        section("What changed", "changes", summary.into_iter().collect()),
-        section("Error and cost of each case", "arrows", drawn),
-        section("In detail", "details", details.collect()),
+        Section::new("What changed", "changes", summary.into_iter().collect()),
+        Section::new("Error and cost of each case", "arrows", drawn),
+        Section::new("In detail", "details", details.collect()),
     ];
     sections.retain(|section| {
         let is_empty = |block: &Block| matches!(block, Block::Figures(figures) if figures.is_empty());
@@ -311,19 +293,14 @@ pub(crate) fn timeline_page(lines: &[Timeline]) -> Page {
             row[0] = Cell::Link { target: format!("#{study}"), words: study };
         }
     }
-    let summary = Section {
-        heading: "Studies".to_owned(),
-        id: "studies".to_owned(),
-        blocks: vec![Block::Table(table)],
-        ..Section::default()
-    };
+    let summary = Section::new("Studies", "studies", vec![Block::Table(table)]);
     let of_study = |line: &Timeline| {
         let mut blocks = Vec::new();
         if line.steps.iter().skip(1).any(|step| step.moved > 0) {
             blocks.push(Block::Figure(timeline_figure(line)));
         }
         blocks.push(Block::Table(timeline_table(std::slice::from_ref(line))));
-        Section { heading: line.study.clone(), id: line.study.clone(), blocks, ..Section::default() }
+        Section::new(&line.study, &line.study, blocks)
     };
     Page {
         title: "Golden values over time".to_owned(),

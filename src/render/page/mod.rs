@@ -52,6 +52,13 @@ pub struct Section {
     pub blocks: Vec<Block>,
 }
 
+impl Section {
+    /// A section without a mark.
+    pub fn new(heading: impl Into<String>, id: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self { heading: heading.into(), id: id.into(), mood: None, blocks }
+    }
+}
+
 /// A piece of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {

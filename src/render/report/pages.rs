@@ -95,7 +95,7 @@ fn numbers_section(results: &[StudyResults<'_>]) -> Section {
             ),
         ),
     ];
-    Section { heading: "How the numbers were made".to_owned(), id: "how".to_owned(), mood: None, blocks }
+    Section::new("How the numbers were made", "how", blocks)
 }
 
 /// The program that made the records.

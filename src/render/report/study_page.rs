@@ -120,15 +120,11 @@ fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
 
 /// A section from every heading on; the blocks before the first are about the expectations.
 fn sections(blocks: Vec<Block>) -> Vec<Section> {
-    let mut sections = vec![Section {
-        heading: "Expectations".to_owned(),
-        id: "expectations".to_owned(),
-        ..Section::default()
-    }];
+    let mut sections = vec![Section::new("Expectations", "expectations", Vec::new())];
     for block in blocks {
         if let Block::Heading(heading) = block {
             let id = format!("{}-{}", slug(&heading), sections.len());
-            sections.push(Section { heading, id, ..Section::default() });
+            sections.push(Section::new(heading, id, Vec::new()));
         } else if let Some(last) = sections.last_mut() {
             last.blocks.push(block);
         }

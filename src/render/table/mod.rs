@@ -269,6 +269,11 @@ impl Table {
         Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new() }
     }
 
+    /// The table, if it has rows.
+    pub fn unless_empty(self) -> Option<Self> {
+        (!self.rows.is_empty()).then_some(self)
+    }
+
     /// Adds a line below the table.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
