@@ -16,7 +16,7 @@ use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
-use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
+use oedometer_mpm::run::results::outcome::{Counters, Failure, StepSizes};
 use oedometer_mpm::scene::SceneKind;
 
 /// Output format.
@@ -150,12 +150,8 @@ const OWN_OPTIONS: [(&str, &str); 5] = [
 #[derive(serde::Serialize)]
 struct SolveJson<'a> {
     status: String,
-    steps: u64,
-    point_updates: u64,
-    /// Work of an implicit integrator.
-    factorisations: u64,
-    iterations: u64,
-    rejected_steps: u64,
+    #[serde(flatten)]
+    counters: Counters,
     wall_seconds: Option<f64>,
     measures: &'a [ErrorRow],
     groups: Groups,
@@ -171,17 +167,9 @@ struct SolveJson<'a> {
 
 impl<'a> SolveJson<'a> {
     fn of(record: &'a Record) -> Self {
-        let failure = match &record.status {
-            Status::Ok => None,
-            Status::Failed(failure) => Some(failure),
-        };
         Self {
             status: record.status.name(),
-            steps: record.counters.steps,
-            point_updates: record.counters.point_updates,
-            factorisations: record.counters.factorisations,
-            iterations: record.counters.iterations,
-            rejected_steps: record.counters.rejected_steps,
+            counters: record.counters,
             wall_seconds: record.wall.first().map(|sample| sample.seconds),
             measures: &record.errors,
             groups: record.groups,
@@ -189,7 +177,7 @@ impl<'a> SolveJson<'a> {
             balance: &record.balance,
             references: &record.references,
             step_sizes: record.step_sizes,
-            failure,
+            failure: record.status.failure(),
             case: &record.case,
             hash: &record.hash,
             provenance: &record.provenance,

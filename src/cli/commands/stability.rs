@@ -7,7 +7,7 @@ use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
 use crate::cli::stream::print_data;
-use crate::record::{Probe, Record, Status};
+use crate::record::{Probe, Record};
 use crate::render::tables::runs;
 use crate::study::check::Purpose;
 use crate::study::overrides::{Assignments, StudyLines, TIMING, toml_of};
@@ -69,10 +69,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_data(&json_of(&rows)?)?;
         }
     }
-    if let Some((record, failure)) = report.records.iter().find_map(|record| match &record.status {
-        Status::Ok => None,
-        Status::Failed(failure) => Some((record, failure)),
-    }) {
+    let failed = report.records.iter().find_map(|record| Some((record, record.status.failure()?)));
+    if let Some((record, failure)) = failed {
         let label = record.case.label();
         return Err(Ended::with(
             Exit::CaseFailed,

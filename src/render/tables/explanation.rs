@@ -2,7 +2,7 @@
 
 use crate::case::quantity::Quantity;
 use crate::judge::explanation::{Carrier, Explanation, LevelSeries};
-use crate::record::{Record, Status};
+use crate::record::Record;
 use crate::render::number;
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::{differences_table, input_cells};
@@ -66,10 +66,8 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
         });
         cells
     });
-    let status = match &record.status {
-        Status::Ok => String::new(),
-        Status::Failed(failure) => format!(" ({})", failure.name_with_step()),
-    };
+    let failure = record.status.failure();
+    let status = failure.map_or(String::new(), |failure| format!(" ({})", failure.name_with_step()));
     let reference = record.references.first().map_or("no reference", |used| used.name.as_str());
     let table = Table::of(
         format!("{}: {}{status}", record.case.scene.name(), record.case.label()),

@@ -3,9 +3,10 @@
 use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
-use crate::record::{Record, Status};
+use crate::record::Record;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
+use oedometer_mpm::run::results::outcome::Failure;
 use oedometer_mpm::scene::SceneKind;
 use std::fmt::Write;
 
@@ -67,10 +68,7 @@ pub(crate) const NOT_RESOLVED: &str =
     "the exact value is zero, or smaller than the round-off of the run or the accuracy of the reference";
 
 fn missing_reason(record: &Record) -> String {
-    match &record.status {
-        Status::Ok => NOT_RESOLVED.to_owned(),
-        Status::Failed(failure) => failure.name_with_step(),
-    }
+    record.status.failure().map_or_else(|| NOT_RESOLVED.to_owned(), Failure::name_with_step)
 }
 
 fn work_note(record: &Record) -> String {

@@ -4,6 +4,7 @@ use crate::case::quantity::{Norm, Quantity};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace, error_key};
 use crate::record::ErrorRow;
+use crate::render::report::labels::distinct;
 use crate::render::table;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::tables::measures::NOT_RESOLVED;
@@ -15,13 +16,8 @@ const SAME_TIME: f64 = 1e-9;
 /// One row per time and quantity: the main norm against every reference, and the place with most of the error against the
 /// first.
 pub fn errors_table(score: &Score, title: &str) -> Table {
-    let mut references: Vec<&str> = Vec::new();
     let unresolved = score.unresolved.iter().map(|one| one.reference.as_str());
-    for name in score.errors.iter().map(|row| row.reference.as_str()).chain(unresolved) {
-        if !references.contains(&name) {
-            references.push(name);
-        }
-    }
+    let references = distinct(score.errors.iter().map(|row| row.reference.as_str()).chain(unresolved));
     let mut columns = columns("> T_v | quantity | sample");
     columns.extend(references.iter().map(|name| TableColumn::number(format!("error against {name}"))));
     let is_plane = score.worst.iter().any(|worst| worst.x.is_some());
