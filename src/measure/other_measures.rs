@@ -27,18 +27,11 @@ pub fn measures_of(
     if case.scene == SceneKind::Footing {
         return measures_of_footing(case, own, snapshots);
     }
-    let row = |name: &str, time_factor, found, exact| MeasureRow {
-        name: name.to_owned(),
-        time_factor,
-        reference: own.name().to_owned(),
-        found,
-        exact,
-    };
     let mut measures = Vec::new();
     if let (Some(found), Some((time_factor, height))) = (pressure_peak(case, snapshots), own.pressure_peak())
     {
-        measures.push(row("peak_time_factor", None, found.time_factor, time_factor));
-        measures.push(row("peak_pressure", None, found.height, height));
+        measures.push(row(own, "peak_time_factor", None, found.time_factor, time_factor));
+        measures.push(row(own, "peak_pressure", None, found.height, height));
     }
     for output in balance {
         let layers = output.layers.as_ref();
@@ -50,10 +43,15 @@ pub fn measures_of(
         ];
         let time = Some(output.time_factor);
         measures.extend(
-            values.into_iter().filter_map(|(name, found, exact)| Some(row(name, time, found?, exact))),
+            values.into_iter().filter_map(|(name, found, exact)| Some(row(own, name, time, found?, exact))),
         );
     }
     measures
+}
+
+/// A measure against the exact value of a reference.
+fn row(own: &Reference, name: &str, time_factor: Option<f64>, found: f64, exact: f64) -> MeasureRow {
+    MeasureRow { name: name.to_owned(), time_factor, reference: own.name().to_owned(), found, exact }
 }
 
 /// Time and height of the highest pressure at an impermeable end, as of Mandel and of Cryer, where it rises before it
@@ -131,28 +129,21 @@ pub fn load_error(case: &Case, own: &Reference, time_factor: f64, snapshot: &Sna
 
 /// The load factor at every output; between the last two how it grows with the settlement over the width, which is nothing
 /// where nothing locks; and the oscillation of the pressure at the last one.
-pub fn measures_of_footing(case: &Case, own: &Reference, snapshots: &[Snapshot]) -> Vec<MeasureRow> {
-    let row = |name: &str, time_factor, found, exact| MeasureRow {
-        name: name.to_owned(),
-        time_factor,
-        reference: own.name().to_owned(),
-        found,
-        exact,
-    };
+fn measures_of_footing(case: &Case, own: &Reference, snapshots: &[Snapshot]) -> Vec<MeasureRow> {
     let outputs = case.time_factors.iter().zip(snapshots);
     let loads: Vec<(f64, f64)> = outputs
         .filter_map(|(time, snapshot)| Some((*time, load_factor(case, snapshot.plate_force?)?)))
         .collect();
     let name = Quantity::LoadFactor.name();
     let mut measures: Vec<MeasureRow> =
-        loads.iter().map(|(time, load)| row(name, Some(*time), *load, LOAD_FACTOR)).collect();
+        loads.iter().map(|(time, load)| row(own, name, Some(*time), *load, LOAD_FACTOR)).collect();
     if let [.., (before, lower), (after, upper)] = loads[..] {
-        measures.push(row("plateau_slope", None, (upper - lower) / (after - before), 0.0));
+        measures.push(row(own, "plateau_slope", None, (upper - lower) / (after - before), 0.0));
     }
     if let Some(last) = snapshots.last() {
         let across = case.column.cells_across(case.cells).unwrap_or(1) * case.points_per_cell;
         let of_strength = oscillation(&last.points, across) / case.material.undrained_strength;
-        measures.push(row("pressure_oscillation", None, of_strength, 0.0));
+        measures.push(row(own, "pressure_oscillation", None, of_strength, 0.0));
     }
     measures
 }
