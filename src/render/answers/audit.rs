@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Links, Question, link};
+use crate::render::answers::{Answer, Question};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
@@ -62,7 +62,7 @@ struct Common {
 }
 
 /// Settlement over time and pressure over the mesh, in a figure each, and which equations agree.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
     let audited = results.iter().filter_map(|one| {
         let pairings = pairings(one.records);
         let common = common_of(&pairings)?;
@@ -76,8 +76,8 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
     let best = audited.max_by_key(|(_, pairings, common)| worth(pairings, common));
     let (one, pairings, common) = best?;
     let figures = vec![over_time(&pairings, &common), over_mesh(&pairings, &common)];
-    let sentence = format!("{} Evidence: {}.", sentence(&pairings, &common), link(links, &one.study.name));
-    Some(QUESTION.told(sentence, vec![Block::Figures(figures), Block::Paragraph(MAPPING_BACK.to_owned())]))
+    let blocks = vec![Block::Figures(figures), Block::Paragraph(MAPPING_BACK.to_owned())];
+    Some(QUESTION.told(&sentence(&pairings, &common), [one.study.name.as_str()], blocks))
 }
 
 /// The pairings of the method that has most of them.

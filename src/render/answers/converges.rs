@@ -3,7 +3,7 @@
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
 use crate::render::answers::regime::{MethodPath, Regime};
-use crate::render::answers::{Answer, Links, Question, links_to, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::labels::{CONVERGENCE, QUOTED_CELLS, distinct, is_settled, order_or_class};
@@ -21,7 +21,6 @@ pub fn answer(
     results: &[StudyResults<'_>],
     small: Option<&Regime<'_>>,
     large: Option<&Regime<'_>>,
-    links: Links<'_>,
 ) -> Answer {
     let regimes: Vec<(&str, &Regime<'_>)> = [("small strain", small), ("large strain", large)]
         .into_iter()
@@ -39,10 +38,9 @@ pub fn answer(
     });
     let sentences: Vec<String> = sentences.collect();
     let studies = regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.study));
-    let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
     let mut blocks = vec![Block::Table(short(table(&regimes), "in the studies"))];
     blocks.extend(small.and_then(|regime| figure(results, regime)).map(Block::Figure));
-    Some(QUESTION.told(sentence, blocks))
+    Some(QUESTION.told(&sentences.join(" "), studies, blocks))
 }
 
 /// The method of the sentence.

@@ -4,7 +4,7 @@
 use crate::case::contender::PAPERS;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
-use crate::render::answers::{Answer, Links, Question, link, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, cost};
@@ -12,7 +12,7 @@ use crate::render::report::{StudyResults, cost};
 const QUESTION: Question = Question { heading: "What does accuracy cost?", id: "cost" };
 
 /// Sentence, figure and the other programs.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
     let compared = results.iter().filter(|one| one.study.timing_repeats > 1).filter_map(|one| {
         let precision = WorkPrecision::of(one.records, one.study.references.first()?.name())?;
         Some((one, precision))
@@ -24,8 +24,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
         blocks.push(Block::Paragraph(equal_cells(&precision)));
         blocks.push(Block::Table(short(cost::peers_table(&precision), "on the page of the study")));
     }
-    let sentence = format!("{} Evidence: {}.", sentence(&precision), link(links, &one.study.name));
-    Some(QUESTION.told(sentence, blocks))
+    Some(QUESTION.told(&sentence(&precision), [one.study.name.as_str()], blocks))
 }
 
 /// The cheapest way to each tolerance.

@@ -4,7 +4,7 @@
 use crate::case::keys::{Key, Value};
 use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
 use crate::measure::record_checks::has_burst;
-use crate::render::answers::{Answer, Links, Question, links_to, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
@@ -17,12 +17,12 @@ const QUESTION: Question = Question { heading: "One set of material points, or t
 const KEY: [&str; 2] = ["sets", "points"];
 
 /// Error, robustness and cost of double-point MPM beside single-point MPM.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
-    Key::named(KEY[0], KEY[1]).and_then(|key| compare(results, key, links))
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
+    Key::named(KEY[0], KEY[1]).and_then(|key| compare(results, key))
 }
 
 /// The comparison by a key with the values one and two; `None` where no study has such pairs.
-fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Answer {
+fn compare(results: &[StudyResults<'_>], key: &Key) -> Answer {
     let mut all: Vec<Twins<'_>> = Vec::new();
     let mut studies: Vec<&str> = Vec::new();
     for one in results {
@@ -57,8 +57,11 @@ fn compare(results: &[StudyResults<'_>], key: &Key, links: Links<'_>) -> Answer 
     let table = Table::of("", columns(header), rows)
         .note("pairs of runs that differ in the point sets alone; error of the pressure at the points, at every output")
         .note(burst_note(&bursts));
-    let sentence = format!("{} Evidence: {}.", sentence(&told, bursts.len()), links_to(links, studies));
-    Some(QUESTION.told(sentence, vec![Block::Table(short(table, "in the studies"))]))
+    Some(QUESTION.told(
+        &sentence(&told, bursts.len()),
+        studies,
+        vec![Block::Table(short(table, "in the studies"))],
+    ))
 }
 
 /// All double-point runs with a pressure burst: a pressure beyond what the load can make.
@@ -150,10 +153,9 @@ mod tests {
         let study = Study::check(&source).expect("a sound study");
         let records = records_of(text);
         let results = [StudyResults::new(&study, &records, Tier::Full)];
-        let links = |study: &str| format!("{study}.html");
         // Any key of one and two will do.
         let key = Key::named("points_per_cell", "sweep").expect("a key");
-        let Some(section) = compare(&results, key, &links) else { panic!("both are there") };
+        let Some(section) = compare(&results, key) else { panic!("both are there") };
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
         let start =
             "2 pairs of runs: “Small strain, points out of place”, `GC-SRI-patch`: double-point MPM has ";
@@ -162,6 +164,6 @@ mod tests {
             "All runs of the pairs reached their last output; no double-point run had a pressure burst.";
         assert!(sentence.contains(end), "{sentence}");
         let dimensions = Key::named("dimensions", "column").expect("a key");
-        assert!(compare(&results, dimensions, &links).is_none());
+        assert!(compare(&results, dimensions).is_none());
     }
 }

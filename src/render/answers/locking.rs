@@ -2,7 +2,7 @@
 
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweepRow, SweptStiffness};
 use crate::measure::statistics::largest as largest_of;
-use crate::render::answers::{self, Answer, Links, Question, link};
+use crate::render::answers::{self, Answer, Question};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
@@ -19,7 +19,7 @@ const KEPT: f64 = 0.1;
 ///
 /// # Errors
 /// When a reference refuses a case.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, ExactError> {
+pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
     let mut widest: Option<(&StudyResults<'_>, StiffnessSweep)> = None;
     for one in results.iter().filter(|one| one.study.scene.shows_locking() && !one.study.is_race) {
         let sweep = StiffnessSweep::of(one.study, one.records, SweptStiffness::Skeleton)?;
@@ -33,9 +33,9 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
     let Some((one, sweep)) = widest else { return Ok(None) };
     let Some(time) = sweep.time_factors.last().copied() else { return Ok(None) };
     let rows: Vec<&SweepRow> = sweep.at(time).collect();
-    let sentence = format!("{} Evidence: {}.", sentence(&sweep, &rows, time), link(links, &one.study.name));
+    let sentence = sentence(&sweep, &rows, time);
     let table = answers::short(table(&sweep, &rows), "on the page of the study");
-    Ok(Some(QUESTION.told(sentence, vec![Block::Table(table)])))
+    Ok(Some(QUESTION.told(&sentence, [one.study.name.as_str()], vec![Block::Table(table)])))
 }
 
 /// Errors of displacement and pressure at a value of the sweep.

@@ -99,8 +99,10 @@ fn program_of(origin: &Provenance) -> String {
     )
 }
 
-/// From the name of a study to its page.
-type Links<'a> = &'a dyn Fn(&str) -> String;
+/// The page of a study, from the answer page.
+fn page_of(study: &str) -> String {
+    format!("studies/{}.html", slug(study))
+}
 
 /// A question of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,10 +117,17 @@ struct Question {
 pub(crate) type Answer = Option<Section>;
 
 impl Question {
-    fn told(self, sentence: impl Into<String>, mut shown: Vec<Block>) -> Section {
-        shown.insert(0, Block::Paragraph(sentence.into()));
-        let (heading, id) = (self.heading.to_owned(), self.id.to_owned());
-        Section { heading, id, mood: None, blocks: shown }
+    /// The answer: a sentence with links to the studies that show it, then what is shown.
+    fn told<'s>(
+        self,
+        sentence: &str,
+        studies: impl IntoIterator<Item = &'s str>,
+        mut shown: Vec<Block>,
+    ) -> Section {
+        let links = links_to(studies);
+        let evidence = if links.is_empty() { String::new() } else { format!(" Evidence: {links}.") };
+        shown.insert(0, Block::Paragraph(sentence.to_owned() + &evidence));
+        Section::new(self.heading, self.id, shown)
     }
 }
 
@@ -132,14 +141,10 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
 }
 
-/// A link to the page of a study, in running text.
-fn link(links: Links<'_>, study: &str) -> String {
-    format!("[`{study}`]({})", links(study))
-}
-
 /// Links to the pages of studies, each once, in running text.
-fn links_to<'a>(links: Links<'_>, studies: impl IntoIterator<Item = &'a str>) -> String {
-    distinct(studies).into_iter().map(|study| link(links, study)).collect::<Vec<_>>().join(", ")
+fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
+    let links = distinct(studies).into_iter().map(|study| format!("[`{study}`]({})", page_of(study)));
+    links.collect::<Vec<_>>().join(", ")
 }
 
 /// The answer page.
@@ -148,26 +153,23 @@ fn links_to<'a>(links: Links<'_>, studies: impl IntoIterator<Item = &'a str>) ->
 /// When a reference refuses a case.
 pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let results = answers.results;
-    let links = |study: &str| format!("studies/{}.html", slug(study));
     let (small, large) = (regime::small_strain(results), regime::large_strain(results));
     let all = [
-        race::answer(answers.race, &links),
-        locking::answer(results, &links)?,
-        converges::answer(results, small.as_ref(), large.as_ref(), &links),
-        paper::answer(results, &links)?,
-        time_step::answer(results, &links),
-        soil::answer(results, &links),
-        cost::answer(results, &links),
-        audit::answer(results, &links),
-        double_point::answer(results, &links),
+        race::answer(answers.race),
+        locking::answer(results)?,
+        converges::answer(results, small.as_ref(), large.as_ref()),
+        paper::answer(results)?,
+        time_step::answer(results),
+        soil::answer(results),
+        cost::answer(results),
+        audit::answer(results),
+        double_point::answer(results),
         what_changed(answers.changes, answers.against),
     ];
     let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
     let few = match results.len() {
-        1..=FEW_STUDIES => {
-            format!(": {}", links_to(&links, results.iter().map(|one| one.study.name.as_str())))
-        }
+        1..=FEW_STUDIES => format!(": {}", links_to(results.iter().map(|one| one.study.name.as_str()))),
         _ => String::new(),
     };
     let setting = match results {
@@ -222,7 +224,7 @@ fn what_changed(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
         let text = format!(
             "Nothing: every value that these studies share with {against} agrees within its tolerance."
         );
-        return Some(CHANGES.told(text, Vec::new()));
+        return Some(CHANGES.told(&text, [], Vec::new()));
     }
     let worse = changes.iter().filter(|one| one.is_regression()).count();
     let sentence = format!(
@@ -231,7 +233,7 @@ fn what_changed(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
     );
     let tables = comparison_tables(changes, [against, "this report"]);
     let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
-    Some(CHANGES.told(sentence, tables.into_iter().map(block).collect()))
+    Some(CHANGES.told(&sentence, [], tables.into_iter().map(block).collect()))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Links, Question, links_to};
+use crate::render::answers::{Answer, Question};
 use crate::render::chart::{Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
@@ -30,7 +30,7 @@ struct PaperRun<'a> {
 }
 
 /// Four figures with the theory line, and how far the runs are from it.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, ExactError> {
+pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
     let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (4, true)]
         .into_iter()
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
@@ -55,8 +55,7 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Result<Answer, 
         }
     }
     let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
-    let sentence = format!("{} Evidence: {}.", sentences.join(" "), links_to(links, studies));
-    Ok(Some(QUESTION.told(sentence, vec![Block::Figures(figures)])))
+    Ok(Some(QUESTION.told(&sentences.join(" "), studies, vec![Block::Figures(figures)])))
 }
 
 /// The sound run of the paper's method on the paper's mesh with most outputs.
@@ -150,8 +149,7 @@ mod tests {
             let study = Study::check(&source).expect("a sound study");
             let records = records_of(&text);
             let results = [StudyResults::new(&study, &records, Tier::Full)];
-            let links = |study: &str| format!("{study}.html");
-            answer(&results, &links).expect("an answer").is_some()
+            answer(&results).expect("an answer").is_some()
         };
         assert!(answered("terzaghi", ""));
         assert!(answered("xie-leo", "[column]\nload = 200e3"));

@@ -3,7 +3,7 @@
 use crate::case::contender::PAPERS;
 use crate::judge::race::grid::{Grid, GridRow, Overall, Score};
 use crate::judge::race::{Ended, RaceCell, RaceRow, grid_of};
-use crate::render::answers::{Answer, Links, Question};
+use crate::render::answers::{Answer, Question, page_of};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::labels::is_settled;
@@ -34,15 +34,14 @@ const GROUPS: [(&str, &str); 9] = [
 ];
 
 /// The matrix with its switch, and the sentences.
-pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
+pub(crate) fn answer(rows: &[RaceRow<'_>]) -> Answer {
     if rows.is_empty() {
         return None;
     }
     let grid = grid_of(rows);
     let ranked = grid.by_rank();
-    let view = |cell: &dyn Fn(usize, usize) -> Cell| table_of(rows, &ranked, links, cell);
-    let target = |row: usize| links(&rows[row].study.name);
-    let errors = view(&|row, contender| error_cell(&grid, row, &rows[row].contenders[contender], contender, target(row)))
+    let view = |show: &dyn Fn(&RaceCell, usize, usize) -> Shown| table_of(rows, &ranked, show);
+    let errors = view(&|cell, row, contender| error_shown(cell, grid.rows[row].ratio(contender)))
         .note(format!(
             "Largest error of pressure, effective stress and settlement (of a plane, displacement; of a footing, load), in %, on the finest mesh \
              that every contender ran; at rest the largest velocity over the conductivity; for the critical step the observed one over the formula's. \
@@ -51,11 +50,11 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
              situations that a contender can run in (that of the first is {:.1})",
             ranked.first().map_or(f64::NAN, |one| one.mean_rank)
         ));
-    let orders = view(&|row, contender| order_cell(&rows[row].contenders[contender], target(row))).note(
+    let orders = view(&|cell, _, _| order_shown(cell)).note(
         "Order of the pressure at the points on three meshes; ~ marks an order that is not settled (pre-asymptotic, limited \
          by a floor, or by cancelling errors)",
     );
-    let costs = view(&|row, contender| cost_cell(&rows[row], contender, target(row))).note(
+    let costs = view(&|cell, row, _| cost_shown(cell, &rows[row])).note(
         "Processor time to a largest error of 1 %, between meshes by powers; – where the finest mesh does not reach it. Of the \
          coarsest mesh where that is good enough already. The processor's time of one run: times of a millisecond vary by a fifth",
     );
@@ -66,42 +65,46 @@ pub(crate) fn answer(rows: &[RaceRow<'_>], links: Links<'_>) -> Answer {
     let first = sentences.remove(0);
     let files = "[Every cell with all its measures](tables/race.csv).";
     let blocks = vec![Block::Switch(views.to_vec()), Block::List(sentences)];
-    Some(QUESTION.told(format!("{first} {files}"), blocks))
+    Some(QUESTION.told(&format!("{first} {files}"), [], blocks))
 }
 
 fn table_of(
     rows: &[RaceRow<'_>],
     ranked: &[Overall],
-    links: Links<'_>,
-    cell: &dyn Fn(usize, usize) -> Cell,
+    show: &dyn Fn(&RaceCell, usize, usize) -> Shown,
 ) -> Table {
     let mut heads = columns("situation");
     heads.extend(ranked.iter().map(|one| TableColumn::number(rows[0].contenders[one.contender].name)));
     let row = |place: usize| {
-        let (words, target) = (rows[place].title().to_owned(), links(&rows[place].study.name));
-        let cells = ranked.iter().map(|one| cell(place, one.contender));
-        std::iter::once(Cell::Link { words, target }).chain(cells).collect()
+        let (words, target) = (rows[place].title().to_owned(), page_of(&rows[place].study.name));
+        let mut row = vec![Cell::Link { words, target: target.clone() }];
+        row.extend(ranked.iter().map(|one| {
+            let cell = &rows[place].contenders[one.contender];
+            shaded(cell, target.clone(), || show(cell, place, one.contender))
+        }));
+        row
     };
-    Table::of("", heads, (0..rows.len()).map(row).collect::<Vec<Vec<Cell>>>())
+    Table::of("", heads, (0..rows.len()).map(row))
 }
 
-/// What a cell says that has no number.
-fn without_number(cell: &RaceCell, target: String) -> Option<Cell> {
-    let (shade, words) = match &cell.ended {
-        Ended::Well => return None,
-        Ended::Failed(..) => (Shade::Failed, "✗"),
-        Ended::NotApplicable(_) => (Shade::Empty, "n/a"),
+/// Background, words, the number to sort by, and what is shown on request.
+type Shown = (Shade, String, Option<f64>, String);
+
+/// A cell of the matrix; one without a number says why it has none.
+fn shaded(cell: &RaceCell, target: String, show: impl FnOnce() -> Shown) -> Cell {
+    let without = |shade, words: &str| {
+        let (name, why) = cell.ending();
+        (shade, words.to_owned(), None, format!("{}: {name}, {why}", cell.name))
     };
-    let (name, why) = cell.ending();
-    let title = format!("{}: {name}, {why}", cell.name);
-    Some(Cell::Shaded { shade, words: words.to_owned(), value: None, title, target })
+    let (shade, words, value, title) = match &cell.ended {
+        Ended::Well => show(),
+        Ended::Failed(..) => without(Shade::Failed, "✗"),
+        Ended::NotApplicable(_) => without(Shade::Empty, "n/a"),
+    };
+    Cell::Shaded { shade, words, value, title, target }
 }
 
-fn error_cell(grid: &Grid, row: usize, cell: &RaceCell, contender: usize, target: String) -> Cell {
-    let ratio = grid.rows[row].ratio(contender);
-    if let Some(cell) = without_number(cell, target.clone()) {
-        return cell;
-    }
+fn error_shown(cell: &RaceCell, ratio: Option<f64>) -> Shown {
     let is_error = cell.errors.iter().any(Option::is_some);
     let words = cell.score.map_or("✗".to_owned(), |score| match cell.step_ratio {
         _ if is_error => in_percent(score),
@@ -112,7 +115,7 @@ fn error_cell(grid: &Grid, row: usize, cell: &RaceCell, contender: usize, target
         Some(ratio) => (Shade::of_ratio(ratio), error_title(cell, ratio)),
         None => (Shade::Failed, format!("{}: no usable result", cell.name)),
     };
-    Cell::Shaded { shade, words, value: cell.score, title, target }
+    (shade, words, cell.score, title)
 }
 
 /// The contender, its ratio to the best, and how much half the step changes.
@@ -122,11 +125,8 @@ fn error_title(cell: &RaceCell, ratio: f64) -> String {
     format!("{}: {ratio:.1} times the best of the row{}", cell.name, scatter.unwrap_or_default())
 }
 
-fn order_cell(cell: &RaceCell, target: String) -> Cell {
-    if let Some(cell) = without_number(cell, target.clone()) {
-        return cell;
-    }
-    let (value, title) = (cell.order, cell.class.map_or("not measured", |class| class.name()).to_owned());
+fn order_shown(cell: &RaceCell) -> Shown {
+    let (value, title) = (cell.order, cell.class.map_or("not measured", |class| class.name()));
     let settled = cell.class.is_some_and(is_settled);
     let words =
         value.map_or("–".to_owned(), |order| format!("{order:.1}{}", if settled { "" } else { "~" }));
@@ -137,14 +137,10 @@ fn order_cell(cell: &RaceCell, target: String) -> Cell {
         Some(_) => Shade::Poor,
         None => Shade::Empty,
     };
-    Cell::Shaded { shade, words, value, title: format!("{}: {title}", cell.name), target }
+    (shade, words, value, format!("{}: {title}", cell.name))
 }
 
-fn cost_cell(row: &RaceRow<'_>, contender: usize, target: String) -> Cell {
-    let cell = &row.contenders[contender];
-    if let Some(cell) = without_number(cell, target.clone()) {
-        return cell;
-    }
+fn cost_shown(cell: &RaceCell, row: &RaceRow<'_>) -> Shown {
     let least = row.contenders.iter().filter_map(|one| one.cost[0]).fold(f64::INFINITY, f64::min);
     let value = cell.cost[0];
     let words = value.map_or("–".to_owned(), number::seconds);
@@ -152,7 +148,7 @@ fn cost_cell(row: &RaceRow<'_>, contender: usize, target: String) -> Cell {
     let title = format!("{}: 0.1 % {tenth}", cell.name);
     // A cost within a quarter of the least is as good.
     let shade = value.map_or(Shade::Empty, |seconds| Shade::of_ratio(seconds / least / 1.25));
-    Cell::Shaded { shade, words, value, title, target }
+    (shade, words, value, title)
 }
 
 /// A share in percent, two digits.

@@ -6,7 +6,7 @@ use crate::case::keys::{Key, Kind, Value};
 use crate::case::quantity::Quantity;
 use crate::judge::paths::{first_error, grouped};
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Links, Question, link, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::page::Block;
 use crate::render::report::{StudyResults, setting};
 use crate::render::table::{Cell, Table, columns};
@@ -33,7 +33,7 @@ const COMPARED: [Compared; 3] = [
 ];
 
 /// The study that varies most keys of the soil; of a layer the section on locking says more.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
     let fits = |one: &&StudyResults<'_>| !one.study.is_race && !one.study.scene.shows_locking();
     let studies = results.iter().filter(fits).map(|one| (one, varied(one.records)));
     let (one, keys) = studies.reduce(|most, next| if next.1.len() > most.1.len() { next } else { most })?;
@@ -42,15 +42,9 @@ pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
     if told.is_empty() {
         return None;
     }
-    let sentence = format!(
-        "From the smallest value to the largest, all else equal: {}. Evidence: {}.",
-        told.join("; "),
-        link(links, &one.study.name)
-    );
-    Some(
-        QUESTION
-            .told(sentence, vec![Block::Table(short(table(&keys, reference), "on the page of the study"))]),
-    )
+    let sentence = format!("From the smallest value to the largest, all else equal: {}.", told.join("; "));
+    let table = short(table(&keys, reference), "on the page of the study");
+    Some(QUESTION.told(&sentence, [one.study.name.as_str()], vec![Block::Table(table)]))
 }
 
 /// The numbers of soil and body that differ between runs which are alike in everything else.

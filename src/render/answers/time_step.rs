@@ -3,7 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Links, Question, link, short};
+use crate::render::answers::{Answer, Question, short};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
@@ -64,13 +64,17 @@ impl<'a> Steps<'a> {
 }
 
 /// The study that says the order in the step of most methods.
-pub fn answer(results: &[StudyResults<'_>], links: Links<'_>) -> Answer {
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
     let studies = results.iter().filter(|one| !one.study.is_race).filter_map(Steps::of);
     let steps = studies.reduce(|most, next| if next.worth() > most.worth() { next } else { most })?;
-    let sentence = format!("{} Evidence: {}.", sentence(&steps.rows, steps.time), link(links, steps.study));
+    let sentence = sentence(&steps.rows, steps.time);
     let table = table(&steps.rows, steps.reference, steps.time)
         .notes((!steps.shared.is_empty()).then(|| format!("all with {}", steps.shared)));
-    Some(QUESTION.told(sentence, vec![Block::Table(short(table, "on the page of the study"))]))
+    Some(QUESTION.told(
+        &sentence,
+        [steps.study],
+        vec![Block::Table(short(table, "on the page of the study"))],
+    ))
 }
 
 fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>> {
