@@ -15,7 +15,7 @@ pub enum TableFormat {
     Markdown,
     /// For programs, numbers with all digits
     Csv,
-    /// For programs, with everything there is
+    /// For programs, everything
     Json,
 }
 

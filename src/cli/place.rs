@@ -20,8 +20,8 @@ const MARK: &str = "oedometer.toml";
 /// Which studies a command takes.
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
-    /// Study files, folders of them, or names of shipped studies; the studies of this project (`studies/*.toml` or
-    /// `*.toml`, here or above) where none is named
+    /// Study files, folders of them, or names of shipped studies [default: the studies of this project,
+    /// `studies/*.toml` or `*.toml`, here or above]
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
     /// Take every shipped study

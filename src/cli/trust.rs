@@ -28,7 +28,7 @@ const LONGEST_COMMAND: usize = 300;
 /// Whether studies may start programs.
 #[derive(Clone, Debug, clap::Args)]
 pub struct TrustArguments {
-    /// Start the programs that the studies name in `[[solver]]`: say so of studies that you wrote or have read
+    /// Start the programs that the studies name in `[[solver]]`; only for studies that you wrote or have read
     #[arg(long, env = "OEDOMETER_ALLOW_SOLVERS", hide_env_values = true, value_parser = FalseyValueParser::new())]
     allow_solvers: bool,
 }

@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Folder of the golden values [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Cases at the same time; all cores where not given
+    /// Cases at the same time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     #[command(flatten)]

@@ -18,23 +18,23 @@ use std::process::{Command, Stdio};
 /// Arguments of `bisect`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study file, or its name: it is looked for in each commit
+    /// Study file or name, looked up in each commit
     #[arg(value_name = "STUDY")]
     study: String,
-    /// A revision with the results as they should be
+    /// Revision with the right results
     #[arg(long, value_name = "A")]
     good: String,
-    /// A revision with the other results
+    /// Revision with the moved results
     #[arg(long, value_name = "B")]
     bad: String,
-    /// Command that runs the study in the folder of each commit and leaves its records in `{out}`; `oedometer run` of
-    /// this program where none is given
+    /// Command that runs the study in the folder of each commit and leaves its records in `{out}` [default:
+    /// `oedometer run` of this program]
     #[arg(long, value_name = "COMMAND")]
     run: Option<String>,
-    /// Command that builds what is run; where it fails the commit is skipped
+    /// Command that builds the program; if it fails, the commit is skipped
     #[arg(long, value_name = "COMMAND")]
     build: Option<String>,
-    /// Let the study start the solvers that it attaches, in every commit
+    /// Start the programs that the study names in `[[solver]]`, in every commit
     #[arg(long)]
     allow_solvers: bool,
 }

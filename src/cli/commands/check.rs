@@ -31,23 +31,22 @@ pub struct Arguments {
     /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Folder of results: what this very build has solved already is taken from there and not solved again
+    /// Folder of results; cases that this build has solved already are taken from there
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
-    /// Cases at the same time; all cores where not given
+    /// Cases at the same time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// Solve every case anew, whatever is in the folder of results
+    /// Solve every case, and use no earlier results
     #[arg(long)]
     fresh: bool,
     /// Write a `JUnit` report
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Append a summary in Markdown; $`GITHUB_STEP_SUMMARY` where that is set
+    /// Append a summary in Markdown [default: $`GITHUB_STEP_SUMMARY`, if set]
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
-    /// Annotate the lines of the studies on standard error, as GitHub reads it; done by itself in its
-    /// workflows
+    /// Annotate the lines of the studies on standard error for GitHub; default in its workflows
     #[arg(long)]
     annotate: bool,
     #[command(flatten)]

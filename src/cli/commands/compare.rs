@@ -22,10 +22,10 @@ pub struct Arguments {
     /// State after
     #[arg(value_name = "B")]
     after: String,
-    /// Names of the studies; all that both states have where none is named
+    /// Names of studies [default: all that both states have]
     #[arg(value_name = "STUDY")]
     studies: Vec<String>,
-    /// A and B are commands: in turn each solves the cases of one study file in place of the command of its `[[solver]]`
+    /// A and B are commands that replace the command of the study's `[[solver]]`
     #[arg(long)]
     commands: bool,
     /// Rounds of both commands

@@ -13,7 +13,7 @@ use oedometer_mpm::scene::SceneKind;
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Shell to write for
+    /// Shell
     shell: Shell,
 }
 

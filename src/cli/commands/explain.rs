@@ -29,8 +29,7 @@ pub struct Arguments {
     case: String,
     #[command(flatten)]
     studies: StudyArguments,
-    /// Folder of results: a record that this program made is taken from there, or else the case is solved; no other
-    /// program is ever started
+    /// Folder of results; the case is solved if it has no record of this program there. No other program is started
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Folder of the golden values

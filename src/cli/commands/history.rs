@@ -15,7 +15,7 @@ const MOST_NOTES: usize = 3;
 /// Arguments of `history`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Names of the studies; all with golden values where none is named, one row each
+    /// Names of studies [default: all with golden values, one row each]
     #[arg(value_name = "STUDY")]
     studies: Vec<String>,
     /// Folder of the golden values in the repository [default: `golden` here or above]

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Folder for the merged results
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
-    /// How much of each study must be there
+    /// Tier of the cases that must be there
     #[arg(long, value_enum, default_value_t = Tier::Full)]
     tier: Tier,
 }

@@ -26,7 +26,7 @@ const COLUMNS: [&str; 5] = ["study", "case", "estimated_point_updates", "label",
 pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,
-    /// How much of each study
+    /// Tier of the cases
     #[arg(long, value_enum, default_value_t = Tier::Full)]
     tier: Tier,
     /// Only cases without a finished record in this folder of results

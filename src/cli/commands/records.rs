@@ -48,7 +48,7 @@ pub struct Arguments {
     /// Folder of a study's results, like out/terzaghi-mesh
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Cases to print as JSON: hashes, or the first digits of them; a list of all where none is named
+    /// Cases to print as JSON, by the first digits of their hashes [default: a list of all]
     #[arg(value_name = "HASH")]
     cases: Vec<String>,
     /// Print the fields over the height of every case as CSV

@@ -34,28 +34,28 @@ pub struct Arguments {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
-    /// Cases at the same time; all cores where not given
+    /// Cases at the same time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
-    /// How much of each study
+    /// Tier of the cases
     #[arg(long, value_enum, default_value_t = Tier::Full)]
     tier: Tier,
     /// Only this share of the cases, like 2/3
     #[arg(long, value_name = "i/n")]
     shard: Option<String>,
-    /// Part the cases by what they cost, the longest first, and not by their hashes
+    /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "shard")]
     balance: bool,
     /// Only the case with this hash, or the first digits of it
     #[arg(long, value_name = "HASH", conflicts_with_all = ["tier", "shard"])]
     case: Option<String>,
-    /// Take up finished records of this version and these sources, whatever build of them made them
+    /// Reuse finished records of the same version and sources, from any build
     #[arg(long)]
     resume: bool,
-    /// Write the tables compressed, as STUDY.csv.gz: pandas reads them by the same call
+    /// Write the tables as STUDY.csv.gz, which pandas reads too
     #[arg(long)]
     compress: bool,
-    /// Who runs the cases: this machine where not given
+    /// Run the cases by a scheduler instead of on this machine
     #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
     engine: Option<Engine>,
     #[command(flatten)]
@@ -67,7 +67,7 @@ pub struct Arguments {
 /// Who runs cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Engine {
-    /// An array of shares and a merge behind it, followed to their end
+    /// Submit an array of shares and a merge, and follow both
     Slurm,
 }
 

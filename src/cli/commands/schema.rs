@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 /// Arguments of `schema`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// What the schema is of
+    /// Document
     #[arg(value_enum, default_value_t = Document::Study)]
     document: Document,
 }

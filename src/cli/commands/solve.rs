@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Method by its name
     #[arg(long, default_value = "GC-SRI-patch")]
     method: String,
-    /// Time integrator [default: explicit; implicit where that would take minutes and nothing asks for it]
+    /// Time integrator [default: explicit; implicit if explicit would take minutes and no wave requires it]
     #[arg(long)]
     integrator: Option<String>,
     /// Cells over the height
@@ -53,7 +53,7 @@ pub struct Arguments {
     time_step: Option<String>,
     #[command(flatten)]
     outputs: Outputs,
-    /// Visit every point in every step, even if one banded matrix gives the same
+    /// Use the point-wise step even where the assembled step gives the same
     #[arg(long)]
     point_wise: bool,
     /// Output format

@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Numbers of points per cell, comma-separated
     #[arg(long, default_value = "2", value_name = "LIST")]
     points_per_cell: String,
-    /// End of the runs beside the limit, as a time factor; a million steps at most
+    /// Time factor at which the runs near the limit end; at most a million steps
     #[arg(long, default_value_t = 0.05)]
     time_factor: f64,
     #[command(flatten)]

@@ -32,7 +32,7 @@ const JOB: &str = "job";
 /// How to run on a cluster.
 #[derive(Debug, clap::Args)]
 pub struct ClusterArguments {
-    /// Shares, each a task of the array
+    /// Number of shares, each a task of the array
     #[arg(long, value_name = "N", default_value_t = 16, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     tasks: u64,
     /// Partition of the cluster
@@ -47,10 +47,10 @@ pub struct ClusterArguments {
     /// A further option of sbatch, like --sbatch=--account=soil
     #[arg(long, value_name = "OPTION", requires = "engine", allow_hyphen_values = true)]
     sbatch: Vec<String>,
-    /// How often what is missing is submitted, the first time included
+    /// Submissions of a share with missing results, including the first
     #[arg(long, value_name = "N", default_value_t = 3, requires = "engine", value_parser = clap::value_parser!(u64).range(1..=100))]
     attempts: u64,
-    /// Submit and end, without following
+    /// Submit and do not follow
     #[arg(long, requires = "engine")]
     detach: bool,
     /// Print the scripts and the commands that would submit them, and do nothing

@@ -23,11 +23,10 @@ const STARTERS: [(&str, &str); 5] = [
 /// Arguments of `new`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of the study, or its file; `solver` for an adapter of another program's solver
+    /// Name or file of the study, or `solver` for an adapter of another program
     #[arg(value_name = "NAME")]
     name: PathBuf,
-    /// After `solver`: the name of the solver and of the folder for its study, adapter and mapping
-    /// [default: my-solver]
+    /// Name of the solver, and of the folder for its study, adapter and mapping [default: my-solver]
     #[arg(value_name = "SOLVER")]
     solver: Option<PathBuf>,
     /// Scene of the study: terzaghi by default, xie-leo at large strain, cosine-layer in the plane,

@@ -44,16 +44,16 @@ pub struct Arguments {
     /// Folder of the golden values that the records are compared with [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Say what changed against this state instead: a folder of records, or a git revision with golden values
+    /// Compare with this state instead of the golden values: a folder of records, or a git revision
     #[arg(long, value_name = "A")]
     against: Option<String>,
-    /// Run nothing: render the records that are there, whichever program made them
+    /// Run nothing; render existing records of any program
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
-    /// How much of each study is run; what of the rest has its records is rendered too
+    /// Tier of the cases to run; other cases are rendered if they have records
     #[arg(long, value_enum, default_value_t = Tier::Full, conflicts_with = "from_records")]
     tier: Tier,
-    /// Cases at the same time; all cores where not given
+    /// Cases at the same time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
     #[command(flatten)]

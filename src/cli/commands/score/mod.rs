@@ -31,8 +31,8 @@ pub struct Arguments {
     /// one argument per mesh; other files are grouped by their meshes. Patterns with `*` and `?` are expanded
     #[arg(required_unless_present = "show_mapping", value_name = "FILE")]
     results: Vec<PathBuf>,
-    /// Scene that the result is of, like `terzaghi`
-    #[arg(long, required_unless_present = "show_mapping", default_value = "")]
+    /// Scene of the result, like `terzaghi`
+    #[arg(long, required_unless_present = "show_mapping", default_value = "", hide_default_value = true)]
     scene: String,
     /// Program that wrote the files, for the meaning of its arrays; --mapping overrides it key by key
     #[arg(long, value_enum)]
@@ -43,14 +43,12 @@ pub struct Arguments {
     /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
-    /// Print the default mapping as a start for one of your own; with --scene that of the scene, with
-    /// --preset that of the program
+    /// Print the default mapping, that of a scene with --scene, or that of a program with --preset
     #[arg(long)]
     show_mapping: bool,
     #[command(flatten)]
     outputs: Outputs,
-    /// Largest relative distance of a time from the one that it stands for: the requested one, or that
-    /// of another mesh
+    /// Largest relative difference of a time from the requested one, or from that of another mesh
     #[arg(long, value_name = "SHARE", default_value_t = 1e-3, allow_hyphen_values = true)]
     time_tolerance: f64,
     /// Cells over the height of each result, comma-separated: adds orders and classes
