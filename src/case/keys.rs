@@ -191,7 +191,7 @@ const TURN: Kind = Kind::Number(Range::Within(
 
 // One row per key: name, tables, values, unit, field of the case; meaning.
 keys! {
-    method in &["sweep"], Kind::Method, "", [method]; "Method by its name, or by its choices"
+    method in &["sweep"], Kind::Method, "", [method]; "Method, by name or by its choices"
     integrator in &["sweep"], Kind::Word(&IntegratorKind::NAMES), "", [integrator], then |case| {
         case.formulation = case.integrator.default_formulation();
         case.time_step = case.integrator.default_rule();
@@ -201,17 +201,17 @@ keys! {
         "Material points per cell and direction"
     time_step in &["sweep"], Kind::TimeStep, "", [time_step]; "Rule of the time step"
     drag in &["sweep", "integrator"], Kind::Word(&Drag::NAMES), "", [settings.drag];
-        "Time level of the drag between the phases"
+        "Time level of the velocities in the drag"
     flip in &["sweep", "integrator"], SHARE_OF_FLIP, "", [settings.flip];
-        "Share of FLIP in the velocities of the points, 0 to 1"
+        "Share of FLIP in the velocities of the points; the rest is PIC"
     mapping_back in &["sweep", "integrator"], Kind::Flag, "", [settings.mapping_back];
-        "Whether stresses see velocities mapped back from the points"
+        "Update stresses with velocities mapped back from the points"
     affine in &["sweep", "integrator"], Kind::Flag, "", [settings.affine];
-        "Whether moving points bring the gradients of their velocities to the nodes (APIC)"
+        "Moving points carry gradients of their velocities to the nodes (APIC)"
     stress_slopes in &["sweep", "integrator"], Kind::Flag, "", [settings.stress_slopes];
-        "Whether stresses slope over the domains of moving points"
+        "Stresses vary linearly over the domains of moving points"
     formulation in &["sweep", "integrator"], Kind::Word(&Formulation::NAMES), "", [formulation];
-        "Accelerations that the balances keep"
+        "Accelerations in the balances"
     scheme in &["sweep", "integrator"], Kind::Word(&Scheme::NAMES), "", [settings.scheme];
         "Time levels of velocities and stresses in the explicit step"
     law in &["sweep", "material"], Kind::Word(&Law::NAMES), "", [material.law]; "Stress–strain law of the skeleton"
@@ -227,60 +227,60 @@ keys! {
         "Bulk modulus of the water"
     hydraulic_conductivity in &["sweep", "material"], POSITIVE, "m/s", [material.hydraulic_conductivity];
         "Initial hydraulic conductivity"
-    gravity in &["sweep", "material"], POSITIVE, "m/s²", [material.gravity]; "Gravity in the drag, and in the weight where the soil has one"
+    gravity in &["sweep", "material"], POSITIVE, "m/s²", [material.gravity]; "Gravity, in the drag and in `column.self_weight`"
     continuity in &["sweep", "material"], Kind::Word(&Continuity::NAMES), "", [material.continuity];
         "Form of the water's continuity"
     conductivity_mean in &["sweep", "material"], Kind::Word(&ConductivityMean::NAMES), "", [material.conductivity_mean];
         "Mean of the hydraulic conductivity at a node"
     offset in &["sweep", "points"], SHIFT, "", [column.points.offset];
-        "Shift of all points upward, in spacings of the points"
+        "Shift of all points upward, in point spacings"
     jitter in &["sweep", "points"], SHIFT, "", [column.points.jitter], then |case| {
         case.column.points.jitter = case.column.points.jitter.abs();
-    }; "Largest shift of a row of points up or down, in spacings of the points"
-    filling in &["sweep", "points"], FILLING, "", [column.points.filling]; "Share of the top cell that is filled"
+    }; "Largest shift of a row of points up or down, in point spacings"
+    filling in &["sweep", "points"], FILLING, "", [column.points.filling]; "Filled share of the top cell"
     alternating in &["sweep", "points"], Kind::Flag, "", [column.points.alternating];
-        "Whether every second cell of a column has one point more"
+        "Every second cell of a column has one more point"
     sets in &["sweep", "points"], Kind::Count(2), "", [column.points.sets], then |case| {
         // One set has no points of the water's own.
         case.column.points.water_per_cell *= usize::from(case.column.points.sets == 2);
     };
-        "Point sets: 1 carries skeleton and water, 2 are one of each (double-point MPM)"
+        "Point sets: 1 for skeleton and water together, 2 for one of each (double-point MPM)"
     water_per_cell in &["sweep", "points"], Kind::Count(MOST_POINTS), "", [column.points.water_per_cell];
-        "Points of the water per cell and direction in double-point MPM, as many as the skeleton's where nothing is said"
+        "Water points per cell and direction in double-point MPM; by default as many as of the skeleton"
     length in &["sweep", "layer"], POSITIVE, "m", [of Layer length]; "Length"
     height in &["sweep", "column", "layer"], POSITIVE, "m", [column.height]; "Initial height H"
-    width in &["sweep", "column"], POSITIVE, "m", [of Column width]; "Width, where there are two dimensions"
+    width in &["sweep", "column"], POSITIVE, "m", [of Column width]; "Width; no effect in one dimension"
     plate_width in &["sweep", "layer"], POSITIVE, "m", [column.footing.width];
-        "Width B of a footing, half of which lies on the layer"
+        "Width B of a footing, half of which is solved"
     plate in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [column.footing.contact];
-        "Whether the soil sticks to a footing"
+        "Contact of soil and footing"
     undrained in &["sweep", "layer"], Kind::Word(&Undrained::NAMES), "", [column.footing.undrained];
-        "How the soil under a footing is kept undrained"
-    base in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [of Layer base]; "How the layer rests on its base"
+        "Model of the undrained soil under a footing"
+    base in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [of Layer base]; "Contact of layer and base"
     load in &["sweep", "column", "layer"], POSITIVE, "Pa", [column.load]; "Load q on the surface"
-    dimensions in &["column"], Kind::Count(2), "", [column.dimensions]; "Directions that are solved"
+    dimensions in &["column"], Kind::Count(2), "", [column.dimensions]; "Dimensions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", [column.loading_time];
-        "Time over which the load grows, 0 where it acts at once"
+        "Time over which the load grows; 0: sudden load"
     initial_stress in &["sweep", "column"], Kind::Number(Range::NotNegative), "Pa", [column.initial_stress];
-        "Vertical effective stress of the start, compression positive, that a preconsolidated soil has already"
+        "Initial vertical effective stress of a preconsolidated soil, compression positive"
     reload_modulus in &["sweep", "material"], POSITIVE, "Pa", [material.reload_modulus];
-        "Oedometric modulus of unloading and reloading of a preconsolidated soil"
+        "Oedometric modulus of a preconsolidated soil in unloading and reloading"
     undrained_strength in &["sweep", "material"], POSITIVE, "Pa", [material.undrained_strength];
-        "Undrained shear strength of a soil that yields by von Mises' condition"
+        "Undrained shear strength of the law `von-mises`"
     preconsolidation in &["sweep", "material"], POSITIVE, "Pa", [material.preconsolidation];
-        "Largest vertical effective stress that a preconsolidated soil has had, compression positive"
+        "Largest vertical effective stress in the past of a preconsolidated soil, compression positive"
     amplitude_x in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_x];
-        "Amplitude A of a prescribed stretch along x"
+        "Amplitude A of the stretch along x"
     amplitude_y in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_y];
-        "Amplitude B of a prescribed stretch along y"
+        "Amplitude B of the stretch along y"
     amplitude in &["sweep", "manufactured"], TURN, "rad", [of Square motion.amplitude];
-        "Amplitude of a prescribed vortex: its largest angle"
+        "Amplitude of the vortex: its largest angle"
     frequency in &["sweep", "manufactured"], POSITIVE, "rad/s", [of Square motion.frequency];
-        "Frequency ω of a prescribed motion, which is largest at ωt = π/2 and back at π"
+        "Frequency ω of the motion: largest at ωt = π/2, back at π"
     pressure in &["sweep", "manufactured"], POSITIVE, "Pa", [of Square pressure];
-        "Amplitude P of a prescribed pressure, by which errors of pressure and stress are measured too"
+        "Amplitude P of the pressure; also the scale of absolute errors of pressure and stress"
     self_weight in &["column"], Kind::Flag, "", [column.self_weight];
-        "Whether skeleton and water have a weight; pressures are told beyond the hydrostatic one"
+        "Skeleton and water have weight; pressures are in excess of the hydrostatic one"
 }
 
 impl Key {

@@ -40,9 +40,9 @@ impl StudySource {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
-    /// What the study is about, in one line.
+    /// Title, one line.
     pub title: String,
-    /// The question that it answers.
+    /// Question that the study answers.
     #[serde(default)]
     pub summary: String,
     /// Physical problem.
@@ -61,9 +61,9 @@ pub struct StudyFile {
     #[serde(default)]
     #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "points", false))]
     pub points: InputTable,
-    /// What is done with the cases.
+    /// What to do with the cases.
     pub task: Typed<Task>,
-    /// Longest wall time of a case, s.
+    /// Longest wall time of a case, s; beyond it the case is `timed-out`.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub case_seconds: Typed<f64>,
     /// What the soil is made of.
@@ -149,9 +149,9 @@ pub struct InputTable {
 pub struct ColumnTable {
     #[serde(skip)]
     pub inputs: Inputs,
-    /// Vertical strain at the end, in place of the load that causes it: 0.3 is a column that gets 30 % shorter.
+    /// Final vertical strain, instead of `load`; 0.3 shortens the column by 30 %.
     pub strain: Typed<f64>,
-    /// Layers of soil from the base up: their thicknesses and what differs from `[material]`.
+    /// Layers of soil from the base up: `thickness`, and keys that differ from `[material]`.
     #[serde(default)]
     #[schemars(transform = add_units)]
     pub soils: Vec<Placed<SoilLayer>>,
@@ -163,7 +163,7 @@ pub struct ColumnTable {
 pub struct OutputTable {
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: Typed<Vec<Placed<f64>>>,
-    /// Exact solutions to compare the result with.
+    /// Exact solutions to compare with.
     #[schemars(schema_with = "references")]
     #[serde(default)]
     pub references: Typed<Vec<Placed<String>>>,
@@ -173,7 +173,7 @@ pub struct OutputTable {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimingTable {
-    /// Runs of each case alone for its wall time.
+    /// Number of runs of each case, alone, for its wall time.
     pub repeats: Typed<i64>,
 }
 
@@ -186,7 +186,7 @@ pub struct SweepTable {
     pub inputs: Inputs,
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: Typed<Vec<Placed<f64>>>,
-    /// Axes that step together instead of being multiplied out.
+    /// Lists that are tied instead of multiplied out.
     #[serde(default)]
     #[schemars(schema_with = "axes")]
     pub path: Typed<Vec<Placed<String>>>,
@@ -202,39 +202,39 @@ pub struct SweepTable {
 pub struct ExpectTable {
     #[serde(skip)]
     pub inputs: Inputs,
-    /// What is measured.
+    /// Measured quantity.
     #[serde(default)]
     pub quantity: Quantity,
-    /// How the error becomes one number.
+    /// Norm of the error.
     pub norm: Typed<Norm>,
-    /// Where it is measured.
+    /// Places where it is measured.
     pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
-    /// Exact solution to compare the result with.
+    /// Exact solution.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,
-    /// What is refined along the series.
+    /// Input that is refined along the series.
     #[serde(default)]
     pub axis: Axis,
-    /// Two-sided band about the order on the finest three levels.
+    /// Bounds on the order on the finest three levels.
     pub order: Typed<OrderTable>,
     /// Bounds on the error at a named level.
     pub at: Typed<LevelTable>,
-    /// Bound on the spread of the errors from a named level on: the largest over the smallest, minus one.
+    /// Bound on the largest over the smallest error from a named level on, minus one.
     pub spread: Typed<LevelTable>,
     /// Class of the series.
     pub class: Option<Class>,
     /// Bounds on the floor under the errors.
     pub floor: Typed<RangeTable>,
-    /// Bound on the wiggle of the profile.
+    /// Bound on the oscillation of the profile.
     pub oscillation: Typed<BelowTable>,
-    /// Bound on the numerical uncertainty of a value without a reference, over that value.
+    /// Bound on the relative numerical uncertainty of a value without a reference.
     pub uncertainty: Typed<BelowTable>,
-    /// Depth of the one place of a field without a reference, from 0 (surface) to 1 (base).
+    /// Depth of a field value without a reference, from 0 (surface) to 1 (base).
     pub probe: Typed<f64>,
-    /// Marks a known failure, which must then fail.
+    /// Known failure: the expectation must fail.
     pub xfail: Typed<XfailTable>,
     /// Smallest tier that includes it.
     #[serde(default)]
@@ -248,41 +248,40 @@ pub struct ExpectTable {
 pub struct ExpectCaseTable {
     #[serde(skip)]
     pub inputs: Inputs,
-    /// How the case must end: `ok`, or the name of a failure.
+    /// Required end of the case: `ok`, or the name of a failure.
     pub status: Typed<String>,
-    /// Largest relative difference of the observed from the predicted critical step.
+    /// Largest relative difference of observed and predicted critical step.
     pub critical_step_within: Typed<f64>,
-    /// Largest relative drift of the mass of solids at any output.
+    /// Largest relative drift of the solid mass.
     pub solid_drift_below: Typed<f64>,
-    /// Largest imbalance of the water at any output, over what the load presses out.
+    /// Largest imbalance of the water, over the water that the load presses out.
     pub water_drift_below: Typed<f64>,
-    /// Bounds on the largest volume, at any output, of the water in the soil over its pores, minus one: of two point
-    /// sets.
+    /// Bounds on the largest volume of the water over that of the pores, minus one, with two point sets.
     pub pore_water: Typed<RangeTable>,
-    /// Largest difference, at any output, of the share of the water that left from the settlement over `n_0 H`.
+    /// Largest difference of the share of the water that left and the settlement over `n_0 H`.
     pub water_left_within: Typed<f64>,
-    /// Bounds on the largest pressure of any water point of two point sets, between outputs too, over the load.
+    /// Bounds on the largest pressure of any water point over the load, between outputs too, with two point sets.
     pub largest_pressure: Typed<RangeTable>,
-    /// Largest difference of any error from that of the same case with one point set.
+    /// Largest difference of any error from that with one point set.
     pub one_set_within: Typed<f64>,
-    /// Bounds on the largest velocity at any output of a column at rest, over the hydraulic conductivity.
+    /// Bounds on the largest velocity of a column at rest, over the hydraulic conductivity.
     pub spurious_velocity: Typed<RangeTable>,
-    /// Bounds on the time factor at which the pressure at the impermeable end is highest.
+    /// Bounds on the time factor of the highest pressure at the impermeable end.
     pub peak_time_factor: Typed<RangeTable>,
-    /// Bounds on that pressure over the load.
+    /// Bounds on the highest pressure at the impermeable end, over the load.
     pub peak_pressure: Typed<RangeTable>,
     /// Bounds on one error.
     pub error: Typed<RangeTable>,
-    /// What is measured.
+    /// Measured quantity.
     #[serde(default)]
     pub quantity: Quantity,
-    /// How the error becomes one number.
+    /// Norm of the error.
     pub norm: Typed<Norm>,
-    /// Where it is measured.
+    /// Places where it is measured.
     pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
-    /// Exact solution to compare the result with.
+    /// Exact solution.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
     pub reference: Typed<String>,

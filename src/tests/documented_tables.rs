@@ -1,16 +1,16 @@
-//! The tables of the manual that say what the code has are made of the code: keys, methods, scenes, columns.
+//! The tables and lists of the manual that say what the code has are made of the code: keys, methods, scenes, columns.
 //!
-//! A table stands in `docs/` behind a line `<!-- made of the code: NAME -->` and ends with an empty line.
+//! One stands in `docs/` behind a line `<!-- made of the code: NAME -->` and ends with an empty line.
 //! `MANUAL_UPDATE=always cargo test documented_tables` writes them anew.
 
-use crate::case::keys::{KEYS, Key, Kind, Range};
+use crate::case::keys::{KEYS, Key, Kind, Range, Value};
 use crate::case::{Case, Task};
 use crate::cli::commands::schema::{Document, schema_of};
 use crate::record::csv::long_tables::columns_csv;
 use oedometer_mpm::method::Method;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::typed;
-use serde_json::Value;
+use serde_json::Value as Json;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
@@ -18,6 +18,10 @@ use std::path::{Path, PathBuf};
 
 /// What a line before a table begins with, and what ends it.
 const MARK: [&str; 2] = ["<!-- made of the code: ", " -->"];
+/// The keys of an expectation in the schema.
+const EXPECT: &str = "/properties/expect/items/properties";
+/// Most choices of a key that its row lists.
+const MOST_CHOICES: usize = 6;
 /// Variable with which the tables are written instead of compared.
 const UPDATE: &str = "MANUAL_UPDATE";
 
@@ -28,12 +32,16 @@ fn table(name: &str) -> Option<String> {
         "scenes" => scenes(),
         "columns" => columns(""),
         "columns of profiles" => columns("profiles"),
-        "columns of the history" => columns("history"),
         "keys of a study" => own_keys("/properties"),
         _ => match name.strip_prefix("keys of ")? {
             "[[sweep]]" => inputs("sweep") + &own_rows("/properties/sweep/items/properties"),
-            "[[expect]]" => own_keys("/properties/expect/items/properties"),
-            "[[expect_case]]" => own_keys("/properties/expect_case/items/properties"),
+            "[[expect]]" => own_keys(EXPECT),
+            // What both take is said once.
+            "[[expect_case]]" => {
+                let shared = own_of(EXPECT);
+                let rows = own_of("/properties/expect_case/items/properties");
+                list(rows.into_iter().filter(|row| !shared.contains(row)))
+            }
             "[output]" => own_keys("/properties/output/properties"),
             "[timing]" => own_keys("/properties/timing/properties"),
             "time_step" => own_keys("/properties/sweep/items/properties/time_step/items/properties"),
@@ -75,7 +83,7 @@ fn inputs(table: &str) -> String {
     let is_own = |key: &&Key| table != "sweep" || key.tables.len() == 1 || key.name == "cells";
     let rows = Key::of(table).filter(is_own).map(|key| {
         let left_out = match key.name {
-            "method" | "cells" => "must be given".to_owned(),
+            "method" | "cells" => "required".to_owned(),
             "time_step" => "the integrator's own".to_owned(),
             "formulation" => "the integrator's and scene's own".to_owned(),
             "law" => "the scene's own".to_owned(),
@@ -85,18 +93,23 @@ fn inputs(table: &str) -> String {
                 ("sweep", _) => "the motion's".to_owned(),
                 (_, "amplitude_y") => "0.25, shear -0.2".to_owned(),
                 (_, "amplitude") => "1.5".to_owned(),
+                (_, "frequency") => "π/2".to_owned(),
                 _ => value_of(key, &seed),
             },
             _ => value_of(key, &seed),
         };
-        vec![code(key.name), values(key), key.unit.to_owned(), left_out, key.meaning.to_owned()]
+        let values = format!("{} {}", values(key), key.unit);
+        vec![code(key.name), format!("{} ({left_out})", values.trim_end()), key.meaning.to_owned()]
     });
-    markdown("key | values | unit | where left out | meaning", rows)
+    markdown("key | values (default) | meaning", rows)
 }
 
 fn value_of(key: &Key, seed: &Case) -> String {
     match key.get(seed) {
-        crate::case::keys::Value::Number(number) => {
+        // Zero stands for nothing where a value must be positive.
+        Value::Count(0) => "none".to_owned(),
+        Value::Number(0.0) if matches!(key.kind, Kind::Number(Range::Positive)) => "none".to_owned(),
+        Value::Number(number) => {
             let plain = typed(number);
             if plain.len() > 6 { format!("{number:e}") } else { plain }
         }
@@ -125,39 +138,48 @@ fn values(key: &Key) -> String {
     }
 }
 
-/// The keys of a table beside inputs: name, and what the schema says of it.
+/// The keys of a table beside inputs and tables: name, and what the schema says of it with its choices.
 fn own_of(pointer: &str) -> Vec<[String; 2]> {
     let schema = schema_of(Document::Study);
-    let properties = schema.pointer(pointer).and_then(Value::as_object).expect(pointer);
-    let is_input = |name: &str| KEYS.iter().any(|key| key.name == name);
-    let own = properties.iter().filter(|(name, _)| pointer == "/properties" || !is_input(name));
+    let properties = schema.pointer(pointer).and_then(Json::as_object).expect(pointer);
+    // At the top stand the tables themselves, whose keys follow.
+    let is_own = |name: &str, value: &Json| match pointer {
+        "/properties" => !["object", "array"].iter().any(|kind| value["type"] == **kind),
+        _ => !KEYS.iter().any(|key| key.name == name),
+    };
+    let own = properties.iter().filter(|(name, value)| is_own(name, value));
     own.map(|(name, value)| {
         let meaning = value["description"].as_str().unwrap_or_default().trim_end_matches('.');
-        [code(name), meaning.to_owned()]
+        let words = value["enum"].as_array().filter(|words| words.len() <= MOST_CHOICES);
+        let words: Vec<String> = words.into_iter().flatten().filter_map(Json::as_str).map(code).collect();
+        let colon = if words.is_empty() { "" } else { ": " };
+        [code(name), format!("{meaning}{colon}{}", words.join(", "))]
     })
     .collect()
 }
 
 fn own_keys(pointer: &str) -> String {
-    markdown("key | meaning", own_of(pointer).into_iter().map(Vec::from))
+    list(own_of(pointer))
 }
 
-/// The same as further rows of a table of inputs.
+/// Names and meanings, one a line.
+fn list(rows: impl IntoIterator<Item = [String; 2]>) -> String {
+    rows.into_iter().map(|[name, meaning]| format!("- {name}: {meaning}\n")).collect()
+}
+
+/// Keys of the schema as further rows of a table of inputs.
 fn own_rows(pointer: &str) -> String {
-    let row = |[name, meaning]: [String; 2]| format!("| {name} |  |  |  | {} |\n", cell(&meaning));
+    let row = |[name, meaning]: [String; 2]| format!("| {name} |  | {} |\n", cell(&meaning));
     own_of(pointer).into_iter().map(row).collect()
 }
 
 fn methods() -> String {
-    let row = |name: String| {
-        let choices = Method::named(&name).expect("a method").choices();
-        vec![code(&name), choices.split('+').map(code).collect::<Vec<_>>().join(" + ")]
-    };
-    // Prefixes and suffixes are explained beside the table.
+    let row = |name: String| [code(&name), code(&Method::named(&name).expect("a method").choices())];
+    // Prefixes and suffixes are explained beside the list.
     let names = Method::names().into_iter();
     let plain =
         names.filter(|name| !name.starts_with('u') && !name.starts_with("TL-") && !name.ends_with("-cells"));
-    markdown("name | shape functions + strain gradient + divergence + recovery", plain.map(row))
+    list(plain.map(row))
 }
 
 fn scenes() -> String {
@@ -165,10 +187,7 @@ fn scenes() -> String {
         let references = scene.references().iter().map(|kind| code(kind.name()));
         vec![code(scene.name()), scene.summary().to_owned(), references.collect::<Vec<_>>().join(", ")]
     };
-    markdown(
-        "scene | what it is | exact solutions, the first one its own",
-        SceneKind::ALL.into_iter().map(row),
-    )
+    markdown("scene | problem | exact solutions, the first one its own", SceneKind::ALL.into_iter().map(row))
 }
 
 fn columns(of: &str) -> String {
@@ -178,10 +197,8 @@ fn columns(of: &str) -> String {
     // Inputs are keys, which have a page of their own.
     let is_key = |name: &str| KEYS.iter().any(|key| key.name == name);
     let rows = rows.iter().filter(|row| &row[0] == of && !(of.is_empty() && is_key(&row[1])));
-    markdown(
-        "column | unit | meaning",
-        rows.map(|row| vec![code(&row[1]), row[2].to_owned(), row[3].to_owned()]),
-    )
+    let meaning = |row: &csv::StringRecord| [&row[3], &row[2]].map(str::to_owned).join(", ");
+    list(rows.map(|row| [code(&row[1]), meaning(row).trim_end_matches(", ").to_owned()]))
 }
 
 /// The pages of the manual.
@@ -206,9 +223,9 @@ fn made_anew(text: &str, page: &Path) -> (String, Vec<String>) {
         let of_the_code = table(name).unwrap_or_else(|| panic!("{}: no table `{name}`", page.display()));
         let _ = writeln!(made, "\n{of_the_code}");
         names.push(name.to_owned());
-        // The empty line, the table and the empty line behind it.
+        // The empty line, the table or list and the empty line behind it.
         let rest: Vec<&str> = lines.clone().collect();
-        let old = rest.iter().skip(1).take_while(|line| line.starts_with('|')).count();
+        let old = rest.iter().skip(1).take_while(|line| line.starts_with(['|', '-'])).count();
         let old = if old == 0 { rest.iter().take_while(|line| line.is_empty()).count() } else { old + 2 };
         for _ in 0..old {
             lines.next();

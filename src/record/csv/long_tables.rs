@@ -15,7 +15,7 @@ const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [
     ("height", "m", "initial height above the base"),
     ("pressure", "Pa", "excess pore pressure, compression positive"),
     ("effective_stress", "Pa", "vertical effective stress, tension positive"),
-    ("displacement_height", "m", "initial height of the place of the displacement"),
+    ("displacement_height", "m", "initial height of the displacement"),
     ("displacement", "m", "vertical displacement, upward positive"),
 ];
 
@@ -29,22 +29,22 @@ const HISTORY_COLUMNS: [(&str, &str, &str); 3] = [
 /// Columns of the tidy table that are not inputs: name, unit, meaning.
 const TIDY_COLUMNS: [(&str, &str, &str); 17] = [
     ("study", "", "name of the study"),
-    ("case", "", "hash of the case: its identity"),
-    ("largest_step_seconds", "s", "largest step that was taken"),
-    ("steps", "", "steps that were taken"),
+    ("case", "", "hash of the case"),
+    ("largest_step_seconds", "s", "largest time step"),
+    ("steps", "", "time steps"),
     ("point_updates", "", "steps times points"),
     ("status", "", "ok, or how the case failed"),
     ("sources", "", "hash of the program's sources"),
     ("time_factor", "", "T_v = c_v t/H², with the drained c_v"),
-    ("quantity", "", "what is compared; or a measure by its name: peak_pressure, spurious_velocity, …"),
-    ("sample", "", "where it is compared"),
-    ("norm", "", "how the error becomes one number; of a measure, whether its error is relative or absolute"),
-    ("reference", "", "exact solution that it is compared with"),
-    ("value", "", "relative error; that of the settlement with its sign"),
+    ("quantity", "", "compared quantity, or a measure such as peak_pressure"),
+    ("sample", "", "places of the comparison"),
+    ("norm", "", "norm of the error; of a measure: relative or absolute"),
+    ("reference", "", "exact solution"),
+    ("value", "", "relative error; of the settlement with its sign"),
     ("absolute_error", "", "error over the load, or over the final settlement"),
     ("cell_size", "m", "edge of a cell"),
-    ("wall_seconds", "s", "time that the case took, the least of its runs"),
-    ("cpu_seconds", "s", "processor time, where the system reports it"),
+    ("wall_seconds", "s", "wall time, the least of the runs"),
+    ("cpu_seconds", "s", "processor time, if the system reports it"),
 ];
 
 /// A table with rows of every record, one record after the other.
@@ -137,7 +137,7 @@ pub fn columns_csv() -> Result<String, csv::Error> {
             TIDY_COLUMNS.iter().find(|(own, _, _)| *own == name).map(|(_, unit, meaning)| (*unit, *meaning));
         let (unit, meaning) = input.or(other).unwrap_or(match name {
             "scene" => ("", "physical problem"),
-            _ => ("", "what was done with the case"),
+            _ => ("", "solve or stability"),
         });
         rows.push(["", name, unit, meaning]);
     }
