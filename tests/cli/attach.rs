@@ -353,9 +353,9 @@ fn root() -> PathBuf {
 fn the_page_on_attaching_has_every_status_placeholder_and_key() {
     let page = fs::read_to_string(root().join("docs/attach.md")).expect("the page");
     for (_, status, _) in ENDS {
-        assert!(page.contains(&format!("| `{status}` |")), "{status}");
+        assert!(page.contains(&format!("- `{status}`: ")), "{status}");
     }
-    assert!(page.contains("| `not-startable` |"));
+    assert!(page.contains("- `not-startable`: "));
     let schema = |document: &str| -> serde_json::Value {
         let told = call(&root(), &["schema", document]);
         serde_json::from_str(&told.out).expect("JSON")
@@ -364,7 +364,7 @@ fn the_page_on_attaching_has_every_status_placeholder_and_key() {
         value.as_object().expect("an object").keys().cloned().collect()
     };
     for key in names(&schema("study")["properties"]["solver"]["items"]["properties"]) {
-        assert!(page.contains(&format!("| `{key}` |")), "no row on the key {key}");
+        assert!(page.contains(&format!("- `{key}`: ")), "no line on the key {key}");
     }
     // The case file that the page shows has the keys of the schema, at its top and in each part.
     let shown = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
