@@ -192,7 +192,7 @@ impl<const D: usize> Body<D> {
         let Problem {
             grid,
             support,
-            points,
+            mut points,
             material,
             soils,
             method,
@@ -207,6 +207,7 @@ impl<const D: usize> Body<D> {
             ..
         } = problem;
         let count = points.len();
+        points.take_soils(&soils);
         let solid_cell_mass = (0..D).map(|_| grid.cell_size).product::<f64>()
             * (1.0 - material.porosity)
             * material.grain_density;
@@ -354,7 +355,7 @@ impl<const D: usize> Body<D> {
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         let stride = self.grid.node_stride();
-        self.strain.carrier().map_or(of_basis, |ends| ends.values(stride, point, [field])[0])
+        self.strain.carrier().map_or(of_basis, |ends| ends.of(point).values(stride, [field])[0])
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.

@@ -10,7 +10,6 @@
 //! the divergence of the difference does not fall with the cells. Momentum is kept, for `Σ_i N_ip (x_i − x_p) = 0`.
 
 use crate::body::Body;
-use crate::explicit::points_to_nodes::volumes_of;
 use crate::state::grid::GHOST_LAYERS;
 use oedometer_soil::tensor::Tensor;
 
@@ -37,7 +36,7 @@ impl<const D: usize> Body<D> {
         for (point, gradients) in self.velocity_gradients.iter().enumerate() {
             let place = self.cells.place[point];
             let place = place.map(|in_cells| (in_cells - GHOST_LAYERS as f64) * grid.cell_size);
-            let volumes = volumes_of(points, point, 1.0 - self.soil_of(point).porosity);
+            let volumes = points.volumes_of_phases(point);
             self.basis.visit(grid.node_stride(), point, |node, value, _| {
                 let at = grid.node_position(node);
                 for (phase, gradient) in gradients.iter().enumerate() {

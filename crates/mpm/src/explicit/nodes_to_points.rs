@@ -4,6 +4,7 @@
 
 use crate::body::Body;
 use crate::operators::stencil::{Stencils, with_stencils};
+use crate::state::points::Points;
 use crate::wide::wide;
 use oedometer_soil::tensor::Vector;
 
@@ -59,24 +60,25 @@ impl<const D: usize> Body<D> {
     #[inline(always)]
     fn advance_points_by<const W: usize>(&mut self, stencils: &Stencils<D, W>, motion: Motion) {
         let (stride, moves) = (*self.grid.node_stride(), self.configuration.moves_points());
-        let (nodes, points, carrier) = (&self.nodes, &mut self.points, self.strain.carrier());
-        for point in 0..points.len() {
-            let fields =
-                [&nodes.solid_velocity[..], &nodes.solid_acceleration[..], &nodes.water_acceleration[..]];
-            let [mut carrying, solid_rate, water_rate] = stencils.values(&stride, point, fields);
-            motion.accelerate(&mut points.solid_velocity[point], &solid_rate, || carrying);
+        let (nodes, carrier) = (&self.nodes, self.strain.carrier());
+        let Points { position, displacement, solid_velocity, water_velocity, .. } = &mut self.points;
+        let fields =
+            [&nodes.solid_velocity[..], &nodes.solid_acceleration[..], &nodes.water_acceleration[..]];
+        for (point, (stencil, solid)) in stencils.iter().zip(solid_velocity).enumerate() {
+            let [mut carrying, solid_rate, water_rate] = stencil.values(&stride, fields);
+            motion.accelerate(solid, &solid_rate, || carrying);
             // None where the water has points of its own.
-            if let Some(velocity) = points.water_velocity.get_mut(point) {
-                motion.accelerate(velocity, &water_rate, || {
-                    stencils.values(&stride, point, [&nodes.water_velocity[..]])[0]
+            if let Some(water) = water_velocity.get_mut(point) {
+                motion.accelerate(water, &water_rate, || {
+                    stencil.values(&stride, [&nodes.water_velocity[..]])[0]
                 });
             }
             if let Some(ends) = carrier {
-                [carrying] = ends.values(&stride, point, [&nodes.solid_velocity[..]]);
+                [carrying] = ends.of(point).values(&stride, [&nodes.solid_velocity[..]]);
             }
-            motion.carry(&mut points.displacement[point], &carrying);
+            motion.carry(&mut displacement[point], &carrying);
             if moves {
-                motion.carry(&mut points.position[point], &carrying);
+                motion.carry(&mut position[point], &carrying);
             }
         }
     }

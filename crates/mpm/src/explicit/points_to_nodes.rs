@@ -25,14 +25,11 @@ impl<const D: usize> Body<D> {
 
     /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
     pub fn map_velocities(&mut self) {
-        let (soils, points) = (&self.soils[..], &self.points);
+        let points = &self.points;
         self.basis.sum_values(
             self.grid.node_stride(),
             #[inline(always)]
-            |point| {
-                let solid_fraction = 1.0 - points.soil_among(soils, point).porosity;
-                momenta_of(points, point, volumes_of(points, point, solid_fraction))
-            },
+            |point| momenta_of(points, point, points.volumes_of_phases(point)),
             &mut self.nodes.sums.phases,
         );
         self.take_velocities();
@@ -92,13 +89,6 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Volumes of the grains and of the pores of a point, m^D: grains fill `(1 − n) V = (1 − n_0) V_0`, water `n V`.
-#[inline(always)]
-pub(crate) fn volumes_of<const D: usize>(points: &Points<D>, point: usize, solid_fraction: f64) -> [f64; 2] {
-    let initial = points.initial_volume[point];
-    [initial * solid_fraction, initial * (points.volume_ratio[point] - solid_fraction)]
-}
-
 /// Volumes of grains and pores of a point, m^D, and its drag, N s/m; in layers that over its porosity, which the node's
 /// replaces (docs/theory.md, Eq. 44).
 #[inline(always)]
@@ -108,7 +98,7 @@ fn masses_of<const D: usize>(
     point: usize,
     is_layered: bool,
 ) -> [[f64; 4]; 1] {
-    let [grains, pores] = volumes_of(points, point, 1.0 - soil.porosity);
+    let [grains, pores] = points.volumes_of_phases(point);
     let resisting = if is_layered { grains + pores } else { pores };
     [[grains, pores, drag_of_point(soil, resisting, points.volume_ratio[point]), 0.0]]
 }

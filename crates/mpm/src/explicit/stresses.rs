@@ -11,7 +11,7 @@ use crate::state::points::Points;
 use crate::wide::wide;
 use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement};
-use oedometer_soil::tensor::{Tensor, identity, inverse, product};
+use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
 
 /// What follows the deformation of the points beside their volumes.
 #[derive(Clone, Copy)]
@@ -44,62 +44,67 @@ impl<const D: usize> Body<D> {
     #[inline(always)]
     fn strain_points<const W: usize>(&mut self, stencils: &Stencils<D, W>, dt: f64) {
         let (stride, laws, following) = (*self.grid.node_stride(), &self.stress_laws[..], self.following());
-        let deforms = self.configuration.deforms();
-        let (field, points) = (&self.nodes.solid_velocity, &mut self.points);
-        let has_dilation = self.method.strain.is_bbar();
+        let (deforms, is_total) = (self.configuration.deforms(), self.configuration == Configuration::Total);
+        let (has_dilation, is_forced) = (self.method.strain.is_bbar(), self.forcing.is_some());
+        let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
+        let Points {
+            volume_ratio, half_length, inverse_deformation, effective_stress, history, soil, ..
+        } = &mut self.points;
+        let kinematics = volume_ratio.iter_mut().zip(half_length).zip(inverse_deformation);
+        let states = kinematics.zip(effective_stress.iter_mut().zip(&*soil));
         let mut none = History::default();
-        for point in 0..points.len() {
-            let mut gradient = stencils.gradient(&stride, point, field);
-            if self.configuration == Configuration::Total {
-                gradient = product(&gradient, &points.inverse_deformation[point]);
+        for (point, (stencil, (((ratio, half_length), back), (stress, soil)))) in
+            stencils.iter().zip(states).enumerate()
+        {
+            let mut gradient = stencil.gradient(&stride, field);
+            if is_total {
+                gradient = product(&gradient, back);
             }
             let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
             // A motion compared with exact fields is followed at the middle of the step, to second order.
-            if self.forcing.is_some() {
+            if is_forced {
                 gradient = middle_gradient(&gradient, dt);
             }
             let mut increment = gradient;
             for rate in increment.as_flattened_mut() {
                 *rate *= dt;
             }
-            let before = points.volume_ratio[point];
+            let before = *ratio;
             if deforms {
-                deform(points, point, following, &increment);
+                following.deform(&increment, ratio, half_length, back);
             }
             let mut dilation = 0.0;
             if has_dilation {
                 // Of the kinematics only the volume goes the way of the water's.
-                dilation = dt * (self.dilation_rates[point] - trace);
+                dilation = dt * (dilation_rates[point] - trace);
                 for d in 0..D {
                     increment[d][d] += dilation / D as f64;
                 }
                 if deforms {
-                    points.volume_ratio[point] *= stretch_of(dilation);
+                    *ratio *= stretch_of(dilation);
                 }
             }
-            let volume_ratio = [before, points.volume_ratio[point]];
-            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio };
-            let stress = &mut points.effective_stress[point];
+            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio: [before, *ratio] };
             if deforms {
                 *stress = rotated(stress, &increment);
             }
-            let history = points.history.get_mut(point).unwrap_or(&mut none);
-            let law = &laws[usize::from(points.soil[point])];
-            law.update(stress, history, &strain, || {
-                let (deformation, per_volume) = inverse(&points.inverse_deformation[point]);
-                if has_dilation {
-                    assumed(&deformation, points.volume_ratio[point] * per_volume)
-                } else {
-                    deformation
-                }
+            let history = history.get_mut(point).unwrap_or(&mut none);
+            laws[usize::from(*soil)].update(stress, history, &strain, || {
+                let (deformation, per_volume) = inverse(back);
+                if has_dilation { assumed(&deformation, *ratio * per_volume) } else { deformation }
             });
         }
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
-        let following = self.following();
-        deform(&mut self.points, point, following, increment);
+        let (following, points) = (self.following(), &mut self.points);
+        following.deform(
+            increment,
+            &mut points.volume_ratio[point],
+            &mut points.half_length[point],
+            &mut points.inverse_deformation[point],
+        );
     }
 
     fn following(&self) -> Following {
@@ -113,18 +118,26 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Deforms a point by a step's displacement gradient: its volume, exact in the logarithmic strain, and what follows it.
-#[inline(always)]
-fn deform<const D: usize>(points: &mut Points<D>, point: usize, following: Following, increment: &Tensor<D>) {
-    for d in 0..D {
-        let stretch = stretch_of(increment[d][d]);
-        points.volume_ratio[point] *= stretch;
-        if following.domain {
-            points.half_length[point][d] *= stretch;
+impl Following {
+    /// Deforms a point by a step's displacement gradient: its volume, exact in the logarithmic strain, and what follows it.
+    #[inline(always)]
+    fn deform<const D: usize>(
+        self,
+        increment: &Tensor<D>,
+        volume_ratio: &mut f64,
+        half_length: &mut Vector<D>,
+        inverse_deformation: &mut Tensor<D>,
+    ) {
+        for d in 0..D {
+            let stretch = stretch_of(increment[d][d]);
+            *volume_ratio *= stretch;
+            if self.domain {
+                half_length[d] *= stretch;
+            }
         }
-    }
-    if following.inverse {
-        points.inverse_deformation[point] = relaxed(&points.inverse_deformation[point], increment);
+        if self.inverse {
+            *inverse_deformation = relaxed(inverse_deformation, increment);
+        }
     }
 }
 

@@ -110,16 +110,38 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         self.first[block] = first;
     }
 
-    /// Visits the nodes of a point run by run, except runs on which all is zero.
+    /// Stencils of all points in turn.
     #[inline(always)]
-    pub fn visit_runs(&self, stride: &[usize; D], point: usize, mut visitor: impl FnMut(&Run<D, W>)) {
+    pub fn iter(&self) -> impl Iterator<Item = Stencil<'_, D, W>> {
         // On a line a point has one block, and the compiler knows.
         let parts = if D == 1 { 1 } else { self.parts };
-        for block in point * parts..(point + 1) * parts {
-            let lines = &self.lines[block];
+        let blocks = self.first.chunks_exact(parts).zip(self.lines.chunks_exact(parts));
+        blocks.map(|(first, lines)| Stencil { first, lines })
+    }
+
+    /// Stencil of a point.
+    #[inline(always)]
+    pub fn of(&self, point: usize) -> Stencil<'_, D, W> {
+        let blocks = point * self.parts..(point + 1) * self.parts;
+        Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
+    }
+}
+
+/// Shape functions of one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Stencil<'a, const D: usize, const W: usize> {
+    first: &'a [usize],
+    lines: &'a [[Line<W>; D]],
+}
+
+impl<const D: usize, const W: usize> Stencil<'_, D, W> {
+    /// Visits the nodes of the point run by run, except runs on which all is zero.
+    #[inline(always)]
+    pub fn visit_runs(self, stride: &[usize; D], mut visitor: impl FnMut(&Run<D, W>)) {
+        for (lowest, lines) in self.first.iter().zip(self.lines) {
             let Line { values, gradients } = lines[0];
             for number in 0..power(W, D - 1) {
-                let (mut first, mut across, mut rest) = (self.first[block], [1.0; D], number);
+                let (mut first, mut across, mut rest) = (*lowest, [1.0; D], number);
                 for direction in 1..D {
                     let k = rest % W;
                     rest /= W;
@@ -136,12 +158,11 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         }
     }
 
-    /// Visits the nodes of a point with value and gradient (1/m).
+    /// Visits the nodes of the point with value and gradient (1/m).
     #[inline(always)]
-    pub fn visit(&self, stride: &[usize; D], point: usize, mut visitor: impl FnMut(usize, f64, &Vector<D>)) {
+    pub fn visit(self, stride: &[usize; D], mut visitor: impl FnMut(usize, f64, &Vector<D>)) {
         self.visit_runs(
             stride,
-            point,
             #[inline(always)]
             |run| {
                 for k in 0..W {
@@ -151,18 +172,12 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         );
     }
 
-    /// Values of nodal vector fields at a point: `Σ N f`.
+    /// Values of nodal vector fields at the point: `Σ N f`.
     #[inline(always)]
-    pub fn values<const N: usize>(
-        &self,
-        stride: &[usize; D],
-        point: usize,
-        fields: [&[Vector<D>]; N],
-    ) -> [Vector<D>; N] {
+    pub fn values<const N: usize>(self, stride: &[usize; D], fields: [&[Vector<D>]; N]) -> [Vector<D>; N] {
         let mut values = [[0.0; D]; N];
         self.visit_runs(
             stride,
-            point,
             #[inline(always)]
             |run| {
                 for (value, field) in values.iter_mut().zip(fields) {
@@ -182,14 +197,13 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         values
     }
 
-    /// Gradient of a nodal vector field at a point, `[component][direction]`: `Σ f ⊗ ∇N`.
+    /// Gradient of a nodal vector field at the point, `[component][direction]`: `Σ f ⊗ ∇N`.
     #[inline(always)]
-    pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
+    pub fn gradient(self, stride: &[usize; D], field: &[Vector<D>]) -> Tensor<D> {
         // `[direction][component]`: components lie side by side at the nodes.
         let mut slopes = [[0.0; D]; D];
         self.visit_runs(
             stride,
-            point,
             #[inline(always)]
             |run| {
                 let nodes = &field[run.first..run.first + W];
@@ -216,7 +230,9 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         }
         gradient
     }
+}
 
+impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Adds what each point gives to its nodes, times its shape functions: `Σ_p N_ip g_p`.
     #[inline(always)]
     fn add_values<const N: usize, const M: usize>(
@@ -225,11 +241,10 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         given: impl Fn(usize) -> [[f64; M]; N],
         sums: &mut [[[f64; M]; N]],
     ) {
-        for point in 0..self.first.len() / self.parts {
+        for (point, stencil) in self.iter().enumerate() {
             let given = given(point);
-            self.visit_runs(
+            stencil.visit_runs(
                 stride,
-                point,
                 #[inline(always)]
                 |run| run.add_values(&given, sums),
             );
@@ -245,11 +260,10 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         sums: &mut [[[f64; M]; N]],
         other_sums: &mut [[[f64; P]; O]],
     ) {
-        for point in 0..self.first.len() / self.parts {
+        for (point, stencil) in self.iter().enumerate() {
             let (given, other) = given(point);
-            self.visit_runs(
+            stencil.visit_runs(
                 stride,
-                point,
                 #[inline(always)]
                 |run| {
                     run.add_values(&given, sums);
@@ -267,11 +281,10 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         given: impl Fn(usize) -> [[Vector<D>; N]; D],
         sums: &mut [[Vector<D>; N]],
     ) {
-        for point in 0..self.first.len() / self.parts {
+        for (point, stencil) in self.iter().enumerate() {
             let given = given(point);
-            self.visit_runs(
+            stencil.visit_runs(
                 stride,
-                point,
                 #[inline(always)]
                 |run| {
                     let mut scaled = given;
@@ -334,20 +347,20 @@ impl<const D: usize> PointStencils<D> {
     /// Visits the nodes of a point with value and gradient (1/m).
     #[inline]
     pub fn visit(&self, stride: &[usize; D], point: usize, visitor: impl FnMut(usize, f64, &Vector<D>)) {
-        with_stencils!(self, stencils => stencils.visit(stride, point, visitor));
+        with_stencils!(self, stencils => stencils.of(point).visit(stride, visitor));
     }
 
     /// Value of a nodal vector field at a point.
     #[inline]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        let [value] = with_stencils!(self, stencils => stencils.values(stride, point, [field]));
+        let [value] = with_stencils!(self, stencils => stencils.of(point).values(stride, [field]));
         value
     }
 
     /// Gradient of a nodal vector field at a point, `[component][direction]`.
     #[inline]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        with_stencils!(self, stencils => stencils.gradient(stride, point, field))
+        with_stencils!(self, stencils => stencils.of(point).gradient(stride, field))
     }
 
     /// Divergence of a nodal vector field at a point.

@@ -54,6 +54,10 @@ impl<const D: usize> StrainOperator<D> {
                     let sides = [cells.is_reached(home - stride), cells.is_reached(home + stride)];
                     rows[d] = composite(place[d], cell[d], sides);
                 }
+                if D == 1 {
+                    // Values are factors of the gradients of other directions: on a line there are none.
+                    rows[0].values = [0.0; 4];
+                }
                 stencils.set(grid, point, &rows);
             }),
             Self::BetweenEnds(stencils) => {
@@ -106,8 +110,8 @@ impl<const D: usize> StrainOperator<D> {
         let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
         match self {
             Self::Basis => basis.visit(stride, point, visitor),
-            Self::Composite(stencils) => stencils.visit(stride, point, visitor),
-            Self::BetweenEnds(stencils) => stencils.visit(stride, point, visitor),
+            Self::Composite(stencils) => stencils.of(point).visit(stride, visitor),
+            Self::BetweenEnds(stencils) => stencils.of(point).visit(stride, visitor),
         }
     }
 }

@@ -16,6 +16,8 @@ pub struct Cells<const D: usize> {
     pub of_point: Vec<usize>,
     /// Place of each point in cells, held inside the grid.
     pub place: Vec<Vector<D>>,
+    /// Place of each point in its cell, from the lowest corner, in cells.
+    pub within: Vec<Vector<D>>,
     /// Lowest node of each cell.
     first_node: Vec<usize>,
     /// Lowest node of the cell whose divergence each cell takes: its own, but for those beyond the end of
@@ -47,6 +49,7 @@ impl<const D: usize> Cells<D> {
         Self {
             of_point: vec![0; points],
             place: vec![[0.0; D]; points],
+            within: vec![[0.0; D]; points],
             divergence_node: first_node.clone(),
             first_node,
             point_count: vec![0; count],
@@ -61,10 +64,12 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, soils: &[Material]) {
-        let found = self.of_point.iter_mut().zip(&mut self.place);
-        wide!(for (position, (cell, place)) in points.position.iter().zip(found) {
+        let found = self.of_point.iter_mut().zip(self.place.iter_mut().zip(&mut self.within));
+        wide!(for (position, (cell, (place, within))) in points.position.iter().zip(found) {
             *place = grid.held_in_cells(position);
-            *cell = grid.flat_cell(&grid.cell_at(place));
+            let index = grid.cell_at(place);
+            *cell = grid.flat_cell(&index);
+            *within = grid.within_cell(&index, place);
         });
         self.point_count.fill(0);
         for cell in &self.of_point {
@@ -100,16 +105,21 @@ impl<const D: usize> Cells<D> {
         }
         self.of_point.truncate(positions.len());
         self.place.truncate(positions.len());
+        self.within.truncate(positions.len());
         let down = grid.cell_stride()[D - 1];
         for (point, position) in positions.iter().enumerate() {
             let place = grid.held_in_cells(position);
-            let home = grid.flat_cell(&grid.cell_at(&place));
+            let index = grid.cell_at(&place);
+            let home = grid.flat_cell(&index);
             let mut cell = home;
             while !self.is_occupied(cell) && cell >= down {
                 cell -= down;
             }
+            let cell = if self.is_occupied(cell) { cell } else { home };
             self.place[point] = place;
-            self.of_point[point] = if self.is_occupied(cell) { cell } else { home };
+            self.of_point[point] = cell;
+            self.within[point] = grid.within_cell(&index, &place);
+            self.within[point][D - 1] += ((home - cell) / down) as f64;
         }
         self.list_occupied();
     }
@@ -130,12 +140,12 @@ impl<const D: usize> Cells<D> {
     pub fn sum_volumes(&mut self, points: &Points<D>, soils: &[Material]) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
-        let volumes = points.initial_volume.iter().zip(&points.volume_ratio);
-        for (point, (cell, (initial, ratio))) in self.of_point.iter().zip(volumes).enumerate() {
-            let solid_fraction = 1.0 - points.soil_among(soils, point).porosity;
-            self.volume[*cell] += initial * ratio;
+        let volumes = points.initial_volume.iter().zip(&points.volume_ratio).zip(&points.grain_volume);
+        for (cell, ((initial, ratio), grains)) in self.of_point.iter().zip(volumes) {
+            let volume = initial * ratio;
+            self.volume[*cell] += volume;
             // n V = V − (1 − n_0) V_0
-            self.porosity[*cell] += initial * (ratio - solid_fraction);
+            self.porosity[*cell] += volume - grains;
         }
         for cell in &self.occupied {
             self.porosity[*cell] /= self.volume[*cell];
@@ -325,6 +335,7 @@ mod tests {
             }
             let mut first = Cells::new(&grid, points.len());
             for cells in [&mut again, &mut first] {
+                points.take_soils(&[Material::default()]);
                 cells.locate(&grid, &points, &[Material::default()]);
                 cells.find_reached(&grid, &points);
             }
@@ -346,6 +357,7 @@ mod tests {
         let mut points = Points::lattice(0.5, [2], 2);
         points.volume_ratio[0] = 0.9;
         let mut cells = Cells::new(&grid, points.len());
+        points.take_soils(&[Material::default()]);
         cells.locate(&grid, &points, &[Material::default()]);
         let occupied: Vec<usize> = cells.occupied().collect();
         assert_eq!(occupied, [2, 3], "two ghosts below, the other cells empty");

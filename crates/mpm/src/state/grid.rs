@@ -134,6 +134,16 @@ impl<const D: usize> Grid<D> {
         cell
     }
 
+    /// Place in a cell of an index, from its lowest corner, of a place in cells.
+    #[inline]
+    pub fn within_cell(&self, index: &[usize; D], place: &Vector<D>) -> Vector<D> {
+        let mut within = *place;
+        for d in 0..D {
+            within[d] -= index[d] as f64;
+        }
+        within
+    }
+
     /// Index, a direction, of the cell that holds a point.
     #[inline]
     pub fn cell_of(&self, position: &Vector<D>) -> [usize; D] {

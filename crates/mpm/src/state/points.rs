@@ -17,6 +17,9 @@ pub struct Points<const D: usize> {
     pub half_length: Vec<Vector<D>>,
     /// Volume in the initial state, m^D.
     pub initial_volume: Vec<f64>,
+    /// Volume of the grains `(1 − n_0) V_0`, m^D, which no deformation changes; of points that a body has
+    /// [taken](Self::take_soils).
+    pub grain_volume: Vec<f64>,
     /// Volume ratio `J`.
     pub volume_ratio: Vec<f64>,
     /// Volume that a point's stress fills over `J V_0`: what its domain has kept where the cells
@@ -61,6 +64,7 @@ impl<const D: usize> Points<D> {
             displacement: vec![[0.0; D]; count],
             half_length: vec![[0.5 * spacing; D]; count],
             initial_volume: vec![(0..D).map(|_| spacing).product(); count],
+            grain_volume: vec![0.0; count],
             volume_ratio: vec![1.0; count],
             stressed_share: vec![1.0; count],
             inverse_deformation: vec![identity(); count],
@@ -96,6 +100,7 @@ impl<const D: usize> Points<D> {
             displacement: pick(&self.displacement, keep),
             half_length: pick(&self.half_length, keep),
             initial_volume: pick(&self.initial_volume, keep),
+            grain_volume: pick(&self.grain_volume, keep),
             volume_ratio: pick(&self.volume_ratio, keep),
             stressed_share: pick(&self.stressed_share, keep),
             inverse_deformation: pick(&self.inverse_deformation, keep),
@@ -114,6 +119,13 @@ impl<const D: usize> Points<D> {
         &soils[usize::from(self.soil[point])]
     }
 
+    /// Takes the volumes of the grains from the soils of the points.
+    pub fn take_soils(&mut self, soils: &[Material]) {
+        let initial = self.initial_volume.iter().zip(&self.soil);
+        let grains = initial.map(|(volume, soil)| volume * (1.0 - soils[usize::from(*soil)].porosity));
+        self.grain_volume = grains.collect();
+    }
+
     /// Whether every point began on the lattice of the cells, a whole number of domains from their edges.
     pub fn began_on_lattice(&self) -> bool {
         let on_lattice = |point: usize| {
@@ -123,6 +135,13 @@ impl<const D: usize> Points<D> {
             })
         };
         (0..self.len()).all(on_lattice)
+    }
+
+    /// Volumes of the grains and of the pores of a point, m^D: grains fill `(1 − n) V = (1 − n_0) V_0`, water `n V`.
+    #[inline]
+    pub fn volumes_of_phases(&self, point: usize) -> [f64; 2] {
+        let grains = self.grain_volume[point];
+        [grains, self.volume(point) - grains]
     }
 
     /// Current volume of a point, m^D.

@@ -191,7 +191,8 @@ pub(crate) mod tests {
     impl SiteBlock {
         pub(crate) fn new(cell_size: f64, extent: [usize; 2], per_cell: usize) -> Self {
             let grid = Grid::new(cell_size, extent);
-            let points = Points::lattice(cell_size, extent, per_cell);
+            let mut points = Points::lattice(cell_size, extent, per_cell);
+            points.take_soils(&[Material::default()]);
             let mut cells = Cells::new(&grid, points.len());
             cells.locate(&grid, &points, &[Material::default()]);
             let mut nodes = Nodes::new(&grid, &Support::free(), 1.0);

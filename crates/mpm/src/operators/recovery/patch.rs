@@ -48,21 +48,17 @@ impl<const D: usize> PatchRows<D> {
             self.sides[cell] = sides_of(grid, cells, cell);
         }
         let to_lowest: usize = grid.cell_stride().iter().sum();
-        for (point, (home, place)) in cells.of_point.iter().zip(&cells.place).enumerate() {
-            self.first[point] = home - to_lowest;
-            // A point may belong to another cell than the one that it lies in.
-            let mut index = grid.cell_at(place);
-            if grid.flat_cell(&index) != *home {
-                index = grid.cell_index(*home);
-            }
-            let shares = &mut self.shares[point];
+        let rows = self.first.iter_mut().zip(&mut self.shares);
+        let places = cells.of_point.iter().zip(&cells.within);
+        for (point, ((first, shares), (home, within))) in rows.zip(places).enumerate() {
+            *first = home - to_lowest;
             let Some(sides) = self.sides[*home] else {
-                fit(grid, *home, place, shares, |cell| cells.is_occupied(cell));
+                fit(grid, *home, &cells.place[point], shares, |cell| cells.is_occupied(cell));
                 continue;
             };
             let mut lines = [LineFit { row: [0.0; BLOCK], shares: [0.0; BLOCK] }; D];
             for d in 0..D {
-                lines[d] = LineFit::of(index[d] as f64 + 0.5 - place[d], sides[d], D > 1);
+                lines[d] = LineFit::of(0.5 - within[d], sides[d], D > 1);
             }
             let [along, up] = [&lines[0], &lines[D - 1]];
             if D == 1 {
