@@ -49,7 +49,11 @@ fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
         ("gravity = [#]", &["9.8"], &["0.0", "-1.0", "inf", "nan"]),
         ("height = [#]", &["2.0"], &["0.0", "-1.0", "inf", "nan"]),
         ("load = [#]", &["100.0"], &["0.0", "-1.0", "inf", "nan"]),
-        ("time_step = [{ growth = # }]", &["0.001", "0.5"], &["0.0", "-1.0", "nan"]),
+        (
+            "time_step = [{ growth = # }]",
+            &["1e-9", "0.5", "1.0"],
+            &["0.0", "-1.0", "9e-10", "1.000001", "nan"],
+        ),
         ("time_step = [{ seconds = # }]", &["1.0"], &["0.0", "-1.0", "nan"]),
     ];
     held(&INPUTS, |sweep| said(STUDY, "", sweep, ""));
@@ -63,6 +67,9 @@ fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
     ];
     held(&of_explicit, |sweep| said(&explicit, "", sweep, ""));
     held(&[("sets = [#]", &["1", "2"], &["0", "3"])], |sweep| said(LAYERS, "", sweep, ""));
+    held(&[("sets = [2]\nwater_per_cell = [#]", &["1", "2", "16"], &["-1", "17"])], |sweep| {
+        said(LAYERS, "", sweep, "")
+    });
     let vortex = STUDY.replace("terzaghi", "manufactured-vortex");
     held(&[("amplitude = [#]", &["-4.0", "0.05", "4.0"], &["-4.000001", "4.000001"])], |sweep| {
         said(&vortex, "", sweep, "")
@@ -130,6 +137,11 @@ fn expectations_are_taken_up_to_their_limits_and_no_further() {
         ("status = #", &["'ok'", "'unstable'"], &["'fine'"]),
     ];
     held(&OF_SERIES, |asked| said(STUDY, "", "", &format!("[[expect]]\ntime_factor = 0.1\n{asked}")));
+    held(&[("#", &["1", "4", "16"], &["0", "-1", "17"])], |points| {
+        let at = format!("axis = 'points_per_cell'\nat = {{ points_per_cell = {points}, below = 0.1 }}");
+        let sweep = "points_per_cell = [1, 4, 16]";
+        said(STUDY, "", sweep, &format!("[[expect]]\ntime_factor = 0.1\ncells = 4\n{at}"))
+    });
     held(&[("time_factor = #", &["0.1"], &["0.100001", "0.0"])], |time| {
         said(STUDY, "", "", &format!("[[expect]]\n{time}\norder = {{ value = 2.0 }}"))
     });

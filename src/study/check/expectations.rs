@@ -547,3 +547,20 @@ fn listed(words: impl Iterator<Item = String>) -> String {
     }
     once.join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dozen_words_are_listed_and_of_more_there_is_a_sign() {
+        let words =
+            |count: usize| listed((0..count).flat_map(|word| [word, word]).map(|word| word.to_string()));
+        let all: Vec<String> = (0..13).map(|word| word.to_string()).collect();
+        assert_eq!(words(0), "");
+        assert_eq!(words(1), "0");
+        assert_eq!(words(12), all[..12].join(", "));
+        assert_eq!(words(13), all[..12].join(", ") + ", …");
+        assert_eq!(words(40), words(13));
+    }
+}

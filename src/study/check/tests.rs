@@ -328,3 +328,80 @@ mod expectations_that_cannot_be_judged {
         }
     }
 }
+
+mod defaults {
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    const STUDY: &str = "title = 't'\nscene = 'terzaghi'\ncase_seconds = 77.0\noutput.time_factors = [0.1]\n\
+                         {solver}\n[[sweep]]\nmethod = ['MPM', 'toy']\nintegrator = ['implicit']\n\
+                         cells = [4, 8, 16]\n[[expect]]\nmethod = 'MPM'\ntime_factor = 0.1\n{demand}\n";
+    const SOLVER: &str = "[[solver]]\nname = 'toy'\ncommand = ['true']\nresult = '{out}/r.csv'\n";
+
+    fn checked(solver: &str, demand: &str) -> Study {
+        let text = STUDY.replace("{solver}", &format!("{SOLVER}{solver}")).replace("{demand}", demand);
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text });
+        study.unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn a_solver_has_the_time_of_a_case_one_run_and_a_warm_up_before_several() {
+        for (typed, timeout, repeats, warm_up) in [
+            ("", 77.0, 1, false),
+            ("timeout = 5.0", 5.0, 1, false),
+            ("repeats = 3", 77.0, 3, true),
+            ("repeats = 3\nwarm_up = false", 77.0, 3, false),
+            ("warm_up = true", 77.0, 1, true),
+        ] {
+            let study = checked(typed, "order = { value = 1.0 }");
+            let solver = &study.solvers[0];
+            assert_eq!(
+                (solver.timeout, solver.repeats, solver.warm_up),
+                (timeout, repeats, warm_up),
+                "{typed}"
+            );
+            assert_eq!((solver.at_once, solver.solve_unit, solver.time_step), (1, 1.0, None));
+        }
+    }
+
+    #[test]
+    fn a_demand_has_a_tenth_on_both_sides_no_lower_bound_and_a_strict_mark() {
+        let demand = |typed: &str| checked("", typed).expectations[0].demand.clone();
+        let order = |typed: &str| {
+            let band = demand(typed).order.expect("an order");
+            [band.value, band.minus, band.plus]
+        };
+        assert_eq!(order("order = { value = 1.5 }"), [1.5, 0.1, 0.1]);
+        assert_eq!(order("order = { value = 1.5, minus = 0.3 }"), [1.5, 0.3, 0.1]);
+        assert_eq!(order("order = { value = 1.5, plus = 0.3 }"), [1.5, 0.1, 0.3]);
+        let level = demand("at = { cells = 8, below = 0.5 }").at.expect("a level");
+        assert_eq!((level.size, level.below, level.above), (1.0 / 8.0, 0.5, 0.0));
+        let floor = |typed: &str| demand(typed).floor.map(|band| [band.above, band.below]);
+        assert_eq!(floor("floor = { below = 0.5 }"), Some([0.0, 0.5]));
+        assert_eq!(floor("floor = { above = 0.5 }"), Some([0.5, f64::MAX]));
+        for (typed, strict) in [("", true), (", strict = false", false), (", strict = true", true)] {
+            let known = demand(&format!("order = {{ value = 1.0 }}\nxfail = {{ reason = 'known'{typed} }}"));
+            assert_eq!(known.xfail.map(|known| known.strict), Some(strict), "{typed}");
+        }
+    }
+
+    #[test]
+    fn a_failure_is_foreseen_for_the_cases_that_are_selected_and_no_other() {
+        use crate::case::planned::Tier;
+        use crate::record::Status;
+        use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2, 4, 8]\n[[expect_case]]\ncells = 4\nstatus = 'unstable'\n";
+        let study =
+            Study::check(&StudySource { name: "t.toml".to_owned(), text: text.to_owned() }).expect("sound");
+        assert_eq!(study.cases(Tier::Full).len(), 3);
+        for mut record in crate::campaign::runner::records_of(text) {
+            for kind in [FailureKind::Unstable, FailureKind::TimedOut] {
+                record.status = Status::Failed(Failure::of_attached(kind, String::new()));
+                let is_foreseen = record.case.cells == 4 && kind == FailureKind::Unstable;
+                assert_eq!(study.foresees(&record), is_foreseen, "{} {kind:?}", record.case.cells);
+            }
+        }
+    }
+}
