@@ -265,4 +265,14 @@ mod tests {
         assert_eq!(renamed, value("GIMP implicit cells=16 points=2 growth=0.05"));
         assert_eq!(told(&before, &inputs("", "[4]")), [""; 0], "a case that is gone has no partner");
     }
+
+    #[test]
+    fn a_renamed_case_has_its_nearest_and_leaves_the_others_theirs() {
+        let of = |values: [&'static str; 3]| {
+            BTreeMap::from([("k", values[0]), ("l", values[1]), ("m", values[2])])
+        };
+        let before = BTreeMap::from([("a", of(["1", "1", "1"])), ("b", of(["8", "8", "8"]))]);
+        let after = BTreeMap::from([("c", of(["1", "1", "2"])), ("d", of(["1", "9", "9"]))]);
+        assert_eq!(nearest(&before, &after), BTreeMap::from([("a", "c"), ("b", "d")]));
+    }
 }

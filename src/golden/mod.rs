@@ -336,4 +336,29 @@ mod tests {
         };
         assert_eq!(counted(101.0).keeping(&counted(100.0)), counted(101.0));
     }
+
+    #[test]
+    fn a_critical_step_that_nobody_observed_is_no_number_of_seconds() {
+        let mut records = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2]\n",
+        );
+        for (observed, stored) in [(None, -1.0), (Some(3.0), 3.0)] {
+            records[0].stability = Some(crate::record::CriticalStep {
+                predicted: 2.0,
+                creeping_from: None,
+                unknown: None,
+                observed,
+                wave_limit: 4.0,
+                drag_limit: 8.0,
+                combined_limit: 5.0,
+                probes: Vec::new(),
+                asymmetry: None,
+            });
+            let label = records[0].case.label();
+            let values = values_of(&records);
+            let step = |which: &str| values[&format!("{label} | {which} critical step")];
+            assert_eq!((step("predicted"), step("observed")), (2.0, stored));
+        }
+    }
 }

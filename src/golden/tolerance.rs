@@ -318,4 +318,25 @@ mod tests {
         let error = GoldenFile::read(folder.path(), "study").expect_err("refused");
         assert!(error.to_string().contains("its `relative_tolerance` is 1e9"), "{error}");
     }
+
+    #[test]
+    fn a_spread_is_the_largest_change_and_its_room_that_of_the_largest_value_wherever_they_stand() {
+        let name = |norm: &str| format!("MPM cells=4 | pressure points {norm} terzaghi T_v=0.1");
+        let values = |all: [f64; 3]| -> BTreeMap<String, f64> {
+            ["l1", "l2", "linf"].map(name).into_iter().zip(all).collect()
+        };
+        let (mut changes, mut sizes) = ([3e-5, 1e-5, 2e-5], [1.0, 1e-3, 2e-3]);
+        for _ in 0..3 {
+            let others = changes.map(|change| values([1.0, 1.0 - change, 1.0]));
+            let spread = spread_by_group(&values([1.0; 3]), &others);
+            assert!((spread[GROUP] / 3e-5 - 1.0).abs() < 1e-9, "{changes:?}: {spread:?}");
+            let spread = spread_by_group(&values([1.0; 3]), [&values(changes.map(|change| 1.0 + change))]);
+            assert!((spread[GROUP] / 3e-5 - 1.0).abs() < 1e-9, "{changes:?}: {spread:?}");
+            let spread = BTreeMap::from([(GROUP.to_owned(), 9e-3)]);
+            let file = GoldenFile { values: values(sizes), ..GoldenFile::of("study", &[], "a reason") };
+            assert_eq!(file.widened_by(spread).out_of_bounds(), None, "{sizes:?}");
+            changes.rotate_left(1);
+            sizes.rotate_left(1);
+        }
+    }
 }

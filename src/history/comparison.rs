@@ -449,4 +449,33 @@ mod tests {
         assert_eq!(old, Seconds { median: 22.0, least: 11.0, most: 33.0 });
         assert_eq!(new, Seconds { median: 45.0, least: 44.0, most: 46.0 });
     }
+
+    #[test]
+    fn an_arrow_is_that_of_the_pressure_at_the_last_output_wherever_it_is_listed() {
+        let named = |factor: f64| -> BTreeMap<String, f64> {
+            let rows = [
+                ("effective_stress points l2 terzaghi T_v=10", 1e-1),
+                ("point updates", 100.0),
+                ("pressure points l2 terzaghi T_v=0.1", 2e-2),
+                ("pressure points l2 terzaghi T_v=10", 3e-2),
+                ("pressure points l2 terzaghi T_v=2", 4e-2),
+                ("settlement surface relative terzaghi T_v=10", -5e-2),
+            ];
+            rows.map(|(name, value)| (format!("MPM | {name}"), factor * value)).into()
+        };
+        let [arrow] = arrows(&named(1.0), &named(2.0)).try_into().unwrap_or_else(|_| panic!("one case"));
+        assert_eq!((arrow.before, arrow.after), ((100.0, 3e-2), (200.0, 6e-2)));
+    }
+
+    #[test]
+    fn signs_of_a_series_belong_to_their_levels_in_whatever_order_they_are_listed() {
+        let name = |cells: u32| format!("MPM cells={cells} | settlement surface relative terzaghi T_v=0.1");
+        let values: BTreeMap<String, f64> = [(4, 0.16), (8, -0.04), (16, 0.01), (32, -0.0025)]
+            .map(|(cells, error)| (name(cells), error))
+            .into();
+        let asked = places(&name(4)).into_iter().map(|(key, _)| key).collect();
+        let found = behaviours(&values, &asked);
+        assert_eq!(found.len(), 1);
+        assert!(found.values().all(|one| one.class == "oscillatory" && one.order.is_none()), "{found:?}");
+    }
 }

@@ -184,6 +184,7 @@ mod tests {
         assert!((step.work_index - 1.5_f64.sqrt()).abs() < 1e-14, "{}", step.work_index);
         assert!((step.largest_change - 2.0 / 3.0).abs() < 1e-14, "{}", step.largest_change);
         let next = Step::of(&commit, Some(&step), Some(&after), &after);
-        assert_eq!((next.moved, next.unpaired, next.error_index), (0, 0, step.error_index));
+        assert_eq!((next.moved, next.unpaired, next.largest_change), (0, 0, 0.0));
+        assert_eq!((next.error_index, next.work_index), (step.error_index, step.work_index));
     }
 }

@@ -219,6 +219,7 @@ pub fn place_of_attached(record: &Record, row: &ErrorRow) -> Option<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::case::quantity::Quantity;
 
     #[test]
     fn golden_values_of_a_case_differ_or_agree_and_are_counted_once() {
@@ -236,5 +237,27 @@ mod tests {
         let (differences, agreeing) = differences_of(&records[0], &golden);
         assert_eq!((2 * differences.len(), differences.len() + agreeing), (errors.len(), of_first));
         assert!(!differences.is_empty() && agreeing > 0);
+    }
+
+    #[test]
+    fn the_largest_error_of_all_outputs_carries_wherever_it_stands() {
+        let mut record = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2, 0.4]\n[[sweep]]\nmethod = ['MPM']\n\
+             cells = [3]\nintegrator = ['implicit']\n",
+        )
+        .remove(0);
+        let mut errors = [3e-2, -1e-2, 2e-2];
+        for _ in 0..3 {
+            for row in record.errors.iter_mut().filter(|row| row.quantity == Quantity::Settlement) {
+                let place =
+                    [0.1, 0.2, 0.4].iter().position(|time| *time == row.time_factor).expect("an output");
+                row.value = errors[place];
+            }
+            let carriers = carriers_of(&record).expect("a theory");
+            let own =
+                carriers.iter().find(|one| one.row.quantity == Quantity::Settlement).expect("a carrier");
+            assert_eq!(own.row.value, 3e-2, "{errors:?}");
+            errors.rotate_left(1);
+        }
     }
 }

@@ -107,6 +107,8 @@ pub fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Task;
+    use oedometer_mpm::scene::SceneKind;
 
     /// `U = a √T_v` at seven rows from 0.01 to 0.64.
     fn curve() -> Vec<HistoryRow> {
@@ -133,5 +135,20 @@ mod tests {
         assert!((curve_gap(&curve, 0.04, 0.2 + 0.01) - 0.01).abs() < 1e-9);
         assert_eq!(curve_gap(&curve, 0.005, 5.0), 0.0, "before the first row there is no curve");
         assert_eq!(curve_gap(&curve, 0.9, 5.0), 0.0, "nor beyond the last");
+    }
+
+    #[test]
+    fn an_unbalanced_force_is_a_share_of_the_load_and_in_the_plane_of_that_on_a_cell() {
+        for scene in [SceneKind::Terzaghi, SceneKind::CosineLayer] {
+            let case = Case { cells: 5, ..Case::seed(Task::Solve, scene) };
+            let load = case.column.pressure_scale();
+            let on = if scene == SceneKind::Terzaghi { load } else { load * case.column.height / 5.0 };
+            let parameters = column_parameters(&case.column, &case.material);
+            let own = Reference::new(case.scene.references()[0], &parameters, &[]).expect("a seed");
+            let mut start = Snapshot::default();
+            start.totals.unbalanced_force = 0.3 * on;
+            let found = start_checks(&case, Some(&own), &start).expect("a seed").unbalanced_force;
+            assert!((found - 0.3).abs() < 1e-12, "{scene:?}: {found}");
+        }
     }
 }

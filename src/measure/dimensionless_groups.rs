@@ -164,4 +164,25 @@ mod tests {
         let found = skeleton_inertia(&case);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found:e} for {expected:e}");
     }
+
+    #[test]
+    fn what_steps_damp_of_a_wave_is_the_most_of_all_outputs() {
+        let mut case = Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::DynamicColumn);
+        (case.integrator, case.time_step) = (IntegratorKind::SemiImplicit, TimeStepRule::Seconds(1e-4));
+        let wave = SlowestWave::of(&case);
+        let unit = 1.0 / case.seconds_per_time_factor();
+        let damped = |case: &mut Case, times: &[f64]| {
+            case.time_factors = times.to_vec().into();
+            wave.damped_by_steps(case)
+        };
+        // Later than it takes the soil to damp the wave nothing is left to damp.
+        let mut times = [0.01, 0.1, 100.0].map(|share| share * unit / wave.damping);
+        let each = times.map(|time| damped(&mut case, &[time]));
+        let most = each.into_iter().fold(0.0, f64::max);
+        assert!(most > each[0] && most > each[2], "{each:?}");
+        for _ in 0..3 {
+            assert_eq!(damped(&mut case, &times), most, "{times:?}");
+            times.rotate_left(1);
+        }
+    }
 }

@@ -159,11 +159,37 @@ fn oscillation(points: &Samples, across: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Task;
+    use oedometer_exact::reference::ReferenceKind;
+    use oedometer_mpm::scene::column::column_parameters;
 
     #[test]
     fn a_pressure_that_alternates_oscillates_by_four_amplitudes_and_a_slope_by_nothing() {
         let of = |pressure: Vec<f64>| oscillation(&Samples { pressure, ..Samples::default() }, 4);
         assert_eq!(of(vec![1.0, 2.0, 3.0, 4.0, 7.0, 5.0, 3.0, 1.0]), 0.0);
         assert_eq!(of(vec![0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5, 0.5]), 2.0);
+    }
+
+    #[test]
+    fn the_slope_of_a_plateau_is_that_of_the_last_two_loads_in_time() {
+        let mut case = Case::seed(Task::Solve, SceneKind::Footing);
+        case.time_factors = vec![0.5, 1.0, 1.25].into();
+        let half = 0.5 * case.column.footing.width * case.material.undrained_strength;
+        let snapshots =
+            [3.0, 4.0, 4.5].map(|load| Snapshot { plate_force: Some(load * half), ..Snapshot::default() });
+        let parameters = column_parameters(&case.column, &case.material);
+        let own = Reference::new(ReferenceKind::Footing, &parameters, &[]).expect("the seed footing");
+        let measures = measures_of_footing(&case, &own, &snapshots);
+        let of = |name: &str| -> Vec<(Option<f64>, f64)> {
+            measures.iter().filter(|row| row.name == name).map(|row| (row.time_factor, row.found)).collect()
+        };
+        let near = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-12, "{measures:?}");
+        near(of("plateau_slope")[0].1, 2.0);
+        for ((time, found), (wanted, load)) in
+            of(Quantity::LoadFactor.name()).into_iter().zip([(0.5, 3.0), (1.0, 4.0), (1.25, 4.5)])
+        {
+            assert_eq!(time, Some(wanted));
+            near(found, load);
+        }
     }
 }

@@ -208,3 +208,31 @@ fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, Exa
     }
     Ok(entry)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reference_is_as_accurate_as_at_its_worst_output_wherever_that_stands() {
+        let mut case = Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi);
+        let mut times = [1e-4, 0.1, 1.0];
+        let bounds = |case: &Case| -> (Vec<f64>, ReferenceUse) {
+            let parameters = column_parameters(&case.column, &case.material);
+            let reference =
+                Reference::new(ReferenceKind::Terzaghi, &parameters, &case.time_factors).expect("a theory");
+            let bound = |time: &f64| reference.accuracy(*time).expect("a time").bound();
+            (
+                case.time_factors.iter().map(bound).collect(),
+                reference_use(case, &reference).expect("a theory"),
+            )
+        };
+        for _ in 0..3 {
+            case.time_factors = times.to_vec().into();
+            let (each, used) = bounds(&case);
+            assert!(each.iter().any(|bound| *bound < used.tail_bound), "{each:?}");
+            assert_eq!(used.tail_bound, each.into_iter().fold(0.0, f64::max), "{times:?}");
+            times.rotate_left(1);
+        }
+    }
+}

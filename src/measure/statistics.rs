@@ -168,4 +168,12 @@ mod tests {
         }
         assert_eq!(largest([]), None);
     }
+
+    #[test]
+    fn noise_is_what_lies_farther_from_one_on_either_side() {
+        let ratios = spread(&[0.7, 1.0, 1.2]).expect("ratios");
+        for (interval, noise) in [(Some((0.8, 1.1)), 0.2), (Some((0.95, 1.3)), 0.3), (None, 0.3)] {
+            assert!((noise_floor(&PairedRatio { ratios, interval }) - noise).abs() < 1e-12, "{interval:?}");
+        }
+    }
 }

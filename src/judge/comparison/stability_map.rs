@@ -150,4 +150,31 @@ mod tests {
         assert_eq!(axis(&sweep("1e-4", "0.3, 0.4")), Some(porosity));
         assert_eq!(axis(""), None);
     }
+
+    #[test]
+    fn the_largest_deviation_counts_on_both_sides_wherever_it_stands() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2]\nhydraulic_conductivity = [1e-4, 1e-5, 1e-6]\n",
+        );
+        for (place, worst) in (0..3).flat_map(|place| [(place, 0.6), (place, 1.4)]) {
+            let mut records = records.clone();
+            for (number, record) in records.iter_mut().enumerate() {
+                record.stability = Some(CriticalStep {
+                    predicted: 2.0,
+                    creeping_from: None,
+                    unknown: None,
+                    observed: Some(2.0 * if number == place { worst } else { 0.9 }),
+                    wave_limit: 4.0,
+                    drag_limit: 8.0,
+                    combined_limit: 3.0,
+                    probes: Vec::new(),
+                    asymmetry: None,
+                });
+            }
+            let maps = maps_of(&records);
+            assert_eq!(maps.len(), 1);
+            assert!((maps[0].largest_deviation - 0.4).abs() < 1e-12, "{worst} at {place}: {maps:?}");
+        }
+    }
 }

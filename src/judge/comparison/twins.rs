@@ -196,6 +196,7 @@ impl Situation {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::record::WallSample;
 
     #[test]
     fn twins_differ_in_one_input_alone() {
@@ -269,5 +270,20 @@ mod tests {
         assert_eq!(one(growing, ""), Situation::GrowingLoad);
         let much = "scene = 'xie-leo'\ncolumn.load = 8.4e5\nmaterial.porosity = 0.7";
         assert_eq!(one(much, ""), Situation::MuchOfTheHeight);
+    }
+
+    #[test]
+    fn a_cost_is_the_time_of_the_other_over_that_of_the_one() {
+        let mut records = records_of(
+            "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [4]\npoints_per_cell = [2, 4]\n",
+        );
+        for record in &mut records {
+            let seconds = if record.case.points_per_cell == 2 { 2.0 } else { 5.0 };
+            record.wall = vec![WallSample { seconds, ..WallSample::default() }];
+        }
+        let key = Key::named("points_per_cell", "sweep").expect("a key");
+        let pairs = twins(&records, key, (Value::Count(2), Value::Count(4)));
+        assert_eq!(by_situation(&pairs)[0].cost, Some(2.5));
     }
 }

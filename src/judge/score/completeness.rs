@@ -352,4 +352,26 @@ mod tests {
         assert_eq!(interior_zeros(&column, &[state([1.0, 0.9, 0.8, 0.4, 0.0])]), None);
         assert_eq!(interior_zeros(&column, &[state([0.0; 5])]), None, "nothing but zeros is another mistake");
     }
+
+    #[test]
+    fn as_much_volume_may_be_missing_as_the_column_has_settled_as_a_share_of_it() {
+        let tall = ColumnParameters { height: 4.0, ..ColumnParameters::default() };
+        let load = tall.load * 0.02 * tall.height / tall.final_settlement();
+        let column = ColumnParameters { load, ..tall };
+        let whole = Whole {
+            parameters: &column,
+            reference: ReferenceKind::Terzaghi,
+            volumes: &[4.0],
+            is_declared: false,
+            has_volumes: true,
+        };
+        let said = |missing: f64| {
+            let volume = vec![0.5 * 4.0 * (1.0 - missing); 2];
+            let state = SampledState { time: column.time(2.0), volume, ..SampledState::default() };
+            whole.volume(&[state]).expect("the seed column")
+        };
+        assert_eq!((said(0.0), said(0.019)), (None, None), "it settles by 2 %");
+        assert_eq!(said(0.025).map(|found| found.name), Some(Lack::VolumeDiffers));
+        assert_eq!(said(-0.002).map(|found| found.name), Some(Lack::VolumeDiffers));
+    }
 }

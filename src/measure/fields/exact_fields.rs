@@ -163,8 +163,11 @@ pub fn exact_samples(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Task;
     use oedometer_exact::parameters::ColumnParameters;
     use oedometer_exact::reference::ReferenceKind;
+    use oedometer_mpm::scene::SceneKind;
+    use oedometer_mpm::scene::column::column_parameters;
 
     #[test]
     fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {
@@ -188,5 +191,23 @@ mod tests {
         }
         let beyond = SamplePlaces { height: column.height, heights: &in_order, distances: &[] };
         assert!(ExactFields::of(&reference, -0.1, beyond).is_err(), "by every thread");
+    }
+
+    #[test]
+    fn exact_displacements_are_those_at_their_own_heights() {
+        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let column = column_parameters(&case.column, &case.material);
+        let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).expect("the seed column");
+        let at = |height: f64| reference.fields(0.1, 1.0 - height / column.height).expect("inside");
+        let samples = |displaced: Option<f64>| Samples {
+            initial_height: vec![0.2 * column.height],
+            displacement_height: displaced.map(|height| vec![height]),
+            ..Samples::default()
+        };
+        for height in [None, Some(0.9 * column.height)] {
+            let exact = exact_samples(&case, &reference, 0.1, &samples(height)).expect("inside");
+            assert_eq!(exact.pressure, [at(0.2 * column.height).pressure]);
+            assert_eq!(exact.displacement, [at(height.unwrap_or(0.2 * column.height)).displacement]);
+        }
     }
 }

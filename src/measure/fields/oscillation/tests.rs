@@ -81,3 +81,35 @@ fn a_smooth_error_has_no_oscillation_and_a_checkerboard_has() {
     let board = field(|i, j| (i + 2 * j) as f64 + if (i + j) % 2 == 0 { 5.0 } else { -5.0 });
     assert!(board.oscillation_index() > 4.0, "{}", board.oscillation_index());
 }
+
+#[test]
+fn a_saw_along_rows_and_one_up_columns_oscillate_alike() {
+    let saw = |index: usize| if index.is_multiple_of(2) { 5.0 } else { -5.0 };
+    let along = field(|i, j| (i + 2 * j) as f64 + saw(i)).oscillation_index();
+    let up = field(|i, j| (i + 2 * j) as f64 + saw(j)).oscillation_index();
+    // Steps of 9 and 11 instead of 1 along six rows of three, of 8 and 12 instead of 2 up four columns of five.
+    let exact = 6.0 * 3.0 + 4.0 * 10.0;
+    assert!((along - (6.0 * (9.0 + 11.0 + 9.0) + 40.0 - exact) / exact).abs() < 1e-12, "{along}");
+    assert!((up - (18.0 + 4.0 * (3.0 * 8.0 + 2.0 * 12.0) - exact) / exact).abs() < 1e-12, "{up}");
+}
+
+#[test]
+fn the_exact_field_of_a_time_is_not_that_of_another() {
+    let records = crate::campaign::runner::records_of(
+        "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.02, 0.1, 0.3]\n[[sweep]]\n\
+         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4]\n",
+    );
+    let record = &records[0];
+    let case = &record.case;
+    let own = case.scene.references()[0].of_soil(&case.material);
+    for _ in 0..2 {
+        for time in [0.1, 0.02, 0.3] {
+            let field = PlaneField::of(record, time).expect("a theory").expect("a plane");
+            let reference = known_reference(case, own, &[time]).expect("a theory");
+            let points = &record.snapshot(time).expect("a state").points;
+            let exact = exact_samples(case, &reference, time, points).expect("inside").pressure;
+            let load = case.column.pressure_scale();
+            assert_eq!(field.exact, exact.iter().map(|p| p / load).collect::<Vec<f64>>(), "{time}");
+        }
+    }
+}
