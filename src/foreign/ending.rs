@@ -397,4 +397,18 @@ mod tests {
         assert_eq!(difference(&[state(1.0)], &[elsewhere]), f64::INFINITY);
         assert_eq!(difference(&[state(1.0)], &[]), f64::INFINITY);
     }
+
+    #[test]
+    fn a_stretch_is_bare_beyond_three_quarters_of_a_cell_at_an_end_and_one_and_a_half_inside() {
+        for (off, is_bare) in [(0.074, false), (0.075, false), (0.076, true)] {
+            let (low, high, extent) = (lattice(10, off, 0.1), lattice(10, 0.0, 0.1), 0.9 + off);
+            assert_eq!(bare(&low, extent, 0.1, true), is_bare.then_some([0.0, off]));
+            assert_eq!(bare(&high, extent, 0.1, true), is_bare.then_some([0.9, extent]));
+            assert_eq!(bare(&high, extent, 0.1, false), None, "an end that is not held");
+        }
+        for (gap, is_bare) in [(0.149, false), (0.15, false), (0.151, true)] {
+            let places = [0.05, 0.1, 0.1 + gap, 0.2 + gap];
+            assert_eq!(bare(&places, 0.25 + gap, 0.1, true), is_bare.then_some([0.1, 0.1 + gap]), "{gap}");
+        }
+    }
 }

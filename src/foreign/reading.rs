@@ -254,4 +254,34 @@ mod tests {
             assert!(!names_no_finite_number(told), "{told}");
         }
     }
+
+    #[test]
+    fn the_time_step_of_the_study_goes_over_that_of_its_mapping() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        std::fs::write(folder.path().join("m.toml"), "columns = { p = \"p\" }\ntime = { step = 3.0 }\n")
+            .expect("written");
+        for (of_study, taken) in [(None, Some(3.0)), (Some(2.0), Some(2.0))] {
+            let mut solver = crate::foreign::attachment::tests::solver(folder.path(), &["true"]);
+            (solver.time_step, solver.mapping) = (of_study, Some("m.toml".to_owned()));
+            assert_eq!(mapping_of(&solver, false).expect("a mapping").time.step, taken);
+        }
+    }
+
+    #[test]
+    fn a_result_has_at_most_the_heights_of_the_case() {
+        let case = Case {
+            cells: 4,
+            ..Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi)
+        };
+        let is_other = |sample: Sample, heights: usize| {
+            let height = |place: usize| case.column.height * place as f64 / heights as f64;
+            let initial_height = (0..heights).map(height).collect();
+            other_mesh(&case, sample, &SampledState { initial_height, ..SampledState::default() }).is_some()
+        };
+        for (sample, most) in [(Sample::Nodes, 5), (Sample::Centres, 4)] {
+            let found = [most - 1, most, most + 1].map(|heights| is_other(sample, heights));
+            assert_eq!(found, [false, false, true], "{sample:?}");
+        }
+        assert!(!is_other(Sample::Points, 40), "a cell may have many points");
+    }
 }

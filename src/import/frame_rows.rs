@@ -414,6 +414,12 @@ mod tests {
         assert_eq!(cells(&[0.0, 0.5, 1.2, 2.0]), Some(3));
         assert_eq!(cells(&[0.0, 2.0]), Some(1));
         assert_eq!(cells_over_height(&Frame::default(), &mapping, 2.0), None);
+        // Nodes of one level that differ by the last digit of a file in millimetres.
+        let text = "units = { length = \"mm\" }".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).expect("a mapping");
+        let mut frame = line(&[0.0, 500.0, 1200.0, 2000.0], 9, 4);
+        frame.coordinates.iter_mut().step_by(2).for_each(|place| place[1] += 0.01);
+        assert_eq!(cells_over_height(&frame, &mapping, 2.0), Some(3));
     }
 
     #[test]

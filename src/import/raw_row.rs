@@ -224,4 +224,28 @@ mod tests {
         let down = sample("displacement = { from = \"first-frame\" }\nsign = { y = \"down\" }", row);
         assert_eq!((down.initial_height, down.displacement), (1.5, -0.01));
     }
+
+    #[test]
+    fn above_the_surface_of_the_water_nothing_is_at_rest() {
+        let mapping = "hydrostatic = { unit_weight = 9810.0, surface = 1.2 }\ncolumns = { p = \"p\" }\n";
+        for (y, at_rest) in [(0.0, 1.2 * 9810.0), (0.7, 0.5 * 9810.0), (1.2, 0.0), (1.9, 0.0)] {
+            let found = sample(mapping, RawRow { y, pressure: Some(20.0), ..RawRow::default() });
+            assert!((found.pressure - (20.0 - at_rest)).abs() < 1e-9, "{y}: {}", found.pressure);
+        }
+    }
+
+    #[test]
+    fn a_displacement_taken_from_places_has_their_unit_and_one_of_a_column_its_own() {
+        let units = "units = { length = \"cm\", displacement = \"mm\" }\n";
+        let row = RawRow { x: Some(10.0), y: 50.0, ..RawRow::default() };
+        let of = |found: SampleRow| [found.horizontal_displacement, found.displacement];
+        let near = |found: [f64; 2], wanted: [f64; 2]| {
+            assert!(found.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 1e-15), "{found:?}");
+        };
+        let from = format!("displacement = {{ from = \"first-frame\" }}\n{units}");
+        near(of(sample(&from, RawRow { moved: Some([0.3, 2.0]), ..row })), [0.003, 0.02]);
+        let (displacement, horizontal_displacement) = (Some(2.0), Some(0.3));
+        let columns = format!("columns = {{ u_y = \"u\", u_x = \"v\" }}\n{units}");
+        near(of(sample(&columns, RawRow { displacement, horizontal_displacement, ..row })), [0.0003, 0.002]);
+    }
 }

@@ -309,6 +309,9 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::mapping::Column;
+    use crate::study::file::StudySource;
+    use oedometer_formats::Array;
 
     #[test]
     fn patterns_find_files_in_the_order_of_their_numbers() {
@@ -321,5 +324,102 @@ mod tests {
         assert_eq!(names, ["a_9.vtk", "a_10.vtk", "a_100.vtk"]);
         assert!(files_of(&[folder.path().join("c*")]).is_err());
         assert_eq!(without_numbers("col_ts_50_t_4.0875.vtu"), "col_ts_#_t_#.#.vtu");
+    }
+
+    fn reading() -> Reading {
+        let key = (PathBuf::new(), String::new(), None, 0);
+        Reading { key, run: Run::default(), start: None, rows: Vec::new(), steps: 0 }
+    }
+
+    const BODY: SolvedBody = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+
+    #[test]
+    fn a_start_is_left_out_only_where_no_place_has_a_pressure() {
+        let mapping = Mapping::convention(false).expect("the convention");
+        for (at_start, states) in [([0.0, 0.0], 1), ([1.0, 0.0], 2), ([0.0, 1.0], 2), ([1.0, 1.0], 2)] {
+            let mut reading = reading();
+            for (time, pressures) in [(0.0, at_start), (1.0, [0.5, 0.0])] {
+                reading.rows.extend(pressures.into_iter().zip([0.0, 1.0]).map(|(pressure, height)| {
+                    SampleRow {
+                        time,
+                        initial_distance: f64::NAN,
+                        initial_height: height,
+                        volume: 1.0,
+                        pressure,
+                        effective_stress: f64::NAN,
+                        displacement: f64::NAN,
+                        horizontal_displacement: f64::NAN,
+                        others: 0,
+                    }
+                }));
+            }
+            let run = reading.done(&mapping, BODY).expect("two states");
+            assert_eq!(run.states.len(), states, "{at_start:?}");
+            assert_eq!(run.notes.iter().any(|note| note.contains("is left out")), states == 1);
+        }
+    }
+
+    #[test]
+    fn what_any_state_has_is_expected_of_every_other() {
+        let text = "columns = { y = \"coordinates[1]\", p = \"p\", u_y = \"u\" }".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+        let mapping = Mapping { optional: vec!["u_y".to_owned()], ..mapping };
+        let file = PathBuf::from("a.vtu");
+        let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
+        for lacking in 0..3_usize {
+            let mut reading = reading();
+            for place in 0..3_usize {
+                let array = |name: &str| Array {
+                    name: name.to_owned(),
+                    on: Association::Points,
+                    components: 1,
+                    tuples: 2,
+                    values: vec![1.0, 0.5],
+                };
+                let names = if place == lacking { &["p"][..] } else { &["p", "u"] };
+                let frame = Frame {
+                    time: Some(1.0 + place as f64),
+                    coordinates: vec![[0.0; 3], [0.0, 1.0, 0.0]],
+                    arrays: names.iter().map(|name| array(name)).collect(),
+                    ..Frame::default()
+                };
+                reading.take(&step, &frame, &mapping, BODY).expect("a state");
+            }
+            let run = reading.done(&mapping, BODY).expect("three states");
+            let absent = run.expected.absent(&run.states);
+            let told: Vec<_> = absent.iter().map(|one| (one.column, one.states.as_slice())).collect();
+            assert_eq!(told, [(Some(Column::Up), &[lacking][..])]);
+        }
+    }
+
+    #[test]
+    fn a_point_that_moved_stays_where_it_began_along_and_up() {
+        let text = "columns = { x = \"coordinates[0]\", y = \"coordinates[1]\", p = \"p\" }\n\
+                    displacement = { from = \"first-frame\" }\n";
+        let source = StudySource { name: "m.toml".to_owned(), text: text.to_owned() };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let file = PathBuf::from("a.vtu");
+        let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
+        let mut reading = reading();
+        for (time, [along, up]) in [(1.0, [0.0, 0.0]), (2.0, [0.02, -0.01])] {
+            let frame = Frame {
+                time: Some(time),
+                coordinates: vec![[0.3 + along, 0.5 + up, 0.0]],
+                arrays: vec![Array {
+                    name: "p".to_owned(),
+                    on: Association::Points,
+                    components: 1,
+                    tuples: 1,
+                    values: vec![1.0],
+                }],
+                ..Frame::default()
+            };
+            reading.take(&step, &frame, &mapping, BODY).expect("a state");
+        }
+        let last = reading.done(&mapping, BODY).expect("two states").states.remove(1);
+        let found =
+            [&last.initial_distance, &last.initial_height, &last.horizontal_displacement, &last.displacement];
+        let near = |(found, wanted): (&&Vec<f64>, f64)| (found[0] - wanted).abs() < 1e-15;
+        assert!(found.iter().zip([0.3, 0.5, 0.02, -0.01]).all(near), "{found:?}");
     }
 }

@@ -629,3 +629,51 @@ fn one_changed_byte_of_what_has_a_checksum_is_refused_or_changes_nothing() {
         assert!(unpacked(&packed[..packed.len() - cut]).is_err_and(|why| why.contains("checksum")), "{cut}");
     }
 }
+
+#[test]
+fn a_slab_that_leaves_out_rows_or_begins_inside_one_is_refused() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.xdmf");
+    let names = all_names();
+    let refused = |item: &str| {
+        std::fs::write(&path, xdmf_of([pressure_of(item)].into_iter())).expect("a file");
+        let steps = steps_of(&path, &mut Vec::new()).expect("one state");
+        first_frame(&steps, Wanted(&names)).expect_err("there is no such store").to_string()
+    };
+    // Start, stride and size along both axes.
+    for (slab, is_read) in [
+        ("0 0 1 1 2 3", true),
+        ("4 0 1 1 2 3", true),
+        ("0 1 1 1 2 3", false),
+        ("0 0 2 1 2 3", false),
+        ("0 0 1 2 2 3", false),
+    ] {
+        let source = "<DataItem Format=\"HDF\" Dimensions=\"9 3\">gone.h5:/p</DataItem>";
+        let item = format!(
+            "<DataItem ItemType=\"HyperSlab\" Dimensions=\"2 3\"><DataItem Dimensions=\"3 2\">{slab}</DataItem>{source}</DataItem>"
+        );
+        let numbers: Vec<&str> = slab.split(' ').collect();
+        let after = numbers.chunks(2).map(|pair| pair.join(" ")).collect::<Vec<_>>().join(":");
+        let beside = format!("<DataItem Format=\"HDF\" Dimensions=\"2 3\">gone.h5:/p|{after}:9 3</DataItem>");
+        for item in [item, beside] {
+            let told = refused(&item);
+            assert_eq!(told.contains("consecutive whole rows"), !is_read, "{slab}: {told}");
+            assert_eq!(told.contains("gone.h5: "), is_read, "{slab}: {told}");
+        }
+    }
+}
+
+#[test]
+fn the_time_of_a_state_goes_over_that_of_the_list_which_names_it() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let state = format!("<Grid>{}</Grid>", pressure_of("<DataItem Dimensions=\"1\">3</DataItem>"));
+    for (own, wanted) in [("<Time Value=\"2\"/>", 2.0), ("", 7.0)] {
+        let state = state.replacen("<Grid>", &format!("<Grid>{own}"), 1);
+        std::fs::write(at("a.xdmf"), format!("<Xdmf><Domain>{state}</Domain></Xdmf>")).expect("a file");
+        let list = "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"7\" file=\"a.xdmf\"/></Collection></VTKFile>";
+        std::fs::write(at("a.pvd"), list).expect("a file");
+        let steps = steps_of(&at("a.pvd"), &mut Vec::new()).expect("a state");
+        assert_eq!((steps.len(), steps[0].time), (1, Some(wanted)), "{own}");
+    }
+}

@@ -179,6 +179,34 @@ mod runs {
     }
 
     #[test]
+    fn a_difference_of_repeats_is_the_largest_wherever_it_stands() {
+        let mut differences = [3e-3, 1e-3, 2e-3];
+        for _ in 0..3 {
+            let mut about = AttachedRun::default();
+            for difference in differences {
+                note_difference(&mut about, difference);
+            }
+            assert_eq!((about.repeats_differ_by, about.notes.len()), (Some(3e-3), 1), "{differences:?}");
+            differences.rotate_left(1);
+        }
+    }
+
+    #[test]
+    fn the_time_that_a_solver_tells_last_is_its_own() {
+        for (script, own) in [
+            ("echo took 1 s; echo took 3 s; echo took 2 s", Some(2.0)),
+            ("echo took 1 s; echo took 3 s >&2", Some(1.0)),
+            ("echo took 1 s >&2; echo took 3 s >&2", Some(3.0)),
+            ("echo took long", None),
+        ] {
+            let record = run(&format!("{script}; exit 1"), |solver| {
+                solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
+            });
+            assert_eq!(record.wall[0].own_seconds, own, "{script}");
+        }
+    }
+
+    #[test]
     fn no_more_runs_go_on_at_once_than_a_gate_lets_pass() {
         let (gate, inside, most) = (Gate::of(2), AtomicUsize::new(0), AtomicUsize::new(0));
         std::thread::scope(|scope| {
