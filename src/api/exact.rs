@@ -123,3 +123,31 @@ impl ExactValues {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_a_time_is_that_of_its_time() {
+        let times = [0.05, 0.2, 1.0];
+        let all = exact("terzaghi", &times, &[0.5], &[], &[]).expect("inside");
+        for (place, time) in times.into_iter().enumerate() {
+            let one = exact("terzaghi", &[time], &[0.5], &[], &[]).expect("inside");
+            let lists = |found: &ExactValues| {
+                [
+                    &found.time,
+                    &found.pressure,
+                    &found.effective_stress,
+                    &found.displacement,
+                    &found.settlement,
+                    &found.degree_of_consolidation,
+                ]
+                .map(Clone::clone)
+            };
+            for (all, one) in lists(&all).iter().zip(lists(&one)) {
+                assert!((all[place] / one[0] - 1.0).abs() < 1e-9, "{time}: {all:?} {one:?}");
+            }
+        }
+    }
+}

@@ -147,4 +147,22 @@ mod tests {
         let told = dotted_key("terzaghi", "permeability").expect_err("no such key");
         assert!(told.contains("`permeability`") && told.contains("hydraulic_conductivity"), "{told}");
     }
+
+    #[test]
+    fn a_preset_that_is_named_is_the_one_that_is_taken() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let file = folder.path().join("a.vtk");
+        let text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 0 1 0\n\
+                    FIELD f 1\nTIME 1 1 float\n3\nPOINT_DATA 2\nSCALARS {name} float\nLOOKUP_TABLE default\n2 1\n";
+        let read_as = |name: &str, preset: &str| {
+            std::fs::write(&file, text.replace("{name}", name)).expect("written");
+            read(std::slice::from_ref(&file), preset, None, 1.0)
+        };
+        assert_eq!(read_as("pressure", "meshio").expect("a state")[0][0].pressure.len(), 2);
+        assert!(read_as("pressure", "nonsense").is_err_and(|told| told.contains("nonsense")));
+        let [water, pressure] = ["WATER_PRESSURE", "pressure"].map(|name| read_as(name, "kratos"));
+        let state = &water.expect("a state")[0][0];
+        assert_eq!(state.pressure[0], -2.0, "suction is positive there");
+        assert!(pressure.is_err(), "there is no such array");
+    }
 }

@@ -189,7 +189,7 @@ impl Samples<'_> {
 mod tests {
     use super::*;
     use crate::api::exact::exact;
-    use crate::case::quantity::Quantity;
+    use crate::case::quantity::{Norm, Quantity};
 
     #[test]
     fn exact_lists_score_round_off_and_others_what_they_are_off_by() {
@@ -218,6 +218,24 @@ mod tests {
         let pressures = off.errors.iter().filter(|row| row.quantity == Quantity::Pressure);
         assert!(
             pressures.clone().count() > 0 && pressures.clone().all(|row| (row.value - 0.01).abs() < 1e-9)
+        );
+        // A volume belongs to its place at every time: an error where it is nothing is none.
+        let mut wrong = found.pressure.clone();
+        (wrong[3], wrong[20 + 3]) = (2.0 * wrong[3], 2.0 * wrong[23]);
+        let volume: Vec<f64> = (0..20).map(|place| if place == 3 { 0.0 } else { 1.0 }).collect();
+        let samples = Samples {
+            time: &found.time,
+            height: &height,
+            volume: &volume,
+            pressure: &wrong,
+            ..Samples::default()
+        };
+        let blind = score("terzaghi", &samples, "centres", Some("terzaghi"), &load).expect("a score");
+        let square = blind.errors.iter().filter(|row| row.norm == Norm::L2);
+        assert!(
+            square.clone().count() == 2 && square.clone().all(|row| row.value < 1e-9),
+            "{:?}",
+            blind.errors
         );
         let mut holed = found.pressure.clone();
         holed[3] = f64::NAN;

@@ -149,8 +149,7 @@ fn solved(
     let problem = problem_of(case)?;
     let Cores { threads, alone } = course.cores;
     let schedule = schedule_of(case, course);
-    // A case of several threads has the process for itself.
-    let clock = if threads > 1 { process_seconds } else { thread_seconds };
+    let clock = clock_of(threads);
     let (start, worked) = (Instant::now(), clock());
     let outcome = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
@@ -217,6 +216,11 @@ fn schedule_of(case: &Case, course: Course) -> Schedule {
 }
 
 /// Seconds that this thread has worked on a processor, where the system tells.
+/// The processor time of a case on so many threads: one of several has the process for itself.
+fn clock_of(threads: usize) -> fn() -> Option<f64> {
+    if threads > 1 { process_seconds } else { thread_seconds }
+}
+
 pub fn thread_seconds() -> Option<f64> {
     #[cfg(unix)]
     return seconds_of(rustix::time::ClockId::ThreadCPUTime);
@@ -262,7 +266,8 @@ mod tests {
 
     #[test]
     fn the_work_of_another_thread_counts_for_the_process_alone() {
-        let Some((thread, process)) = thread_seconds().zip(process_seconds()) else { return };
+        let [of_thread, of_process] = [clock_of(1), clock_of(2)];
+        let Some((thread, process)) = of_thread().zip(of_process()) else { return };
         let work = || {
             let (clock, start) = (Instant::now(), thread_seconds().expect("told before"));
             while thread_seconds().expect("told before") - start < 0.06 && clock.elapsed().as_secs() < 60 {
@@ -270,8 +275,8 @@ mod tests {
             }
         };
         std::thread::scope(|scope| scope.spawn(work).join().expect("no panic"));
-        assert!(thread_seconds().expect("told before") - thread < 0.05);
-        assert!(process_seconds().expect("told before") - process >= 0.05);
+        assert!(of_thread().expect("told before") - thread < 0.05);
+        assert!(of_process().expect("told before") - process >= 0.05);
     }
 
     #[test]

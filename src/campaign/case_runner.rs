@@ -200,4 +200,18 @@ mod tests {
         }
         assert!(!wants_timing(&record("stability"), 12), "a search has no time of its own");
     }
+
+    #[test]
+    fn a_run_is_stopped_by_its_time_or_from_outside_and_by_nothing_else() {
+        use oedometer_mpm::run::results::outcome::FailureKind as Kind;
+
+        let mut one = record("solve");
+        assert!(!is_stopped(&one));
+        for (kind, stopped) in
+            [(Kind::Stopped, true), (Kind::TimedOut, true), (Kind::Unstable, false), (Kind::Skipped, false)]
+        {
+            one.status = Status::Failed(Failure::of_attached(kind, String::new()));
+            assert_eq!(is_stopped(&one), stopped, "{kind:?}");
+        }
+    }
 }

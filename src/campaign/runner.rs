@@ -449,4 +449,13 @@ mod tests {
         let (planned, advanced) = (planned.into_inner(), advanced.into_inner());
         assert_eq!(planned.expect("a number"), advanced.expect("a number"));
     }
+
+    #[test]
+    fn only_a_run_of_one_job_has_the_machine_alone() {
+        for jobs in [1, 2, 4] {
+            let report = run_study(&study(), &RunOptions::whole(Tier::Full, jobs), None, &|_| {});
+            let alone: Vec<bool> = report.records.iter().map(|record| record.wall[0].alone).collect();
+            assert_eq!(alone, [jobs == 1; 4], "{jobs} jobs");
+        }
+    }
 }

@@ -368,6 +368,12 @@ mod tests {
             assert!(row.contains(&format!("Code(\"{name}\")")), "{name}: {told:?}");
         }
         assert!(told[2].contains("Count(1)"), "one value is gone: {told:?}");
+        // In both, moved, gone, new.
+        for (row, counts) in
+            tables[0].rows.iter().zip([[2, 1, 0, 0], [2, 1, 0, 0], [1, 0, 1, 0], [2, 1, 0, 0]])
+        {
+            assert_eq!(format!("{:?}", &row[3..7]), format!("{:?}", counts.map(Cell::Count)));
+        }
         assert!(tables[0].notes.iter().any(|note| note.starts_with("11 studies are the same: a0, a1")));
         assert_eq!(comparison_rows(&found, ["A", "B"]).rows.len(), found.len(), "programs get every study");
         assert_eq!(rows(&comparison_tables(&found[..3], ["A", "B"])[0]).len(), 3, "few have a row each");

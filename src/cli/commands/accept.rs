@@ -14,6 +14,7 @@ use crate::record::Record;
 use crate::record::provenance::Provenance;
 use crate::render::checks::verdicts::objections_of;
 use crate::study::check::Study;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `accept`.
@@ -58,11 +59,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     for (number, study) in studies.iter().enumerate() {
         let golden = GoldenFile::of(&study.name, &records[number], reason);
-        let others: Vec<_> = perturbed.iter().map(|records| values_of(&records[number])).collect();
-        let spread = spread_by_group(&golden.values, &others);
+        let others: Vec<&[Record]> = perturbed.iter().map(|records| &records[number][..]).collect();
+        let spread = spread_over(&golden, &others);
         keep(golden.widened_by(spread), &folder_of(&study.name))?;
     }
     Ok(Exit::Pass)
+}
+
+/// What the last digits of every input move.
+fn spread_over(golden: &GoldenFile, others: &[&[Record]]) -> BTreeMap<String, f64> {
+    let values: Vec<_> = others.iter().map(|records| values_of(records)).collect();
+    spread_by_group(&golden.values, &values)
 }
 
 /// Says which expectations and cases fail, and refuses to take values of their studies unless told.
@@ -139,5 +146,25 @@ mod tests {
         assert!(error.to_string().contains("--despite-failing"), "{error}");
         assert!(refused("1e-9", true).is_none(), "somebody said so");
         assert!(refused("0.5", false).is_none(), "nothing fails");
+    }
+
+    #[test]
+    fn a_spread_is_the_largest_change_by_any_of_the_digits() {
+        let records = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        );
+        let golden = GoldenFile::of("t", &records, "a reason");
+        let moved = |change: f64| {
+            let mut records = records.clone();
+            records[0].errors[0].value += change;
+            records
+        };
+        for changes in [[3e-6, 1e-6], [1e-6, 3e-6]] {
+            let others = changes.map(moved);
+            let spread = spread_over(&golden, &others.each_ref().map(Vec::as_slice));
+            assert_eq!(spread.len(), 1);
+            assert!(spread.values().all(|one| (one / 3e-6 - 1.0).abs() < 1e-6), "{changes:?}: {spread:?}");
+        }
     }
 }

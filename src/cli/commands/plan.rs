@@ -125,18 +125,15 @@ fn write_plan(out: &mut dyn std::io::Write, studies: &[(&Study, Vec<&Case>)]) ->
 
 /// Says what the cases take in all, and of each study what takes too long.
 fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
-    let (mut count, mut total, mut longest) = (0, 0.0, 0.0);
     for (study, cases) in studies {
         let mut slowest: Option<&Case> = None;
         let mut most = 0.0;
         for case in cases {
             let seconds = estimated_seconds(case);
-            (count, total) = (count + 1, total + seconds);
             if seconds > most {
                 (most, slowest) = (seconds, Some(*case));
             }
         }
-        longest = f64::max(longest, most);
         let slowest = slowest.map(|case| LongestCase {
             study: study.name.clone(),
             case: case.clone(),
@@ -146,6 +143,7 @@ fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
             say!("{note}");
         }
     }
+    let (count, total, longest) = seconds_of(studies);
     if count > 0 {
         let jobs = jobs_of(None);
         say!(
@@ -155,5 +153,42 @@ fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
             duration(side_by_side(total, longest, jobs)),
             duration(longest)
         );
+    }
+}
+
+/// Number of cases, and the estimated seconds of all of them together and of the longest.
+fn seconds_of(studies: &[(&Study, Vec<&Case>)]) -> (usize, f64, f64) {
+    let all = studies.iter().flat_map(|(_, cases)| cases).map(|case| estimated_seconds(case));
+    all.fold((0, 0.0, 0.0), |(count, total, longest), one| (count + 1, total + one, f64::max(longest, one)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::file::StudySource;
+
+    #[test]
+    fn the_longest_case_is_that_of_all_studies_wherever_it_stands() {
+        let study = |cells: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                 integrator = ['explicit']\ncells = [{cells}]\n"
+            );
+            Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound")
+        };
+        let mut studies = [study("4"), study("64, 8"), study("2, 16")];
+        let of = |studies: &[Study]| {
+            let all: Vec<(&Study, Vec<&Case>)> =
+                studies.iter().map(|study| (study, study.cases(Tier::Full))).collect();
+            seconds_of(&all)
+        };
+        let cases: Vec<Case> = studies.iter().flat_map(|study| study.cases(Tier::Full)).cloned().collect();
+        let seconds: Vec<f64> = cases.iter().map(estimated_seconds).collect();
+        for _ in 0..3 {
+            let (count, total, longest) = of(&studies);
+            assert_eq!((count, longest), (5, seconds[1]));
+            assert!((total / seconds.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            studies.rotate_left(1);
+        }
     }
 }

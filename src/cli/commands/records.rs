@@ -77,9 +77,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         say!("{damage}");
     }
     let mut hashes = store.hashes();
-    hashes.retain(|hash| {
-        arguments.cases.is_empty() || arguments.cases.iter().any(|first| hash.starts_with(first.as_str()))
-    });
+    hashes.retain(|hash| is_asked(hash, &arguments.cases));
     if hashes.is_empty() {
         let reason = format!("{} has no such record", folder.display());
         return Err(Ended::with(Exit::NothingSelected, reason));
@@ -107,4 +105,26 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     Ok(Exit::Pass)
+}
+
+/// Whether a record is asked for by the first digits of its hash; where none are given, all are.
+fn is_asked(hash: &str, first_digits: &[String]) -> bool {
+    first_digits.is_empty() || first_digits.iter().any(|first| hash.starts_with(first.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_any_of_the_digits_are_shown() {
+        let asked = |digits: &[&str]| -> Vec<&str> {
+            let digits: Vec<String> = digits.iter().map(|one| (*one).to_owned()).collect();
+            ["aa1", "ab2", "ba3"].into_iter().filter(|hash| is_asked(hash, &digits)).collect()
+        };
+        assert_eq!(asked(&[]), ["aa1", "ab2", "ba3"]);
+        assert_eq!(asked(&["a"]), ["aa1", "ab2"]);
+        assert_eq!(asked(&["ba", "aa1"]), ["aa1", "ba3"]);
+        assert!(asked(&["1"]).is_empty());
+    }
 }

@@ -184,3 +184,33 @@ impl<'a> SolveJson<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::WallSample;
+
+    #[test]
+    fn every_counter_of_the_json_is_that_of_its_name() {
+        let mut record = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        )
+        .remove(0);
+        let counters = &mut record.counters;
+        (counters.steps, counters.point_updates, counters.factorisations) = (3, 5, 7);
+        (counters.iterations, counters.rejected_steps) = (11, 13);
+        record.wall = [2.5, 0.5].map(|seconds| WallSample { seconds, ..WallSample::default() }).to_vec();
+        let told = serde_json::to_value(SolveJson::of(&record)).expect("plain numbers");
+        for (name, value) in [
+            ("steps", 3.0),
+            ("point_updates", 5.0),
+            ("factorisations", 7.0),
+            ("iterations", 11.0),
+            ("rejected_steps", 13.0),
+            ("wall_seconds", 2.5),
+        ] {
+            assert_eq!(told[name].as_f64(), Some(value), "{name}");
+        }
+    }
+}

@@ -82,10 +82,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some((record, sentence)) = unknown {
         return Err(Ended::with(Exit::VerdictFailed, format!("{}: {sentence}", record.case.label())));
     }
-    let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(|found| {
-        found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()
-    });
+    let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(agrees);
     Ok(if agree { Exit::Pass } else { Exit::VerdictFailed })
+}
+
+fn agrees(found: &CriticalStep) -> bool {
+    found.deviation().is_some_and(|deviation| deviation.abs() <= AGREEMENT) && found.probes_agree()
 }
 
 #[derive(serde::Serialize)]
@@ -146,4 +148,49 @@ fn rows_of(record: &Record) -> Vec<Vec<String>> {
         ]
     };
     found.probes.iter().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    #[test]
+    fn an_observed_step_agrees_within_two_per_cent_on_either_side() {
+        let found = |observed: Option<f64>| {
+            let probe = |share: f64| Probe {
+                share,
+                step: 2.0 * share,
+                steps: 7,
+                reaches_end: false,
+                predicted_growth: None,
+                failure: (share > 1.0).then(|| Failure {
+                    kind: FailureKind::Unstable,
+                    step: 7,
+                    time: 1.0,
+                    growth: None,
+                    reason: String::new(),
+                }),
+            };
+            CriticalStep {
+                predicted: 2.0,
+                creeping_from: None,
+                unknown: None,
+                observed,
+                wave_limit: 4.0,
+                drag_limit: 8.0,
+                combined_limit: 3.0,
+                probes: vec![probe(0.97), probe(1.03)],
+                asymmetry: None,
+            }
+        };
+        for (share, agree) in
+            [(0.5, false), (0.979, false), (0.981, true), (1.0, true), (1.019, true), (1.021, false)]
+        {
+            assert_eq!(agrees(&found(Some(2.0 * share))), agree, "{share}");
+        }
+        assert!(!agrees(&found(None)), "nothing was observed");
+        let one = CriticalStep { probes: found(None).probes[..1].to_vec(), ..found(Some(2.0)) };
+        assert!(!agrees(&one), "no probe above the prediction");
+    }
 }

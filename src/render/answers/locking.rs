@@ -122,3 +122,40 @@ fn table(sweep: &StiffnessSweep, rows: &[&SweepRow]) -> Table {
         short(KEPT)
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Solver;
+    use oedometer_mpm::method::Method;
+
+    #[test]
+    fn every_error_of_the_table_stands_under_its_quantity_and_stiffness() {
+        let method = |name: &str| Solver::Own(Method::named(name).expect("a method"));
+        let row = |name: &str, first: f64| SweepRow {
+            method: method(name),
+            time_factor: 0.1,
+            found: (0..3)
+                .map(|place| [0.0, 0.001, 0.002].map(|which| Some(first + 0.01 * f64::from(place) + which)))
+                .collect(),
+        };
+        let rows = [row("MPM", 0.01), row("GIMP", 0.04)];
+        let sweep = StiffnessSweep {
+            stiffness: SweptStiffness::Skeleton,
+            cells: 4,
+            values: vec![0.2, 0.4, 0.49],
+            time_factors: vec![0.1],
+            rows: rows.to_vec(),
+        };
+        let table = table(&sweep, &[&rows[0], &rows[1]]);
+        for (row, first) in table.rows.iter().zip([0.01, 0.04]) {
+            let numbers: Vec<f64> = row
+                .iter()
+                .filter_map(|cell| if let Cell::Error(error) = cell { Some(*error) } else { None })
+                .collect();
+            let wanted = [first, first + 0.02, first + 0.001, first + 0.021];
+            assert_eq!(numbers.len(), 4, "{row:?}");
+            assert!(numbers.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 1e-12), "{row:?}");
+        }
+    }
+}

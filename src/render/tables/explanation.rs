@@ -106,3 +106,39 @@ fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
     )
     .note(format!("{}: {}", series.class, series.reason))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::explanation::ErrorPlace;
+    use crate::record::ErrorRow;
+
+    #[test]
+    fn every_number_of_a_carrier_stands_under_its_name() {
+        let record = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        )
+        .remove(0);
+        let row = ErrorRow { time_factor: 0.7, value: 0.02, absolute: 0.11, ..record.errors[0].clone() };
+        let place = ErrorPlace { zeta: 0.3, share: 0.4, computed: 5.0, exact: 6.0 };
+        let carrier = Carrier { row, l1: Some(0.01), linf: Some(0.03), place: Some(place) };
+        let table = carriers_table(&record, &[carrier]);
+        let under = |header: &str| {
+            let column = table.columns.iter().position(|column| column.header == header).expect("a column");
+            format!("{:?}", table.rows[0][column])
+        };
+        for (header, cell) in [
+            ("largest at T_v", Cell::Number(0.7)),
+            ("L1", Cell::Error(0.01)),
+            ("L2", Cell::Error(0.02)),
+            ("Linf", Cell::Error(0.03)),
+            ("worst at ζ", Cell::Number(0.3)),
+            ("its share", Cell::Percent(0.4)),
+            ("computed", Cell::Error(5.0)),
+            ("exact", Cell::Error(6.0)),
+        ] {
+            assert_eq!(under(header), format!("{cell:?}"), "{header}");
+        }
+    }
+}

@@ -73,3 +73,38 @@ fn model_name(model: ErrorModel) -> &'static str {
         ErrorModel::FirstAndSecondOrder => "α₁ h + α₂ h²",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::verdict::{Beside, judge};
+    use oedometer_convergence::{Context, ErrorSeries, SeriesDemand, ValueSeries};
+
+    #[test]
+    fn every_uncertainty_is_a_share_of_the_finest_value() {
+        let level = |cells: f64, scale: f64| {
+            let size = 1.0 / cells;
+            (size, Some(scale * (1.0 + 0.3 * size.powf(1.7) + 0.01 * size)))
+        };
+        let row = |scale: f64| {
+            let levels = [4.0, 7.0, 11.0, 23.0].map(|cells| level(cells, scale)).to_vec();
+            let uncertainty = ValueSeries::new(levels).uncertainty(2.0).expect("four levels");
+            let verdict = judge(
+                &SeriesDemand::default(),
+                &ErrorSeries::default(),
+                &Context::default(),
+                &Beside::default(),
+            );
+            let judgement =
+                Judgement { line: 1, subject: "s".to_owned(), verdict, uncertainty: Some(uncertainty) };
+            row_of(&judgement).expect("a row")
+        };
+        let (one, eight) = (row(1.0), row(8.0));
+        for column in [6, 7, 9] {
+            let [Cell::Error(one), Cell::Error(eight)] = [&one[column], &eight[column]] else {
+                panic!("{one:?} {eight:?}")
+            };
+            assert!((eight / one - 1.0).abs() < 1e-6, "column {column}: {one} {eight}");
+        }
+    }
+}

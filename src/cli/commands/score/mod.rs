@@ -263,3 +263,58 @@ fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyh
         Err(Ended::with(Exit::NothingSelected, "the result has no error that can be judged"))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::quantity::Sample;
+    use crate::import::runs::Run;
+    use crate::judge::score::Score;
+    use crate::record::ErrorRow;
+
+    #[test]
+    fn every_quantity_of_every_result_is_held_below_the_bound() {
+        let row = |quantity, norm, reference: &str, value: f64| ErrorRow {
+            time_factor: 0.1,
+            quantity,
+            sample: Sample::Points,
+            norm,
+            reference: reference.to_owned(),
+            value,
+            absolute: value,
+        };
+        let rows = [
+            (Quantity::Pressure, Norm::L2),
+            (Quantity::EffectiveStress, Norm::L2),
+            (Quantity::Displacement, Norm::L2),
+            (Quantity::Settlement, Norm::Relative),
+        ];
+        let exit = |wrong: usize, value: f64| {
+            // Each result has all rows, and what another reference or another norm says does not count.
+            let result = |result: usize| {
+                let mut score = Score::default();
+                for (place, (quantity, norm)) in rows.into_iter().enumerate() {
+                    let is_wrong = result * rows.len() + place == wrong;
+                    score.errors.push(row(quantity, norm, "own", if is_wrong { value } else { 0.9e-3 }));
+                    score.errors.push(row(quantity, norm, "other", 1.0));
+                    score.errors.push(row(quantity, Norm::Linf, "own", 1.0));
+                }
+                Scored { run: Run::default(), score }
+            };
+            errors_below(1e-3, &[result(0), result(1), result(2)], Some("own")).expect("errors")
+        };
+        for wrong in 0..3 * rows.len() {
+            for (value, end) in [
+                (0.9e-3, Exit::Pass),
+                (-0.9e-3, Exit::Pass),
+                (1e-3, Exit::VerdictFailed),
+                (1.1e-3, Exit::VerdictFailed),
+                (-1.1e-3, Exit::VerdictFailed),
+                (f64::NAN, Exit::VerdictFailed),
+            ] {
+                assert_eq!(exit(wrong, value), end, "{value} at {wrong}");
+            }
+        }
+        assert!(errors_below(1e-3, &[], Some("own")).is_err(), "nothing to judge is no pass");
+    }
+}
