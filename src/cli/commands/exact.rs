@@ -1,11 +1,13 @@
 //! `oedometer exact`: an exact solution as numbers.
 
+use crate::api::scene_of;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of};
 use crate::cli::stream::{print_data, say};
 use crate::study::overrides::{Asked, Assignments, numbers};
 use clap::ValueEnum;
+use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::field_values::Accuracy;
 use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_exact::mandel::Mandel;
@@ -74,9 +76,9 @@ struct Truncation {
 }
 
 impl Truncation {
-    fn of(time_factor: f64, accuracy: Accuracy) -> Self {
-        let Accuracy { terms, tail_bound, phase_bound } = accuracy;
-        Self { time_factor, terms, tail_bound, round_off: ROUND_OFF.max(phase_bound) }
+    fn of(reference: &Reference, time_factor: f64) -> Result<Self, ExactError> {
+        let Accuracy { terms, tail_bound, phase_bound } = reference.accuracy(time_factor)?;
+        Ok(Self { time_factor, terms, tail_bound, round_off: ROUND_OFF.max(phase_bound) })
     }
 }
 
@@ -89,14 +91,7 @@ struct ExactJson<'a> {
 
 /// Evaluates and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let kind: ReferenceKind = arguments.scene.parse().map_err(|_| {
-        let names = ReferenceKind::ALL
-            .map(ReferenceKind::name)
-            .into_iter()
-            .chain(ShelfProblem::ALL.map(ShelfProblem::name));
-        let names = names.collect::<Vec<_>>().join(", ");
-        Ended::usage(format!("no exact solution is called `{}`; there are {names}", arguments.scene))
-    })?;
+    let (kind, _) = scene_of(&arguments.scene).map_err(Ended::usage)?;
     let asked = Asked::of_solution(kind, &arguments.set)?;
     tell_warnings(&asked.study);
     let (parameters, kind) = (asked.parameters, asked.references[0]);
@@ -104,24 +99,30 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
         None => numbers("--time-factor", &arguments.time_factor)?,
     };
-    let (rows, accuracy) = if kind == ReferenceKind::Mandel {
-        slab_rows(&parameters, &time_factors, arguments)?
-    } else if kind == ReferenceKind::Footing {
-        load_rows(&parameters, &time_factors)?
-    } else {
-        column_rows(kind, &parameters, &time_factors, arguments)?
+    let reference = Reference::new(kind, &parameters, &time_factors)?;
+    let rows = match kind {
+        ReferenceKind::Mandel => slab_rows(&parameters, &time_factors, arguments)?,
+        // The load at collapse, whatever the settlement.
+        ReferenceKind::Footing => time_factors
+            .iter()
+            .map(|time| PrintedRow(vec![("time_factor", *time), ("load_factor", LOAD_FACTOR)]))
+            .collect(),
+        _ => column_rows(&reference, &parameters, &time_factors, arguments)?,
     };
+    let accuracy = time_factors.iter().map(|time| Truncation::of(&reference, *time));
+    let accuracy = accuracy.collect::<Result<Vec<_>, ExactError>>()?;
     print(kind.name(), &rows, &accuracy, arguments.format)?;
     Ok(Exit::Pass)
 }
 
 /// The rows over times and depths, and with `--x` over distances.
 fn column_rows(
-    kind: ReferenceKind,
+    reference: &Reference,
     parameters: &ColumnParameters,
     time_factors: &[f64],
     arguments: &Arguments,
-) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
+) -> anyhow::Result<Vec<PrintedRow>> {
+    let kind = reference.kind();
     let mut depths = numbers("--zeta", &arguments.zeta)?;
     if kind == ReferenceKind::Shelf(ShelfProblem::Injection) && arguments.zeta == DEFAULT_DEPTHS {
         // The source itself, where the pressure is infinite.
@@ -136,8 +137,7 @@ fn column_rows(
             ReferenceKind::Mandel
         )));
     }
-    let reference = Reference::new(kind, parameters, time_factors)?;
-    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
     for &time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
@@ -189,9 +189,8 @@ fn column_rows(
                 rows.push(PrintedRow(columns));
             }
         }
-        accuracy.push(Truncation::of(time_factor, reference.accuracy(time_factor)?));
     }
-    Ok((rows, accuracy))
+    Ok(rows)
 }
 
 /// The rows of Mandel's slab, which depend on the distance from its middle.
@@ -199,7 +198,7 @@ fn slab_rows(
     parameters: &ColumnParameters,
     time_factors: &[f64],
     arguments: &Arguments,
-) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
+) -> anyhow::Result<Vec<PrintedRow>> {
     if arguments.zeta != DEFAULT_DEPTHS {
         return Err(Ended::usage(
             "the fields of `mandel` depend on the distance from the middle: give it by `--x`",
@@ -207,7 +206,7 @@ fn slab_rows(
     }
     let slab = Mandel::new(parameters)?;
     let distances = numbers("--x", arguments.x.as_deref().unwrap_or(DEFAULT_DISTANCES))?;
-    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
     for &time_factor in time_factors {
         for &distance in &distances {
             let ratios = slab.ratios(time_factor, distance)?;
@@ -220,23 +219,8 @@ fn slab_rows(
                 ("strain_ratio", ratios.strain),
             ]));
         }
-        accuracy.push(Truncation::of(time_factor, slab.accuracy(time_factor)?));
     }
-    Ok((rows, accuracy))
-}
-
-/// The load factor of a footing at collapse, whatever the settlement.
-fn load_rows(
-    parameters: &ColumnParameters,
-    time_factors: &[f64],
-) -> anyhow::Result<(Vec<PrintedRow>, Vec<Truncation>)> {
-    let reference = Reference::new(ReferenceKind::Footing, parameters, time_factors)?;
-    let (mut rows, mut accuracy) = (Vec::new(), Vec::new());
-    for &time_factor in time_factors {
-        rows.push(PrintedRow(vec![("time_factor", time_factor), ("load_factor", LOAD_FACTOR)]));
-        accuracy.push(Truncation::of(time_factor, reference.accuracy(time_factor)?));
-    }
-    Ok((rows, accuracy))
+    Ok(rows)
 }
 
 /// Prints rows and their accuracy.
