@@ -164,7 +164,8 @@ fn own_keys(pointer: &str) -> String {
 
 /// Names and meanings, one a line.
 fn list(rows: impl IntoIterator<Item = [String; 2]>) -> String {
-    rows.into_iter().map(|[name, meaning]| format!("- {name}: {meaning}\n")).collect()
+    let line = |[name, meaning]: [String; 2]| format!("- {name}: {meaning}\n");
+    rows.into_iter().map(line).collect()
 }
 
 /// Keys of the schema as further rows of a table of inputs.
