@@ -11,6 +11,7 @@ use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 
 /// Steps after which a run at a share of the critical step has shown that it is clean.
 pub const MOST_PROBE_STEPS: u64 = 262_144;
@@ -50,16 +51,22 @@ pub fn estimated_updates(case: &Case) -> u64 {
 pub fn estimated_steps(case: &Case) -> f64 {
     let parameters = column_parameters(&case.column, &case.material);
     let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
+    let (cell_size, layers) = (case.cell_size(), &case.column.soils);
+    // Every layer may be the one that sets the limit.
+    let least_of_soils = |limit: &dyn Fn(&Material) -> f64| {
+        let soils = layers.iter().map(|layer| limit(&layer.soil(&case.material)));
+        soils.reduce(f64::min).unwrap_or_else(|| limit(&case.material))
+    };
     let step = match case.time_step {
         TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {
-            share
-                * formula::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions())
+            let are_undamped = case.has_undamped_motions();
+            share * least_of_soils(&|soil| formula::semi_implicit_limit(soil, cell_size, are_undamped))
         }
         TimeStepRule::Stable(share) => {
-            1.5 * share * formula::combined_limit(&case.material, case.cell_size(), case.settings.drag)
+            1.5 * share * least_of_soils(&|soil| formula::combined_limit(soil, cell_size, case.settings.drag))
         }
         TimeStepRule::Courant(share) => {
-            share * case.cell_size() / formula::fastest_wave_speed(&case.material, case.material.porosity)
+            share * least_of_soils(&|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity))
         }
         TimeStepRule::Seconds(seconds) => seconds,
         TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,

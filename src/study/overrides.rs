@@ -205,7 +205,8 @@ impl StudyLines {
     /// Checks the study of one case that is not solved: no grid of this program has to fit its body.
     pub fn theory_study(self) -> Result<Study, OverrideError> {
         self.refuse_without_effect(&OF_RUNS)?;
-        let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [1]"].map(str::to_owned);
+        // Half of a footing has an even number of cells.
+        let sweep = ["method = [\"GIMP-SRI-patch\"]", "cells = [2]"].map(str::to_owned);
         let study = self.study(Purpose::Theory, sweep)?;
         if study.planned.is_empty() {
             return Err(OverrideError::typed("the assignments leave no column"));

@@ -64,6 +64,24 @@ fn memory_and_steps_of_a_small_case_are_those_counted_by_hand() {
 }
 
 #[test]
+fn the_steps_of_layers_are_those_of_the_soil_that_sets_the_limit() {
+    let sweep = "integrator = [\"explicit\"]\ntime_step = [{ stable = 0.5 }]\ncells = [8]";
+    let tight = "material.hydraulic_conductivity = 1e-8";
+    let alone = estimated_steps(&cases(tight, sweep)[0]);
+    let [open, tight] = ["", ",hydraulic_conductivity=1e-8"].map(|own| format!("{{thickness=0.5{own}}}"));
+    // The time factors are those of [material].
+    let of_material = 1e-8 / 1e-4;
+    for layers in [format!("[{open},{tight}]"), format!("[{tight},{open}]")] {
+        let text = format!(
+            "title = \"t\"\nscene = \"layered\"\ncolumn.soils = {layers}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n"
+        );
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+        let steps = estimated_steps(study.cases(Tier::Full)[0]);
+        assert!((steps / (of_material * alone) - 1.0).abs() < 1e-9, "{layers}: {steps} for {alone}");
+    }
+}
+
+#[test]
 fn a_label_names_all_that_is_unusual_about_the_points() {
     for (points, parts) in [
         ("sets = 2, water_per_cell = 3", &["two point sets, 3 of the water"][..]),

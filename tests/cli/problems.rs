@@ -113,3 +113,24 @@ fn impossible_problems_are_refused_in_sentences() {
     refused(&never, "no yield front");
     refused(&["sealed-element", "--x", "0.5"], "depends on the depth alone");
 }
+
+#[test]
+fn every_scene_has_an_exact_solution_to_print() {
+    for scene in oedometer::SceneKind::ALL.map(oedometer::SceneKind::name) {
+        let told = exact(&[scene]);
+        assert_eq!(told.code, 0, "{scene}: {}", told.err);
+        assert!(told.out.lines().count() > 1, "{scene}: {}", told.out);
+    }
+}
+
+#[test]
+fn a_front_that_feels_its_base_is_warned_of() {
+    let told = exact(&["yield-front", "--time-factor", "0.001,0.5"]);
+    let warned: Vec<&str> = told.err.lines().filter(|line| line.starts_with("warning")).collect();
+    assert!(
+        warned.len() == 1 && warned[0].contains("T_v = 0.5") && warned[0].contains("half-space"),
+        "{}",
+        told.err
+    );
+    assert!(!exact(&["terzaghi"]).err.contains("warning"));
+}

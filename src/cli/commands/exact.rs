@@ -22,6 +22,9 @@ const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
 /// Effect of round-off on the fields over the load: at most 7.5e-15 was seen against values of 40 digits.
 const ROUND_OFF: f64 = 1e-14;
 
+/// Tail, over the load, from which a value is warned of.
+const MOST_TAIL: f64 = 1e-2;
+
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
@@ -112,6 +115,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let accuracy = time_factors.iter().map(|time| Truncation::of(&reference, *time));
     let accuracy = accuracy.collect::<Result<Vec<_>, ExactError>>()?;
     print(kind.name(), &rows, &accuracy, arguments.format)?;
+    for Truncation { time_factor, tail_bound, .. } in accuracy.iter().filter(|of| of.tail_bound > MOST_TAIL) {
+        let is_front = kind == ReferenceKind::YieldFront;
+        let why = if is_front {
+            ": it is that of a half-space; take earlier times, before the base is felt"
+        } else {
+            ""
+        };
+        say!("warning: at T_v = {time_factor} the solution may be off by {tail_bound:.1e} of the load{why}");
+    }
     Ok(Exit::Pass)
 }
 
