@@ -1,6 +1,7 @@
 //! Combinations of inputs that are invalid although each input alone is valid, with the reason.
 
 use crate::case::{Case, Task};
+use oedometer_mpm::explicit::Drag;
 use oedometer_mpm::method::{Basis, Configuration, Memory};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
@@ -66,6 +67,14 @@ impl Case {
                 no_inertia,
                 "the quasi-static formulation leaves out the waves that this scene is about",
                 "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
+            ),
+            when(
+                "drag",
+                *scene == SceneKind::SealedElement
+                    && *integrator == IntegratorKind::Explicit
+                    && settings.drag == Drag::Explicit,
+                "explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves",
+                "take `drag = \"implicit\"`",
             ),
             when(
                 "affine",

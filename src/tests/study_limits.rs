@@ -77,6 +77,21 @@ fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
 }
 
 #[test]
+fn a_sealed_soil_takes_no_explicit_drag_in_explicit_steps() {
+    let sealed = STUDY.replace("terzaghi", "sealed-element");
+    let of = |integrator: &str, drag: &str| {
+        let study = sealed.replace("'implicit'", &format!("'{integrator}'"));
+        said(&study, &format!("integrator.drag = '{drag}'"), "", "")
+    };
+    for drag in ["implicit", "centred"] {
+        assert_eq!(of("explicit", drag), None, "{drag}");
+    }
+    assert_eq!(of("implicit", "explicit"), None);
+    let told = of("explicit", "explicit").expect("refused");
+    assert!(told.contains("lets no water through") && told.contains("drag = \"implicit\""), "{told}");
+}
+
+#[test]
 fn tables_of_a_study_are_taken_up_to_their_limits_and_no_further() {
     const TABLES: [Limit; 4] = [
         ("case_seconds = #", &["0.001"], &["0.0", "-1.0", "inf", "nan"]),
