@@ -1,9 +1,7 @@
 //! A plane layer loaded at once by a cosine and drained at its top, at small strain, from the undrained
 //! equilibrium.
 
-use crate::scene::definition::{
-    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::{SceneBody, SceneDefinition, SceneLoad, StartPressure};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static COSINE_LAYER: SceneDefinition = SceneDefinition {
@@ -13,10 +11,8 @@ pub(crate) static COSINE_LAYER: SceneDefinition = SceneDefinition {
         (reference == ReferenceKind::CosineLayerIncompressible).then_some("the water's storage")
     },
     body: SceneBody::Layer,
-    strain: SceneStrain::Small,
     load: SceneLoad::Cosine,
-    has_waves: false,
-    // The solver's own equilibrium, and what it measures; of a cosine only the mean is known.
-    start: SceneStart::Solved,
+    // Of a cosine only the mean is known.
     start_pressure: StartPressure::ZeroMean,
+    ..SceneDefinition::LOADED
 };

@@ -28,6 +28,29 @@ pub struct SceneDefinition {
     pub start_pressure: StartPressure,
 }
 
+impl SceneDefinition {
+    /// A column without load, at rest and at small strain. A scene names how it differs from this or from
+    /// [`LOADED`](Self::LOADED).
+    pub(crate) const UNLOADED: Self = Self {
+        summary: "",
+        references: &[],
+        model_difference: |_, _| None,
+        body: SceneBody::Column,
+        strain: SceneStrain::Small,
+        load: SceneLoad::None,
+        has_waves: false,
+        start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
+        start_pressure: StartPressure::Uniform(|_, _| 0.0),
+    };
+    /// That column under a sudden load, from the undrained equilibrium of its own operators.
+    pub(crate) const LOADED: Self = Self {
+        load: SceneLoad::Sudden,
+        start: SceneStart::Solved,
+        start_pressure: StartPressure::OfReference,
+        ..Self::UNLOADED
+    };
+}
+
 /// The body of soil.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum SceneBody {

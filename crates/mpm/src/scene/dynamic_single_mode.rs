@@ -1,8 +1,6 @@
 //! The slowest mode of an unloaded column, with the inertia that it has.
 
-use crate::scene::definition::{
-    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::{SceneDefinition, SceneStart, StartPressure};
 use crate::scene::single_mode::mode_without_inertia;
 use oedometer_exact::reference::ReferenceKind;
 
@@ -10,10 +8,8 @@ pub(crate) static DYNAMIC_SINGLE_MODE: SceneDefinition = SceneDefinition {
     summary: "slowest consolidation mode with its inertia, no load: smooth",
     references: &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
     model_difference: |reference, _| (reference == ReferenceKind::SingleMode).then_some("the inertia"),
-    body: SceneBody::Column,
-    strain: SceneStrain::Small,
-    load: SceneLoad::None,
     has_waves: true,
     start: SceneStart::OverDepth(mode_without_inertia),
     start_pressure: StartPressure::OfReference,
+    ..SceneDefinition::UNLOADED
 };

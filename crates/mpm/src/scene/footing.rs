@@ -3,19 +3,12 @@
 //! The plate settles by its own width in the time of `T_v = 1`, so that time factors are settlements over the width; the
 //! soil is without inertia, and how fast it goes makes no difference.
 
-use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::{SceneBody, SceneDefinition};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static FOOTING: SceneDefinition = SceneDefinition {
     summary: "strip footing on undrained soil that yields: its load shows what locks",
     references: &[ReferenceKind::Footing],
-    model_difference: |_, _| None,
     body: SceneBody::Footing,
-    strain: SceneStrain::Small,
-    load: SceneLoad::None,
-    has_waves: false,
-    start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
-    start_pressure: StartPressure::Uniform(|_, _| 0.0),
+    ..SceneDefinition::UNLOADED
 };

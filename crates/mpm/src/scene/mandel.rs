@@ -5,20 +5,14 @@
 //! slab's drained side, so that `cells` count over the half width `a` and `ζ` runs from the drained side to the
 //! middle; the plate presses across, at half the distance of the plates. The settlement is the plate's.
 
-use crate::scene::definition::{
-    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::{SceneBody, SceneDefinition, SceneLoad, StartPressure};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static MANDEL: SceneDefinition = SceneDefinition {
     summary: "slab between rigid plates, drained at its sides: the pressure in its middle rises before it falls",
     references: &[ReferenceKind::Mandel],
-    model_difference: |_, _| None,
     body: SceneBody::Slab,
-    strain: SceneStrain::Small,
     load: SceneLoad::Plates,
-    has_waves: false,
-    start: SceneStart::Solved,
     // Skempton's: of the mean total stress of an undrained body in plane strain, (1 + ν_u) q/3, the water takes
     // the share B. Written out here, and not taken from the solver or the reference: this is the check.
     start_pressure: StartPressure::Uniform(|column, soil| {
@@ -31,4 +25,5 @@ pub(crate) static MANDEL: SceneDefinition = SceneDefinition {
         let undrained_nu = (3.0 * undrained_bulk - 2.0 * shear) / (2.0 * (3.0 * undrained_bulk + shear));
         column.load * share * (1.0 + undrained_nu) / 3.0
     }),
+    ..SceneDefinition::LOADED
 };

@@ -6,9 +6,7 @@
 use crate::forcing::{BodyForces, Forcing};
 use crate::run::integrator::Formulation;
 use crate::scene::column::{Column, Shape, column_parameters};
-use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::{SceneBody, SceneDefinition, SceneStrain};
 use crate::wide::wide;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
@@ -43,15 +41,10 @@ pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
 
 /// What the motions have in common: at the start nothing is displaced, presses or moves.
 const OF_ALL: SceneDefinition = SceneDefinition {
-    summary: "",
-    references: &[],
-    model_difference: |_, _| None,
     body: SceneBody::Square,
     strain: SceneStrain::Large,
-    load: SceneLoad::None,
     has_waves: true,
-    start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
-    start_pressure: StartPressure::Uniform(|_, _| 0.0),
+    ..SceneDefinition::UNLOADED
 };
 
 /// A soil whose groups are of order one: `λ = μ = 0.4`, `K_w = 20 E`, `γ_w/k_0 = 10`, and so many pores that volumes

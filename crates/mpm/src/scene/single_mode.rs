@@ -1,9 +1,7 @@
 //! The slowest mode of an unloaded column: smooth in space and time.
 
 use crate::scene::column::{Column, column_parameters};
-use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
-};
+use crate::scene::definition::{ColumnStart, SceneDefinition, SceneStart, StartFields, StartPressure};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::single_mode::SingleMode;
@@ -12,13 +10,9 @@ use oedometer_soil::material::Material;
 pub(crate) static SINGLE_MODE: SceneDefinition = SceneDefinition {
     summary: "slowest consolidation mode, no load: smooth, for formal orders",
     references: &[ReferenceKind::SingleMode],
-    model_difference: |_, _| None,
-    body: SceneBody::Column,
-    strain: SceneStrain::Small,
-    load: SceneLoad::None,
-    has_waves: false,
     start: SceneStart::OverDepth(mode_without_inertia),
     start_pressure: StartPressure::OfReference,
+    ..SceneDefinition::UNLOADED
 };
 
 /// The mode of the quasi-static equations, with the velocities that it has.

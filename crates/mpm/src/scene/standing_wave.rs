@@ -1,19 +1,13 @@
 //! An undrained standing wave in an unloaded column: smooth, with inertia only.
 
 use crate::scene::column::column_parameters;
-use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
-};
+use crate::scene::definition::{ColumnStart, SceneDefinition, SceneStart, StartFields, StartPressure};
 use oedometer_exact::dynamic_column::{DynamicColumn, Start};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static STANDING_WAVE: SceneDefinition = SceneDefinition {
     summary: "undrained standing wave, no load: smooth, for the order in the step",
     references: &[ReferenceKind::StandingWave],
-    model_difference: |_, _| None,
-    body: SceneBody::Column,
-    strain: SceneStrain::Small,
-    load: SceneLoad::None,
     has_waves: true,
     start: SceneStart::OverDepth(|column, soil| {
         // Skeleton and water displaced together and let go at rest.
@@ -26,4 +20,5 @@ pub(crate) static STANDING_WAVE: SceneDefinition = SceneDefinition {
         Ok(ColumnStart { vertical_gradient: 0.0, fields: Box::new(fields) })
     }),
     start_pressure: StartPressure::OfReference,
+    ..SceneDefinition::UNLOADED
 };

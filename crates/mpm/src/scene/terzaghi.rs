@@ -1,8 +1,6 @@
 //! A column loaded at once and drained at its top, at small strain, from the undrained equilibrium.
 
-use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
-};
+use crate::scene::definition::{ColumnStart, SceneDefinition, SceneStart, StartFields, StartPressure};
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static TERZAGHI: SceneDefinition = SceneDefinition {
@@ -11,10 +9,6 @@ pub(crate) static TERZAGHI: SceneDefinition = SceneDefinition {
     model_difference: |reference, _| {
         (reference == ReferenceKind::TerzaghiIncompressible).then_some("the water's storage")
     },
-    body: SceneBody::Column,
-    strain: SceneStrain::Small,
-    load: SceneLoad::Sudden,
-    has_waves: false,
     start: SceneStart::OverDepth(|column, soil| {
         // Skeleton and water share one strain, reached before any water has moved.
         let strain = -column.load / (soil.oedometric_modulus() + soil.coupling_modulus());
@@ -28,4 +22,5 @@ pub(crate) static TERZAGHI: SceneDefinition = SceneDefinition {
     start_pressure: StartPressure::Uniform(|column, soil| {
         column.load / (1.0 + soil.porosity * soil.oedometric_modulus() / soil.water_bulk_modulus)
     }),
+    ..SceneDefinition::LOADED
 };

@@ -3,7 +3,7 @@
 
 use crate::scene::column::Column;
 use crate::scene::definition::{
-    ColumnStart, SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
+    ColumnStart, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields,
 };
 use oedometer_exact::large_strain::diffusion::LargeStrainModel;
 use oedometer_exact::reference::ReferenceKind;
@@ -29,13 +29,11 @@ pub(crate) static XIE_LEO: SceneDefinition = SceneDefinition {
             },
         )
     },
-    body: SceneBody::Column,
     strain: SceneStrain::Large,
     // Xie & Leo's load acts at once.
     load: SceneLoad::SuddenOrGrowing(&[LARGE_STRAIN]),
-    has_waves: false,
     start: SceneStart::OverDepth(|column, soil| Ok(undrained(column, soil))),
-    start_pressure: StartPressure::OfReference,
+    ..SceneDefinition::LOADED
 };
 
 /// Corrections of the undrained strain; a few are enough where the water is stiffer than the soil.

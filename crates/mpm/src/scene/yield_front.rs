@@ -1,19 +1,11 @@
 //! A preconsolidated column loaded at once beyond its preconsolidation and drained at its top: undrained it stays elastic,
 //! and as the water leaves a front of yielding runs in from the surface. Stresses are counted from those of the start.
 
-use crate::scene::definition::{
-    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::scene::definition::SceneDefinition;
 use oedometer_exact::reference::ReferenceKind;
 
 pub(crate) static YIELD_FRONT: SceneDefinition = SceneDefinition {
     summary: "preconsolidated column under a sudden load: a front of yielding runs in from its drained top",
     references: &[ReferenceKind::YieldFront],
-    model_difference: |_, _| None,
-    body: SceneBody::Column,
-    strain: SceneStrain::Small,
-    load: SceneLoad::Sudden,
-    has_waves: false,
-    start: SceneStart::Solved,
-    start_pressure: StartPressure::OfReference,
+    ..SceneDefinition::LOADED
 };
