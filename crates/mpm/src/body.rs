@@ -355,7 +355,7 @@ impl<const D: usize> Body<D> {
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         let stride = self.grid.node_stride();
-        self.strain.carrier().map_or(of_basis, |ends| ends.of(point).values(stride, [field])[0])
+        self.strain.carrier().map_or(of_basis, |ends| ends.of_point(point).values(stride, [field])[0])
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.

@@ -64,7 +64,7 @@ impl<const D: usize> Body<D> {
         let Points { position, displacement, solid_velocity, water_velocity, .. } = &mut self.points;
         let fields =
             [&nodes.solid_velocity[..], &nodes.solid_acceleration[..], &nodes.water_acceleration[..]];
-        for (point, (stencil, solid)) in stencils.iter().zip(solid_velocity).enumerate() {
+        for (point, (stencil, solid)) in stencils.all().zip(solid_velocity).enumerate() {
             let [mut carrying, solid_rate, water_rate] = stencil.values(&stride, fields);
             motion.accelerate(solid, &solid_rate, || carrying);
             // None where the water has points of its own.
@@ -74,7 +74,7 @@ impl<const D: usize> Body<D> {
                 });
             }
             if let Some(ends) = carrier {
-                [carrying] = ends.of(point).values(&stride, [&nodes.solid_velocity[..]]);
+                [carrying] = ends.of_point(point).values(&stride, [&nodes.solid_velocity[..]]);
             }
             motion.carry(&mut displacement[point], &carrying);
             if moves {

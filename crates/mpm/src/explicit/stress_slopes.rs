@@ -77,7 +77,7 @@ impl<const D: usize> Body<D> {
             let half = points.half_length[point].map(|length| (length / cell_size).min(0.5));
             let volume = points.volume(point) * points.stressed_share[point];
             let given = given_by(&planes.slopes[self.cells.of_point[point]], volume);
-            stencils.of(point).visit_runs(&stride, |run| {
+            stencils.of_point(point).visit_runs(&stride, |run| {
                 for (k, (value, gradient)) in run.values.iter().zip(&run.gradients).enumerate() {
                     let node = self.grid.node_position(run.first + k);
                     let levers = |d: usize, value: f64| {

@@ -54,7 +54,7 @@ impl<const D: usize> Body<D> {
         let states = kinematics.zip(effective_stress.iter_mut().zip(&*soil));
         let mut none = History::default();
         for (point, (stencil, (((ratio, half_length), back), (stress, soil)))) in
-            stencils.iter().zip(states).enumerate()
+            stencils.all().zip(states).enumerate()
         {
             let mut gradient = stencil.gradient(&stride, field);
             if is_total {

@@ -31,7 +31,7 @@ impl<const D: usize> Trial<D> {
         let is_hyperelastic = self.body.material.law.is_hyperelastic();
         let (deforms, points) = (self.body.configuration.deforms(), &mut self.body.points);
         for point in 0..self.anchor.len() {
-            let mut gradient = stencils.of(point).gradient(&stride, &self.displacement);
+            let mut gradient = stencils.of_point(point).gradient(&stride, &self.displacement);
             let mut dilation = 0.0;
             if let Some(trace) = traces.get(point) {
                 dilation = trace - (0..D).map(|d| gradient[d][d]).sum::<f64>();

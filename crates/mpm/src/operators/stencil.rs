@@ -62,9 +62,7 @@ impl<const D: usize, const W: usize> Run<D, W> {
         }
         gradient
     }
-}
 
-impl<const D: usize, const W: usize> Run<D, W> {
     /// Adds what a point gives to the nodes of the run, times its shape functions.
     #[inline(always)]
     fn add_values<const N: usize, const M: usize>(&self, given: &[[f64; M]; N], sums: &mut [[[f64; M]; N]]) {
@@ -76,6 +74,27 @@ impl<const D: usize, const W: usize> Run<D, W> {
             for i in 0..N {
                 for j in 0..M {
                     node[i][j] += value * scaled[i][j];
+                }
+            }
+        }
+    }
+
+    /// Adds what a point gives to the nodes of the run, times the gradients of its shape functions, `[direction]`.
+    #[inline(always)]
+    fn add_gradients<const N: usize>(&self, given: &[[Vector<D>; N]; D], sums: &mut [[Vector<D>; N]]) {
+        let mut scaled = *given;
+        for d in 0..D {
+            for number in scaled[d].as_flattened_mut() {
+                *number *= self.across[d];
+            }
+        }
+        for (k, node) in sums[self.first..self.first + W].iter_mut().enumerate() {
+            for d in 0..D {
+                let along = if d == 0 { self.gradients[k] } else { self.values[k] };
+                for i in 0..N {
+                    for j in 0..D {
+                        node[i][j] += along * scaled[d][i][j];
+                    }
                 }
             }
         }
@@ -112,7 +131,7 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
 
     /// Stencils of all points in turn.
     #[inline(always)]
-    pub fn iter(&self) -> impl Iterator<Item = Stencil<'_, D, W>> {
+    pub fn all(&self) -> impl Iterator<Item = Stencil<'_, D, W>> {
         // On a line a point has one block, and the compiler knows.
         let parts = if D == 1 { 1 } else { self.parts };
         let blocks = self.first.chunks_exact(parts).zip(self.lines.chunks_exact(parts));
@@ -121,9 +140,22 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
 
     /// Stencil of a point.
     #[inline(always)]
-    pub fn of(&self, point: usize) -> Stencil<'_, D, W> {
+    pub fn of_point(&self, point: usize) -> Stencil<'_, D, W> {
         let blocks = point * self.parts..(point + 1) * self.parts;
         Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
+    }
+
+    /// Hands every run of every point to a function, with what the point gives.
+    #[inline(always)]
+    fn give<G>(&self, stride: &[usize; D], given: impl Fn(usize) -> G, mut add: impl FnMut(&Run<D, W>, &G)) {
+        for (point, stencil) in self.all().enumerate() {
+            let given = given(point);
+            stencil.visit_runs(
+                stride,
+                #[inline(always)]
+                |run| add(run, &given),
+            );
+        }
     }
 }
 
@@ -232,83 +264,6 @@ impl<const D: usize, const W: usize> Stencil<'_, D, W> {
     }
 }
 
-impl<const D: usize, const W: usize> Stencils<D, W> {
-    /// Adds what each point gives to its nodes, times its shape functions: `Σ_p N_ip g_p`.
-    #[inline(always)]
-    fn add_values<const N: usize, const M: usize>(
-        &self,
-        stride: &[usize; D],
-        given: impl Fn(usize) -> [[f64; M]; N],
-        sums: &mut [[[f64; M]; N]],
-    ) {
-        for (point, stencil) in self.iter().enumerate() {
-            let given = given(point);
-            stencil.visit_runs(
-                stride,
-                #[inline(always)]
-                |run| run.add_values(&given, sums),
-            );
-        }
-    }
-
-    /// Adds two kinds of what each point gives, in one pass.
-    #[inline(always)]
-    fn add_both<const N: usize, const M: usize, const O: usize, const P: usize>(
-        &self,
-        stride: &[usize; D],
-        given: impl Fn(usize) -> ([[f64; M]; N], [[f64; P]; O]),
-        sums: &mut [[[f64; M]; N]],
-        other_sums: &mut [[[f64; P]; O]],
-    ) {
-        for (point, stencil) in self.iter().enumerate() {
-            let (given, other) = given(point);
-            stencil.visit_runs(
-                stride,
-                #[inline(always)]
-                |run| {
-                    run.add_values(&given, sums);
-                    run.add_values(&other, other_sums);
-                },
-            );
-        }
-    }
-
-    /// Adds what each point gives to its nodes, times the gradients of its shape functions: `Σ_p Σ_d ∂_d N_ip g_pd`.
-    #[inline(always)]
-    fn add_gradients<const N: usize>(
-        &self,
-        stride: &[usize; D],
-        given: impl Fn(usize) -> [[Vector<D>; N]; D],
-        sums: &mut [[Vector<D>; N]],
-    ) {
-        for (point, stencil) in self.iter().enumerate() {
-            let given = given(point);
-            stencil.visit_runs(
-                stride,
-                #[inline(always)]
-                |run| {
-                    let mut scaled = given;
-                    for d in 0..D {
-                        for number in scaled[d].as_flattened_mut() {
-                            *number *= run.across[d];
-                        }
-                    }
-                    for (k, node) in sums[run.first..run.first + W].iter_mut().enumerate() {
-                        for d in 0..D {
-                            let along = if d == 0 { run.gradients[k] } else { run.values[k] };
-                            for i in 0..N {
-                                for j in 0..D {
-                                    node[i][j] += along * scaled[d][i][j];
-                                }
-                            }
-                        }
-                    }
-                },
-            );
-        }
-    }
-}
-
 /// [`Stencils`] as wide as those of a basis: the width is looked at once for a loop over all points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointStencils<const D: usize> {
@@ -347,20 +302,20 @@ impl<const D: usize> PointStencils<D> {
     /// Visits the nodes of a point with value and gradient (1/m).
     #[inline]
     pub fn visit(&self, stride: &[usize; D], point: usize, visitor: impl FnMut(usize, f64, &Vector<D>)) {
-        with_stencils!(self, stencils => stencils.of(point).visit(stride, visitor));
+        with_stencils!(self, stencils => stencils.of_point(point).visit(stride, visitor));
     }
 
     /// Value of a nodal vector field at a point.
     #[inline]
     pub fn value(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Vector<D> {
-        let [value] = with_stencils!(self, stencils => stencils.of(point).values(stride, [field]));
+        let [value] = with_stencils!(self, stencils => stencils.of_point(point).values(stride, [field]));
         value
     }
 
     /// Gradient of a nodal vector field at a point, `[component][direction]`.
     #[inline]
     pub fn gradient(&self, stride: &[usize; D], point: usize, field: &[Vector<D>]) -> Tensor<D> {
-        with_stencils!(self, stencils => stencils.of(point).gradient(stride, field))
+        with_stencils!(self, stencils => stencils.of_point(point).gradient(stride, field))
     }
 
     /// Divergence of a nodal vector field at a point.
@@ -378,7 +333,12 @@ impl<const D: usize> PointStencils<D> {
         sums: &mut [[[f64; M]; N]],
     ) {
         sums.fill([[0.0; M]; N]);
-        with_stencils!(self, stencils => wide!(stencils.add_values(stride, given, sums)));
+        with_stencils!(self, stencils => wide!(stencils.give(
+            stride,
+            given,
+            #[inline(always)]
+            |run, given| run.add_values(given, sums),
+        )));
     }
 
     /// Sums two kinds of what each point gives, in one pass.
@@ -391,7 +351,15 @@ impl<const D: usize> PointStencils<D> {
     ) {
         sums.fill([[0.0; M]; N]);
         other_sums.fill([[0.0; P]; O]);
-        with_stencils!(self, stencils => wide!(stencils.add_both(stride, given, sums, other_sums)));
+        with_stencils!(self, stencils => wide!(stencils.give(
+            stride,
+            given,
+            #[inline(always)]
+            |run, (given, other)| {
+                run.add_values(given, sums);
+                run.add_values(other, other_sums);
+            },
+        )));
     }
 
     /// Sums what each point gives to its nodes, times the gradients of its shape functions: `Σ_p Σ_d ∂_d N_ip g_pd`.
@@ -402,7 +370,12 @@ impl<const D: usize> PointStencils<D> {
         sums: &mut [[Vector<D>; N]],
     ) {
         sums.fill([[0.0; D]; N]);
-        with_stencils!(self, stencils => wide!(stencils.add_gradients(stride, given, sums)));
+        with_stencils!(self, stencils => wide!(stencils.give(
+            stride,
+            given,
+            #[inline(always)]
+            |run, given| run.add_gradients(given, sums),
+        )));
     }
 
     /// The nodes of a point with their gradients (1/m), where they are not zero: the divergence at the point as a

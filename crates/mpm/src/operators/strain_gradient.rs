@@ -110,8 +110,8 @@ impl<const D: usize> StrainOperator<D> {
         let visitor = |node: usize, _: f64, gradient: &Vector<D>| node_visitor(node, gradient);
         match self {
             Self::Basis => basis.visit(stride, point, visitor),
-            Self::Composite(stencils) => stencils.of(point).visit(stride, visitor),
-            Self::BetweenEnds(stencils) => stencils.of(point).visit(stride, visitor),
+            Self::Composite(stencils) => stencils.of_point(point).visit(stride, visitor),
+            Self::BetweenEnds(stencils) => stencils.of_point(point).visit(stride, visitor),
         }
     }
 }

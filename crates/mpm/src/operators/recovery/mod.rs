@@ -127,7 +127,9 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Own => each(out, put, |point| sites[point]),
             Self::Constant => each(out, put, |point| sites[at.cells.of_point[point]]),
             Self::Patch(rows) => {
-                wide!(each(out, put, |point| rows.value(at.grid, point, sites)));
+                wide!(for (place, value) in out.iter_mut().zip(rows.values(at.grid, sites)) {
+                    put(place, value);
+                });
             }
             Self::Nodal(means) => {
                 means.fit(at, sites);

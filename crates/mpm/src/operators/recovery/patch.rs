@@ -88,16 +88,21 @@ impl<const D: usize> PatchRows<D> {
         }
     }
 
-    /// Value at a point of a field given at the cells.
+    /// Values at the points of a field given at the cells.
     #[inline(always)]
-    pub fn value(&self, grid: &Grid<D>, point: usize, field: &[f64]) -> f64 {
-        let mut value = 0.0;
-        for (j, shares) in self.shares[point].chunks_exact(BLOCK).take(power(BLOCK, D - 1)).enumerate() {
-            let lowest = self.first[point] + j * grid.cell_stride()[D - 1];
-            let cells = &field[lowest..lowest + BLOCK];
-            value += shares[0] * cells[0] + shares[1] * cells[1] + shares[2] * cells[2];
-        }
-        value
+    pub fn values(&self, grid: &Grid<D>, field: &[f64]) -> impl Iterator<Item = f64> {
+        self.first.iter().zip(&self.shares).map(
+            #[inline(always)]
+            |(first, shares)| {
+                let mut value = 0.0;
+                for (j, shares) in shares.chunks_exact(BLOCK).take(power(BLOCK, D - 1)).enumerate() {
+                    let lowest = first + j * grid.cell_stride()[D - 1];
+                    let cells = &field[lowest..lowest + BLOCK];
+                    value += shares[0] * cells[0] + shares[1] * cells[1] + shares[2] * cells[2];
+                }
+                value
+            },
+        )
     }
 
     /// The cells of a point's patch with their shares.

@@ -16,9 +16,7 @@ fn recovered<const D: usize>(
     let mut rows = PatchRows::new(points.len(), grid);
     rows.build(grid, &cells);
     let at_cells: Vec<f64> = (0..grid.cell_count()).map(|cell| field(&grid.cell_centre(cell))).collect();
-    (0..points.len())
-        .map(|point| (rows.value(grid, point, &at_cells), field(&points.position[point])))
-        .collect()
+    rows.values(grid, &at_cells).zip(points.position.iter().map(field)).collect()
 }
 
 proptest! {
