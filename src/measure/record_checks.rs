@@ -51,8 +51,8 @@ const NO_BURST: f64 = 1.5;
 /// overshoot of a front on a mesh; with waves, which double the load where they are thrown back, as much again.
 const MOST_PRESSURE: [f64; 2] = [1.6, 3.0];
 /// Bound of the pressure over the undrained strength under a plate: the mean stress of Prandtl's mechanism (1920) is at most
-/// 1 + π there, and a mesh overshoots at the plate's edge.
-const MOST_PRESSURE_UNDER_A_PLATE: f64 = 8.0;
+/// 1 + π there, pressures that oscillate on four cells reach 11, and those of a method that locks go into the hundreds.
+const MOST_PRESSURE_UNDER_A_PLATE: f64 = 20.0;
 /// Poisson's ratio above which the skeleton of a layer keeps its volume too.
 const LOCKING: f64 = 0.495;
 /// Least bound by [`WATER_IN_PORES`], on meshes so fine that other errors dominate; a wrong continuity causes fifty times
