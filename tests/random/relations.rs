@@ -126,7 +126,8 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
         }
         Relation::Units => {
             rescale(&mut other, numbers);
-            !base.scene.starts_with("manufactured") && base.value("column.soils").is_none()
+            // A footing leaves a part of its soil to the scene, in the scene's units.
+            Soil::of(&base).is_some() && base.value("column.soils").is_none()
         }
         Relation::Load => {
             for key in ["column.load", "layer.load"] {
