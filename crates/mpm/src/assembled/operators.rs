@@ -25,8 +25,8 @@ pub struct FrozenOperators<const D: usize> {
     /// `K_σ`: force of the effective stress over the displacements with its sign turned,
     /// `[row] → (row, N/m)`.
     pub skeleton_force: Vec<Vec<(usize, Tensor<D>)>>,
-    /// `P = M⁻¹ Σ N m ⊗ N`: velocities to the points and back, `[row] → (row, 1)`.
-    pub projection: Vec<Vec<(usize, f64)>>,
+    /// `P = M⁻¹ Σ N m ⊗ N` of skeleton and of water: velocities to the points and back, `[row] → (row, 1)`.
+    pub projection: Vec<Vec<(usize, [f64; 2])>>,
     /// Rows whose displacements are the settlement, with their weights and its sign turned.
     pub settling: Vec<(usize, Vector<D>)>,
     /// Rows that go together under a rigid plate.
@@ -73,12 +73,16 @@ fn numbered<T: Copy>(row: &[(usize, T)], number: &[Option<usize>]) -> Vec<(usize
     row.iter().filter_map(|(node, value)| Some((number[*node]?, *value))).collect()
 }
 
-/// `P`, `[node] → (node, 1)`.
-fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, f64)>> {
+/// `P` of skeleton and of water, `[node] → (node, 1)`.
+fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, [f64; 2])>> {
     let mut rows = vec![Vec::new(); body.nodes.len()];
+    // Of one porosity, the water lies as the grains do.
+    let is_uniform = body.soils.iter().all(|soil| soil.porosity == body.material.porosity);
     for point in 0..body.points.len() {
         let soil = body.soil_of(point);
-        let mass = body.points.initial_volume[point] * (1.0 - soil.porosity) * soil.grain_density;
+        let volume = body.points.initial_volume[point];
+        let solid_mass = volume * (1.0 - soil.porosity) * soil.grain_density;
+        let water_mass = volume * soil.porosity * body.material.water_density;
         let mut weights = Vec::new();
         body.basis.visit(body.grid.node_stride(), point, |node, weight, _| {
             if weight != 0.0 {
@@ -87,8 +91,14 @@ fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, f64)>> {
         });
         for (row, to) in &weights {
             for (column, from) in &weights {
-                *entry_of(&mut rows[*row], *column, 0.0) +=
-                    to * mass * from * body.nodes.per_solid_mass[*row];
+                let entry = entry_of(&mut rows[*row], *column, [0.0; 2]);
+                let of_solid = to * solid_mass * from * body.nodes.per_solid_mass[*row];
+                entry[0] += of_solid;
+                entry[1] += if is_uniform {
+                    of_solid
+                } else {
+                    to * water_mass * from * body.nodes.per_water_mass[*row]
+                };
             }
         }
     }

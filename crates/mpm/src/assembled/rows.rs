@@ -70,13 +70,16 @@ struct BandBlock<const D: usize> {
 pub struct BandsWithin<'a, const D: usize, const R: usize>(pub &'a BandedStorage<D>);
 
 impl<const D: usize> BandedStorage<D> {
-    /// Takes the rows of a frozen body; `None` where one reaches beyond the band, a component of its node is held, or a
-    /// projection reaches everywhere.
+    /// Takes the rows of a frozen body; `None` where one reaches beyond the band, a component of its node is held, a
+    /// projection of pressures reaches everywhere, or skeleton and water are projected each in its own way.
     pub fn of(operators: &FrozenOperators<D>) -> Option<Self> {
         if operators.storage.is_some() || operators.free.iter().any(|free| *free != [[1.0; D]; 2]) {
             return None;
         }
-        let projection_reach = reach(&operators.projection, |weight| *weight != 0.0)?;
+        if operators.projection.iter().flatten().any(|(_, [solid, water])| solid != water) {
+            return None;
+        }
+        let projection_reach = reach(&operators.projection, |[weight, _]| *weight != 0.0)?;
         let is_coupled = |block: &Tensor<D>| *block != [[0.0; D]; D];
         let skeleton_reach = reach(&operators.skeleton_force, is_coupled)?;
         let pressure = pressure_stiffness(&operators.pressure_force, &operators.divergence).rows;
@@ -94,7 +97,7 @@ impl<const D: usize> BandedStorage<D> {
         put(&pressure, |block, k, i, entry| {
             put_tensor(&mut blocks[block].pressure_stiffness, k, i, entry);
         });
-        put(&operators.projection, |block, k, i, entry| blocks[block].projection[k][i] = *entry);
+        put(&operators.projection, |block, k, i, entry| blocks[block].projection[k][i] = entry[0]);
         Some(Self { blocks, force_reach: skeleton_reach.max(pressure_reach), projection_reach })
     }
 }
@@ -199,7 +202,7 @@ pub struct SparseStorage<const D: usize> {
     divergence: SparseRows<Vector<D>>,
     pressure_force: SparseRows<Vector<D>>,
     skeleton_force: SparseRows<Tensor<D>>,
-    projection: SparseRows<f64>,
+    projection: SparseRows<[f64; 2]>,
     /// What is solved between the two factors where the storage is projected, and the moduli `Q` of the sites, Pa.
     storage: Option<Box<(ProjectedStorage, Vec<f64>)>>,
     /// One where a component of a phase is free, else zero, by row.
@@ -290,11 +293,11 @@ impl<const D: usize> Rows<D> for SparseStorage<D> {
         let mut projected = [[[0.0; LANES]; D]; 2];
         for i in 0..LANES {
             let mut sums = [[0.0; D]; 2];
-            for (column, weight) in self.projection.row(block * LANES + i) {
+            for (column, [of_solid, of_water]) in self.projection.row(block * LANES + i) {
                 let place = *column as usize;
                 for d in 0..D {
-                    sums[0][d] += weight * solid[place][d];
-                    sums[1][d] += weight * water[place][d];
+                    sums[0][d] += of_solid * solid[place][d];
+                    sums[1][d] += of_water * water[place][d];
                 }
             }
             let free = &self.free[block * LANES + i];

@@ -1,6 +1,7 @@
 //! Kernels against each other, what a run keeps, and runs at their limits.
 
 use crate::run;
+use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_mpm::body::Problem;
 use oedometer_mpm::explicit::scheme::Scheme;
 use oedometer_mpm::explicit::{Drag, ExplicitSettings};
@@ -18,6 +19,16 @@ fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
     let method = Method::named(method).expect("a known method");
     let (column, soil) = (Column::default(), Material::default());
     column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell).expect("the seed column")
+}
+
+/// A column of two soils of two porosities, whose interface cuts a cell.
+fn layered_problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+    let method = Method::named(method).expect("a known method");
+    let lower = SoilLayer { thickness: 0.45, porosity: Some(0.6), ..SoilLayer::default() };
+    let upper = SoilLayer { thickness: 0.55, hydraulic_conductivity: Some(1e-3), ..SoilLayer::default() };
+    let soils = SoilLayers::of(&[lower, upper]).expect("few layers");
+    let (column, soil) = (Column { soils, ..Column::default() }, Material::default());
+    column_problem(SceneKind::Layered, &column, &soil, method, cells, per_cell).expect("a column of layers")
 }
 
 fn schedule(kernel: Kernel, settings: ExplicitSettings, end: f64) -> Schedule {
@@ -47,23 +58,24 @@ fn the_assembled_column_is_the_point_wise_step_to_round_off() {
         ] {
             let settings =
                 ExplicitSettings { scheme, drag, flip, mapping_back, ..ExplicitSettings::default() };
-            let end = 0.02;
-            let fast = run(problem(name, 7, 3), &schedule(Kernel::Fastest, settings, end));
-            let plain = run(problem(name, 7, 3), &schedule(Kernel::PointWise, settings, end));
-            assert_eq!(fast.counters, plain.counters);
-            assert_eq!(fast.status, RunStatus::Ok);
-            let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
-            for (a, b) in [
-                (&fast.points.pressure, &plain.points.pressure),
-                (&fast.points.effective_stress, &plain.points.effective_stress),
-                (&fast.points.displacement, &plain.points.displacement),
-                (&fast.nodes.displacement, &plain.nodes.displacement),
-                (&vec![fast.settlement], &vec![plain.settlement]),
-                (&vec![fast.totals.surface_flux], &vec![plain.totals.surface_flux]),
-            ] {
-                let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
-                for (x, y) in a.iter().zip(b) {
-                    assert!((x - y).abs() <= 1e-10 * scale, "{name} {settings:?}: {x} for {y}");
+            for problem_of in [problem, layered_problem] {
+                let of_kernel = |kernel| run(problem_of(name, 7, 3), &schedule(kernel, settings, 0.02));
+                let (fast, plain) = (of_kernel(Kernel::Fastest), of_kernel(Kernel::PointWise));
+                assert_eq!(fast.counters, plain.counters);
+                assert_eq!(fast.status, RunStatus::Ok);
+                let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());
+                for (a, b) in [
+                    (&fast.points.pressure, &plain.points.pressure),
+                    (&fast.points.effective_stress, &plain.points.effective_stress),
+                    (&fast.points.displacement, &plain.points.displacement),
+                    (&fast.nodes.displacement, &plain.nodes.displacement),
+                    (&vec![fast.settlement], &vec![plain.settlement]),
+                    (&vec![fast.totals.surface_flux], &vec![plain.totals.surface_flux]),
+                ] {
+                    let scale = b.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+                    for (x, y) in a.iter().zip(b) {
+                        assert!((x - y).abs() <= 1e-9 * scale, "{name} {settings:?}: {x} for {y}");
+                    }
                 }
             }
         }
