@@ -65,16 +65,11 @@ impl<const D: usize> Body<D> {
         self.take_sources(0.5 * dt);
         self.enter_middle();
         self.nodes.take_flux();
-        self.evaluate_sites(|body, place, porosity| {
+        self.add_pressure_increments(dt, |body, place, porosity| {
             let back = body.half_step_back(place, dt);
-            let gained = body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field));
-            dt * body.coupling_at(place, porosity) * (body.source_at(place) - gained)
+            body.volume_rate(porosity, |field| body.middle_divergence(place, &back, field))
+                - body.source_at(place)
         });
-        self.project_site_values();
-        let at = points_in_cells!(self);
-        let pressures = &mut self.points.pressure;
-        self.recovery
-            .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
         self.leave_middle();
     }
 

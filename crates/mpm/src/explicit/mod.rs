@@ -115,14 +115,8 @@ impl<const D: usize> Body<D> {
         }
         self.nodes.take_flux();
         self.surface_flux += dt * self.outflow_of(&self.nodes.flux);
-        self.evaluate_sites(|body, place, porosity| {
-            let rate = body.volume_rate(porosity, |field| body.divergence_at(place, field));
-            -dt * body.coupling_at(place, porosity) * rate
+        self.add_pressure_increments(dt, |body, place, porosity| {
+            body.volume_rate(porosity, |field| body.divergence_at(place, field))
         });
-        self.project_site_values();
-        let at = points_in_cells!(self);
-        let pressures = &mut self.points.pressure;
-        self.recovery
-            .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
     }
 }

@@ -126,7 +126,7 @@ impl ProjectedStorage {
             }
         });
         for (row, entries) in rows.iter().enumerate() {
-            let coupling = body.material.water_bulk_modulus / body.porosity_of(sites[row]);
+            let coupling = body.coupling_of(sites[row], body.porosity_of(sites[row]));
             matrix.add(row, row, 1.0);
             for (column, value) in entries {
                 matrix.add(row, *column, parameter * coupling * value);

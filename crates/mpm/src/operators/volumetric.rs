@@ -83,21 +83,11 @@ impl<const D: usize> Body<D> {
 
     /// Coupling modulus `Q = K_w/n`, Pa, of a site: one over its storage.
     #[inline]
-    fn coupling_of(&self, place: usize, porosity: f64) -> f64 {
+    pub(crate) fn coupling_of(&self, place: usize, porosity: f64) -> f64 {
         if self.soils.len() == 1 {
             self.material.water_bulk_modulus / porosity
         } else {
             1.0 / self.storage_of(place, porosity)
-        }
-    }
-
-    /// Coupling modulus at a place.
-    #[inline]
-    pub(crate) fn coupling_at(&self, place: Place, porosity: f64) -> f64 {
-        match (place, self.method.pressure) {
-            (Place::Centre(cell), _) => self.coupling_of(cell, porosity),
-            (Place::Point(point), PressureIntegration::Points) => self.coupling_of(point, porosity),
-            (Place::Point(point), _) => self.coupling_of(self.cells.of_point[point], porosity),
         }
     }
 
@@ -142,6 +132,32 @@ impl<const D: usize> Body<D> {
             }
         }
         self.site_values = sites;
+    }
+
+    /// Step 7: pressure increments from the rates of the mixture's volume at the sites, each times the coupling modulus of
+    /// its site (docs/theory.md, Eqs 8 and 41), projected where the method does and recovered to the points.
+    #[inline]
+    pub(crate) fn add_pressure_increments(&mut self, dt: f64, rate: impl Fn(&Self, Place, f64) -> f64) {
+        self.evaluate_sites(rate);
+        let mut sites = std::mem::take(&mut self.site_values);
+        let coupling = |site: usize| -dt * self.coupling_of(site, self.porosity_of(site));
+        match self.method.pressure {
+            PressureIntegration::Points if self.method.has_projection() => {
+                self.nodes.active.iter().for_each(|node| sites[*node] *= coupling(*node));
+            }
+            PressureIntegration::Points => {
+                sites.iter_mut().enumerate().for_each(|(point, site)| *site *= coupling(point));
+            }
+            PressureIntegration::Sri | PressureIntegration::Mean => {
+                self.cells.occupied().for_each(|cell| sites[cell] *= coupling(cell));
+            }
+        }
+        self.site_values = sites;
+        self.project_site_values();
+        let at = points_in_cells!(self);
+        let pressures = &mut self.points.pressure;
+        self.recovery
+            .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
     }
 
     /// Rate of the mixture's volume at each site beyond that of a source, 1/s.

@@ -58,9 +58,7 @@ fn the_assembled_column_is_the_point_wise_step_to_round_off() {
         ] {
             let settings =
                 ExplicitSettings { scheme, drag, flip, mapping_back, ..ExplicitSettings::default() };
-            // A projected storage takes the porosity of a node in one kernel, and of the points around it in the other.
-            let problems = [problem, layered_problem].into_iter().take(if name == "PPP" { 1 } else { 2 });
-            for problem_of in problems {
+            for problem_of in [problem, layered_problem] {
                 let of_kernel = |kernel| run(problem_of(name, 7, 3), &schedule(kernel, settings, 0.02));
                 let (fast, plain) = (of_kernel(Kernel::Fastest), of_kernel(Kernel::PointWise));
                 assert_eq!(fast.counters, plain.counters);
