@@ -140,6 +140,9 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
         }
         Relation::Layers => {
             let height = base.number("column.height").unwrap_or(1.0);
+            // The stable step is of a formula for one soil, and of the step's own eigenvalues for layers.
+            take_seconds(&mut base, height);
+            other.time_step = base.time_step;
             if base.scene == "terzaghi" {
                 other.scene = "layered";
             }
@@ -168,7 +171,7 @@ pub fn named(relation: &str, base: Options) -> Related {
     Related { relation, base, other }
 }
 
-/// Steps in seconds for explicit skeletons: the critical step is another in the plane.
+/// Steps in seconds for explicit skeletons, where the critical step of the other case differs.
 fn take_seconds(options: &mut Options, height: f64) {
     let cell = height / options.cells as f64;
     let (Some(soil), Some((_, share))) = (Soil::of(options), options.time_step) else { return };
