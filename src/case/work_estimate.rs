@@ -123,6 +123,8 @@ const FIT_FACTOR: f64 = 1.2;
 const PLANE_FIT_FACTOR: f64 = 1.3;
 /// Factor for cell averages.
 const MEMORY_FACTOR: f64 = 1.8;
+/// Factor of a point-wise step that assembles and factors the projection of its pressure anew.
+const PROJECTION_FACTOR: f64 = 4.5;
 /// Factor for a scene whose body forces and sources are evaluated at every point.
 const FORCED_FACTOR: f64 = 2.0;
 
@@ -171,6 +173,9 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     if kind == StepKind::PointWise && fits {
         factor *= if case.column.dimensions == 1 { FIT_FACTOR } else { PLANE_FIT_FACTOR };
     }
+    if kind == StepKind::PointWise && method.has_projection() {
+        factor *= PROJECTION_FACTOR;
+    }
     if follows && method.memory == Memory::Cells {
         factor *= MEMORY_FACTOR;
     }
@@ -211,6 +216,7 @@ mod tests {
         };
         assert!(column("MPM", 1000) > 5.0 * column("MPM", 100));
         assert!((column("GIMP-SRI-patch", 10) / column("MPM", 10) - FIT_FACTOR).abs() < 1e-12);
+        assert!((column("PPP", 10) / column("VP", 10) - PROJECTION_FACTOR).abs() < 1e-12);
         let layer =
             |cells| seconds_per_step(&case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells));
         // Four times the points and twice the width.
