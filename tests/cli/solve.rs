@@ -452,3 +452,20 @@ fn small_strain_scenes_take_no_other_law_and_warn_of_large_loads() {
     assert!(err.starts_with("warning: ") && err.contains("m_vl q = 1.67e-1"), "{err}");
     assert!(err.contains("xie-leo") && !out.is_empty(), "{err}");
 }
+
+#[test]
+fn a_projection_that_slows_waves_is_warned_of_where_waves_are_what_is_solved() {
+    let solve = |scene: &str, method: &str| {
+        told(&["solve", scene, "--method", method, "--cells", "8", "--time-factor", "1e-6"])
+    };
+    for (scene, method, is_warned) in [
+        ("standing-wave", "PPP", true),
+        ("standing-wave", "VP", false),
+        ("terzaghi", "PPP", false),
+        ("dynamic-column", "TL-PPP-step", true),
+    ] {
+        let (code, _, err) = solve(scene, method);
+        assert_eq!(code, 0, "{err}");
+        assert_eq!(err.contains("on 8 cells the longest wave travels at "), is_warned, "{scene} {method}: {err}");
+    }
+}

@@ -10,7 +10,6 @@
 use crate::body::Body;
 use crate::explicit::stresses::to_middle;
 use crate::method::PressureIntegration;
-use crate::operators::recovery::points_in_cells;
 use crate::operators::volumetric::Place;
 use oedometer_soil::tensor::{Tensor, Vector, identity, product};
 

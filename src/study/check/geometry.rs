@@ -17,6 +17,8 @@ use std::ops::Range;
 
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
+/// Share of a wave's speed below which a projection is warned of.
+const LEAST_WAVE_SPEED: f64 = 0.95;
 
 /// Share by which a strain may miss the one that its load was made of.
 const ROUND_OFF: f64 = 1e-12;
@@ -361,6 +363,29 @@ impl Checker<'_> {
             "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
         );
         self.warn(&diagnostic);
+    }
+
+    /// Warns of a pressure projection that slows the waves that a scene is about.
+    pub(super) fn projection_slows_waves(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+        let cases = planned.iter().map(|planned| &planned.case).filter(|case| case.scene.has_waves());
+        let shares = cases.filter_map(|case| {
+            let method = case.method.own()?;
+            let share = method.share_of_wave_speed(&case.material, case.cell_size(), case.cells);
+            Some((share, method, case.cells))
+        });
+        let slowest =
+            shares.filter(|(share, ..)| *share < LEAST_WAVE_SPEED).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((share, method, cells)) = slowest else { return };
+        let message = format!(
+            "the pressure projection of `{method}` stores more than the water: on {cells} cells the longest wave travels at \
+             {:.0} % of its speed",
+            100.0 * share
+        );
+        self.warn(&Diagnostic::at(
+            file.scene.span(),
+            message,
+            "its errors are those of slower waves; take a method without a projection, or more cells",
+        ));
     }
 }
 

@@ -16,7 +16,6 @@ pub use crate::explicit::scheme::ExplicitSettings;
 use crate::body::Body;
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::method::Memory;
-use crate::operators::recovery::points_in_cells;
 
 impl<const D: usize> Body<D> {
     /// One explicit step of `dt` seconds by forward Euler.

@@ -12,16 +12,17 @@
 use crate::assembled::stiffness::entry_of;
 use crate::body::Body;
 use crate::direct_solver::system::{Factors, SystemMatrix};
-use crate::method::Recovery;
+use crate::method::{Method, Recovery};
 use crate::operators::recovery::points_in_cells;
 use crate::time_limit::TimeLimit;
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 
 /// Rows of a matrix between sites.
 pub type SiteRows = Vec<Vec<(usize, f64)>>;
 
-impl<const D: usize> Body<D> {
-    /// Parameter `τ` of the method's projection for a step or stage of a duration, s; 1/Pa.
+impl Method {
+    /// Parameter `τ` of the projection in a soil and cells of a size (m) for a step or stage of a duration, s; 1/Pa.
     ///
     /// - `ppp`: `1/(2G)` (White & Borja 2008).
     /// - `ppp-step`: `(3/M) [1 + tanh(2 − 12 c_v Δt/h²)]/2` with `M = E_oed` (Sun, Ostien & Salinger 2013): Darcy's flow
@@ -29,11 +30,10 @@ impl<const D: usize> Body<D> {
     /// - `ppp-monotone`: `max(0, 2/M − 12 k Δt/(γ_w h²))`, the least for which the matrix of a column has no positive entry
     ///   off its diagonal (Rodrigo, Gaspar, Hu & Zikatanov 2016): of `D K⁻¹ Dᵀ` `h/(6M)`, of the flow `−k Δt/(γ_w h)`,
     ///   of `τ P` `−τ h/12`. Monforte et al. (2019) give `M` the inertia of the mixture too.
-    pub(crate) fn projection_parameter(&self, duration: f64) -> f64 {
-        let (soil, modulus) = (&self.material, self.material.oedometric_modulus());
-        let area = self.grid.cell_size * self.grid.cell_size;
-        let flow = 12.0 * soil.coefficient_of_consolidation() * duration / area;
-        let source = match self.method.recovery {
+    pub(crate) fn projection_parameter(&self, soil: &Material, cell_size: f64, duration: f64) -> f64 {
+        let modulus = soil.oedometric_modulus();
+        let flow = 12.0 * soil.coefficient_of_consolidation() * duration / (cell_size * cell_size);
+        let source = match self.recovery {
             Recovery::Ppp => (1.0 + soil.poissons_ratio) / soil.youngs_modulus,
             Recovery::PppStep => 3.0 / modulus / (1.0 + elementary::exp(2.0 * flow - 4.0)),
             Recovery::PppMonotone => (2.0 - flow).max(0.0) / modulus,
@@ -43,7 +43,27 @@ impl<const D: usize> Body<D> {
             | Recovery::Nodal
             | Recovery::NullSpace => 0.0,
         };
-        source * f64::from(self.method.projection) / 1000.0
+        source * f64::from(self.projection) / 1000.0
+    }
+
+    /// Speed of the longest wave of a column of so many cells, `4H`, over that without a projection: the projection adds
+    /// `τ (κh)²/12` to the storage `n/K_w` of a wave of number `κ`. One for a method without it.
+    pub fn share_of_wave_speed(&self, soil: &Material, cell_size: f64, cells: usize) -> f64 {
+        if !self.has_projection() {
+            return 1.0;
+        }
+        let per_cell = 0.5 * std::f64::consts::PI / cells as f64;
+        let storage = soil.porosity / soil.water_bulk_modulus;
+        let added = self.projection_parameter(soil, cell_size, 0.0) * per_cell * per_cell / 12.0;
+        let modulus = |storage: f64| soil.oedometric_modulus() + 1.0 / storage;
+        (modulus(storage + added) / modulus(storage)).sqrt()
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// Parameter `τ` of the method's projection for a step or stage of a duration, s; 1/Pa.
+    pub(crate) fn projection_parameter(&self, duration: f64) -> f64 {
+        self.method.projection_parameter(&self.material, self.grid.cell_size, duration)
     }
 
     /// The nodes that carry a pressure of their own, and the site of each node.
@@ -145,11 +165,9 @@ impl ProjectedStorage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
-    use oedometer_soil::material::Material;
 
     fn layer(name: &str) -> Body<2> {
         let (column, method) = (Column::layer(), Method::named(name).expect("a known method"));
@@ -199,6 +217,21 @@ mod tests {
             let sum = solved[site] + body.projection_parameter(0.0) * coupling * projected;
             assert!((sum - given[site]).abs() < 1e-9, "{sum} for {}", given[site]);
         }
+    }
+
+    #[test]
+    fn a_projection_slows_the_longest_wave_by_what_it_stores() {
+        let soil = Material { porosity: 0.5, water_bulk_modulus: 1e9, ..Material::default() };
+        let share = |name: &str, cells| {
+            Method::named(name).expect("a method").share_of_wave_speed(&soil, 0.25, cells)
+        };
+        assert_eq!(share("VP", 4), 1.0);
+        // The storage n/K_w is 5e-10 1/Pa, and τ = 1/(2G) at eight cells (π/16)² τ/12.
+        let added = (1.0 + soil.poissons_ratio) / soil.youngs_modulus * 0.038_553_142 / 12.0;
+        let stiffness = |storage: f64| soil.oedometric_modulus() + 1.0 / storage;
+        let expected = (stiffness(5e-10 + added) / stiffness(5e-10)).sqrt();
+        assert!((share("PPP", 8) / expected - 1.0).abs() < 1e-6, "{} for {expected}", share("PPP", 8));
+        assert!(share("PPP", 8) < 0.5 && share("PPP", 256) > 0.9);
     }
 
     #[test]
