@@ -178,6 +178,14 @@ impl Case {
             && self.material.poissons_ratio == seed.poissons_ratio
     }
 
+    /// Its soils with their thicknesses, m, from the base up: one, or those of its layers.
+    pub fn soils(&self) -> Vec<(f64, Material)> {
+        if self.column.soils.is_empty() {
+            return vec![(self.column.height, *self.material)];
+        }
+        self.column.soils.iter().map(|layer| (layer.thickness, layer.soil(&self.material))).collect()
+    }
+
     /// Cell size, m.
     pub fn cell_size(&self) -> f64 {
         self.column.cell_size(self.cells)

@@ -51,11 +51,10 @@ pub fn estimated_updates(case: &Case) -> u64 {
 pub fn estimated_steps(case: &Case) -> f64 {
     let parameters = column_parameters(&case.column, &case.material);
     let end = parameters.time(case.time_factors.last().copied().unwrap_or(0.0));
-    let (cell_size, layers) = (case.cell_size(), &case.column.soils);
+    let cell_size = case.cell_size();
     // Every layer may be the one that sets the limit.
     let least_of_soils = |limit: &dyn Fn(&Material) -> f64| {
-        let soils = layers.iter().map(|layer| limit(&layer.soil(&case.material)));
-        soils.reduce(f64::min).unwrap_or_else(|| limit(&case.material))
+        case.soils().iter().map(|(_, soil)| limit(soil)).fold(f64::INFINITY, f64::min)
     };
     let step = match case.time_step {
         TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {

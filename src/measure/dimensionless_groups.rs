@@ -7,15 +7,19 @@ use oedometer_mpm::critical_step::formula;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 
-/// The groups of a case whose largest step was a share of its limit.
+/// The groups of a case whose largest step was a share of its limit; of layers those of the soil in which they are largest.
 pub fn groups(case: &Case, step_over_limit: f64) -> Groups {
-    let soil = &case.material;
+    let largest = |group: &dyn Fn(&Material) -> f64| {
+        case.soils().iter().map(|(_, soil)| group(soil)).fold(0.0, f64::max)
+    };
     Groups {
-        storage: soil.oedometric_modulus() / soil.coupling_modulus(),
-        finite_strain: case.column.pressure_scale() / soil.oedometric_modulus(),
-        inertia: soil.coefficient_of_consolidation()
-            / (case.column.height * formula::undrained_wave_speed(soil)),
+        storage: largest(&|soil| soil.oedometric_modulus() / soil.coupling_modulus()),
+        finite_strain: largest(&|soil| case.column.pressure_scale() / soil.oedometric_modulus()),
+        inertia: largest(&|soil| {
+            soil.coefficient_of_consolidation() / (case.column.height * formula::undrained_wave_speed(soil))
+        }),
         step_over_limit,
     }
 }
@@ -133,13 +137,32 @@ impl SlowestWave {
 /// Water that cannot be compressed moves against the skeleton: a mode of wave number `κ = π/(2H)` has
 /// `m ü + (γ_w/k) u̇ + κ² E_oed u = 0` with `m = (1−n)ρ_s + (1−n)²/n ρ_w`, and its slower rate is
 /// `c_v κ² (1 + δ + …)` with `δ = (κ c_v)² m/E_oed`.
+///
+/// Of layers it is the largest: what each takes of the settlement times its own `δ`, as far as its motion is not over before
+/// that of the slowest one by the first output.
 fn skeleton_inertia(case: &Case) -> f64 {
-    let soil = &case.material;
-    let n = soil.porosity;
-    let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
     let wave_number = std::f64::consts::FRAC_PI_2 / case.column.height;
-    elementary::powi(wave_number * soil.coefficient_of_consolidation(), 2) * inertia
-        / soil.oedometric_modulus()
+    let soils = case.soils();
+    let compression = |(thickness, soil): &(f64, Material)| thickness / soil.oedometric_modulus();
+    let whole: f64 = soils.iter().map(compression).sum();
+    // Rate at which a motion ends, 1/s: by the flow, or by the drag where it oscillates.
+    let motion = |soil: &Material| {
+        let n = soil.porosity;
+        let mass = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
+        let flow = wave_number * soil.coefficient_of_consolidation();
+        let change = flow * flow * mass / soil.oedometric_modulus();
+        let by_drag = 0.5 * soil.unit_weight_of_water() / (soil.hydraulic_conductivity * mass);
+        (change, (wave_number * flow).min(by_drag))
+    };
+    let slowest = soils.iter().map(|(_, soil)| motion(soil).1).fold(f64::INFINITY, f64::min);
+    let first =
+        case.time_factors.iter().copied().filter(|factor| *factor > 0.0).fold(f64::INFINITY, f64::min);
+    let first = first * case.seconds_per_time_factor();
+    let of_layer = |layer: &(f64, Material)| {
+        let (change, rate) = motion(&layer.1);
+        change * compression(layer) / whole * elementary::exp(-(rate - slowest) * first)
+    };
+    soils.iter().map(of_layer).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -163,6 +186,33 @@ mod tests {
         let expected = slower * drag / stiffness - 1.0;
         let found = skeleton_inertia(&case);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found:e} for {expected:e}");
+    }
+
+    #[test]
+    fn layers_have_the_inertia_of_the_soil_that_moves_most() {
+        let case = |layers: &str, first: f64| {
+            let text = format!(
+                "title = 't'\nscene = 'layered'\noutput.time_factors = [{first:e}, 1.0]\ncolumn.soils = [{layers}]\n\
+                 [[sweep]]\nmethod = ['MPM']\nintegrator = ['explicit']\ncells = [8]\n"
+            );
+            let source = StudySource { name: "t.toml".to_owned(), text };
+            Study::check(&source).expect("sound").planned[0].case.clone()
+        };
+        let tight = "{thickness = 0.25}";
+        let open = "{thickness = 0.75, hydraulic_conductivity = 1e-1}";
+        let equal = case(&format!("{tight}, {{thickness = 0.75}}"), 0.1);
+        let alone = skeleton_inertia(&equal);
+        for layers in [format!("{tight}, {open}"), format!("{open}, {tight}")] {
+            // A thousand times the flow in three quarters of the settlement: a motion that rings for a second.
+            let early = skeleton_inertia(&case(&layers, 1e-9));
+            assert!((early / (1e6 * alone) - 1.0).abs() < 1e-3, "{early:e} for {alone:e}");
+            assert!(inertia_rules(&case(&layers, 1e-9), ReferenceKind::Layered).is_some());
+            // It is over long before the tight layer has drained.
+            let late = case(&layers, 0.5);
+            assert!((skeleton_inertia(&late) / (0.25 / 0.75 * alone) - 1.0).abs() < 1e-3);
+            assert_eq!(inertia_rules(&late, ReferenceKind::Layered), None);
+            assert!((groups(&late, 0.5).inertia / groups(&equal, 0.5).inertia - 1e3).abs() < 1e-6);
+        }
     }
 
     #[test]

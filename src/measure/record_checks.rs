@@ -188,8 +188,8 @@ fn pressure_bound(record: &Record) -> f64 {
     let (case, soil) = (&record.case, &record.case.material);
     let stiffness = soil.coupling_modulus() / soil.oedometric_modulus();
     // A cell that an interface cuts has one pressure, and its soils start from several: a patch prolongs the difference.
-    let soils = case.column.soils.iter().map(|layer| layer.soil(soil));
-    let shares = soils.map(|soil| soil.oedometric_modulus() / soil.coupling_modulus());
+    let shares =
+        case.soils().into_iter().map(|(_, soil)| soil.oedometric_modulus() / soil.coupling_modulus());
     let (least, most) =
         shares.fold((f64::INFINITY, 0.0_f64), |(least, most), share| (least.min(share), most.max(share)));
     let of_interfaces = (2.0 * (most - least)).max(0.0);

@@ -466,6 +466,10 @@ fn a_projection_that_slows_waves_is_warned_of_where_waves_are_what_is_solved() {
     ] {
         let (code, _, err) = solve(scene, method);
         assert_eq!(code, 0, "{err}");
-        assert_eq!(err.contains("on 8 cells the longest wave travels at "), is_warned, "{scene} {method}: {err}");
+        assert_eq!(
+            err.contains("on 8 cells the longest wave travels at "),
+            is_warned,
+            "{scene} {method}: {err}"
+        );
     }
 }

@@ -18,7 +18,7 @@ use std::ops::Range;
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 /// Share of a wave's speed below which a projection is warned of.
-const LEAST_WAVE_SPEED: f64 = 0.95;
+const LEAST_WAVE_SPEED: f64 = 0.9;
 
 /// Share by which a strain may miss the one that its load was made of.
 const ROUND_OFF: f64 = 1e-12;
