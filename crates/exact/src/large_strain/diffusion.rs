@@ -7,6 +7,9 @@ use oedometer_soil::continuity::Continuity;
 use oedometer_soil::elementary;
 use oedometer_soil::law::Law;
 
+/// Step in `p/q` of the differences that Newton's matrices are made of.
+const STEP: f64 = 1e-5;
+
 /// Whether the water itself can be compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Water {
@@ -45,17 +48,6 @@ pub struct Diffusion {
     compliance: f64,
 }
 
-/// Coefficients of `β r_T = r_ζζ − G r_ζ² + β_s λ_T` under the share `λ` of the load.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
-    /// Storage over conductance, `β = (E_oed/(dσ'/dJ) + nJ E_oed/K_w)/κ` with `κ = k/(k_0 J)`.
-    pub storage: f64,
-    /// The skeleton's part of it, `β_s`, the first term.
-    pub skeleton_storage: f64,
-    /// `G = [−κ_J/κ + n_J/n] dJ/dr`, the last term with (4') only.
-    pub steepening: f64,
-}
-
 impl Diffusion {
     /// The diffusion of a column's pressure under `share` of its load.
     ///
@@ -88,41 +80,33 @@ impl Diffusion {
         self.model.law.shrinkage(self.load * (1.0 - lacking))
     }
 
-    /// Coefficients where the skeleton lacks the share `lacking` of the full load.
-    pub fn coefficients(&self, lacking: f64) -> Coefficients {
+    /// `C`, `C_s` and `κ` of `C r_T − C_s λ_T = (κ r_ζ)_ζ` where the skeleton lacks the share `lacking` of the full load:
+    /// storage of skeleton and water, and of the skeleton alone, over the compliance of the unstrained skeleton, and the
+    /// conductance `k/(k_0 J)`. Where the gradient of the porosity is dropped all three are over the porosity, which stands
+    /// within the divergence then.
+    pub fn coefficients(&self, lacking: f64) -> [f64; 3] {
         let volume = 1.0 - self.shrinkage(lacking);
-        // dσ'/dJ over E_oed, k/(k_0 J) and its logarithmic derivative.
-        let (tangent, conductance, growth) = match self.model.law {
-            Law::Linear => {
-                return Coefficients {
-                    storage: 1.0 + self.porosity * self.compliance,
-                    skeleton_storage: 1.0,
-                    steepening: 0.0,
-                };
-            }
-            Law::LogLinear | Law::Engineering => (volume.recip(), volume, volume.recip()),
-            Law::PorosityDependent => ((volume * volume).recip(), volume, volume.recip()),
+        // dσ'/dJ over E_oed.
+        let tangent = match self.model.law {
+            Law::Linear => return [1.0 + self.porosity * self.compliance, 1.0, 1.0],
+            Law::LogLinear | Law::Engineering => volume.recip(),
+            Law::PorosityDependent => (volume * volume).recip(),
             // Refused before: nothing follows from what is no number.
-            Law::NeoHookean | Law::Preconsolidated | Law::VonMises => (f64::NAN, f64::NAN, f64::NAN),
+            Law::NeoHookean | Law::Preconsolidated | Law::VonMises => f64::NAN,
         };
         let pores = volume - (1.0 - self.porosity);
-        let dropped = match self.model.continuity {
-            Continuity::Conservative => 0.0,
-            Continuity::ConstantPorosityGradient => (1.0 - self.porosity) / (volume * pores),
+        let divided = match self.model.continuity {
+            Continuity::Conservative => 1.0,
+            Continuity::ConstantPorosityGradient => self.porosity * volume / pores,
         };
-        Coefficients {
-            storage: (tangent.recip() + pores * self.compliance) / conductance,
-            skeleton_storage: (tangent * conductance).recip(),
-            steepening: (dropped - growth) * self.load / tangent,
-        }
+        [divided * (tangent.recip() + pores * self.compliance), divided / tangent, divided * volume]
     }
 
-    /// Storage of skeleton and water, that of the skeleton alone, both over the compliance of the unstrained skeleton, and
-    /// the conductance `k/(k_0 J)`, where the skeleton lacks the share `lacking` of the full load.
-    pub fn storage_and_conductance(&self, lacking: f64) -> [f64; 3] {
-        let Coefficients { storage, skeleton_storage, .. } = self.coefficients(lacking);
-        let conductance = if self.model.law == Law::Linear { 1.0 } else { 1.0 - self.shrinkage(lacking) };
-        [storage * conductance, skeleton_storage * conductance, conductance]
+    /// The coefficients, and how they change with the share that the skeleton lacks: for Newton's matrices.
+    pub fn with_slopes(&self, lacking: f64) -> [[f64; 3]; 2] {
+        let (before, after) = (self.coefficients(lacking - STEP), self.coefficients(lacking + STEP));
+        let slope = |i: usize| (after[i] - before[i]) / (2.0 * STEP);
+        [self.coefficients(lacking), [slope(0), slope(1), slope(2)]]
     }
 
     /// Pressure ratio of the undrained start: `p_0 = −K_w ln(1 − (1 − J_0)/n_0) = q + σ'(J_0)`,
@@ -233,12 +217,8 @@ mod tests {
             let diffusion = Diffusion { compliance: 0.0, ..diffusion(law) };
             let step = 1e-6;
             let slope = (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
-            let conductance = match law {
-                Law::Linear => 1.0,
-                _ => 1.0 - diffusion.shrinkage(0.4),
-            };
-            let storage = diffusion.coefficients(0.4).storage;
-            assert!((-slope / diffusion.load / conductance - storage).abs() < 1e-9);
+            let [storage, skeleton, _] = diffusion.coefficients(0.4);
+            assert!((-slope / diffusion.load - storage).abs() < 1e-9 && storage == skeleton);
         }
     }
 

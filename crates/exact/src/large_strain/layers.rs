@@ -1,4 +1,4 @@
-//! The space of a column of layers: one spectral element per layer, which joins the next in a point of both.
+//! The column in space: spectral elements, one per layer, each of which joins the next in a point of both.
 //!
 //! In each layer, with the moduli `E` and conductivities `k` over those of the column's soil and `y = Y/H`,
 //!
@@ -7,19 +7,16 @@
 //! ```
 //!
 //! (docs/theory.md, Eq. 43). Its weak form at Lobatto's points leaves no equation over at an interface: what the one layer
-//! gives there the other takes (Maday & Patera 1989).
+//! gives there the other takes (Maday & Patera 1989). A column of one soil is the upper half of a layer with its mirror
+//! image below the base, where nothing flows.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::exact_error::ExactError;
 use crate::large_strain::diffusion::{Diffusion, LargeStrainModel, LoadAt};
-use crate::large_strain::legendre::Element;
-use crate::large_strain::march::{Piece, Profile};
+use crate::large_strain::legendre::{Element, evaluate, integral_to_one};
 use crate::parameters::ColumnParameters;
 use oedometer_soil::continuity::Continuity;
-
-/// Step in `p/q` of the differences that Newton's matrix is made of.
-const STEP: f64 = 1e-5;
 
 /// A column of layers, from the surface down as its points are.
 #[derive(Clone, Debug)]
@@ -34,7 +31,7 @@ pub struct Layers {
 #[derive(Clone, Debug)]
 struct Layer {
     diffusion: Diffusion,
-    /// Heights of base and top over that of the column.
+    /// Heights of the element's ends over that of the column: its base and top, or the top and its mirror image.
     ends: [f64; 2],
     /// `E_0/E`.
     compliance: f64,
@@ -46,21 +43,72 @@ struct Layer {
     slope: DMatrix<f64>,
 }
 
+/// A state as functions of the height, layer by layer from the surface down.
+#[derive(Clone, Debug)]
+pub struct Profile(Vec<Piece>);
+
+/// A state as functions of the height in a layer.
+#[derive(Clone, Debug)]
+struct Piece {
+    ends: [f64; 2],
+    /// Legendre coefficients of `r` from −1, the lower end, to 1.
+    ratio: Vec<f64>,
+    /// Those of `1 − J`.
+    shrinkage: Vec<f64>,
+}
+
+impl Piece {
+    /// The place of a height in the element, from −1 to 1; of one above it 1.
+    fn place(&self, height: f64) -> f64 {
+        let [base, top] = self.ends;
+        (2.0 * (height - base) / (top - base) - 1.0).min(1.0)
+    }
+}
+
+impl Profile {
+    /// Pressure ratio at a depth.
+    pub fn pressure_ratio(&self, zeta: f64) -> f64 {
+        if zeta == 0.0 {
+            return 0.0;
+        }
+        let height = 1.0 - zeta;
+        let piece = self.0.iter().find(|piece| height >= piece.ends[0]).or(self.0.last());
+        piece.map_or(f64::NAN, |piece| evaluate(&piece.ratio, piece.place(height)))
+    }
+
+    /// `∫_ζ^1 (1 − J) dζ`.
+    pub fn shrinkage_below(&self, zeta: f64) -> f64 {
+        let height = 1.0 - zeta;
+        let of_piece = |piece: &Piece| {
+            let above = |height: f64| integral_to_one(&piece.shrinkage, piece.place(height));
+            0.5 * (piece.ends[1] - piece.ends[0]) * (above(piece.ends[0].max(0.0)) - above(height))
+        };
+        self.0.iter().filter(|piece| height > piece.ends[0]).map(of_piece).sum()
+    }
+}
+
 /// `C`, `C_s` and `κ` of the points of a layer, with its factors.
 type Coefficients = Vec<[f64; 3]>;
 
 impl Layers {
-    /// The layers of a column on `order + 1` points each.
+    /// A column on `order + 1` points in each of its layers.
     ///
     /// # Errors
-    /// When the layers do not fill the column, a soil is impossible or closes its pores, the load acts at once, a weight
-    /// acts, or the continuity needs a gradient of the porosity.
+    /// When a soil is impossible or closes its pores; of several layers when they do not fill the column, the load acts at
+    /// once, a weight acts, or the continuity needs a gradient of the porosity.
     pub fn of(
         parameters: &ColumnParameters,
         model: LargeStrainModel,
         order: usize,
     ) -> Result<Self, ExactError> {
         let height = parameters.height;
+        if parameters.soils.is_empty() {
+            let (element, diffusion) = (Element::new(2 * order), Diffusion::new(model, parameters, 1.0)?);
+            let (weights, slope) = element.upper_half();
+            let ends = [-1.0, 1.0];
+            let layer = Layer { diffusion, ends, compliance: 1.0, conductivity: 1.0, weights, slope };
+            return Ok(Self { stack: vec![layer], order, element });
+        }
         if let Some(sum) = parameters.soils.misses(height) {
             return Err(ExactError::LayersDoNotFill { sum, height });
         }
@@ -102,7 +150,9 @@ impl Layers {
     pub fn depths(&self) -> impl Iterator<Item = f64> {
         self.stack.iter().flat_map(|layer| {
             let [base, top] = layer.ends;
-            self.element.points.iter().map(move |x| (1.0 - base - 0.5 * (top - base) * (1.0 + x)).max(0.0))
+            self.element.points[..=self.order]
+                .iter()
+                .map(move |x| (1.0 - base - 0.5 * (top - base) * (1.0 + x)).max(0.0))
         })
     }
 
@@ -114,21 +164,26 @@ impl Layers {
 
     /// `∫ (1 − J) dζ` over the column at the end of consolidation.
     pub fn final_shrinkage(&self) -> f64 {
-        self.stack.iter().map(|layer| (layer.ends[1] - layer.ends[0]) * layer.diffusion.shrinkage(0.0)).sum()
+        self.stack
+            .iter()
+            .map(|layer| layer.weights.iter().sum::<f64>() * layer.diffusion.shrinkage(0.0))
+            .sum()
     }
 
-    /// Functions of the depth through the values at the points below the surface.
+    /// Functions of the height through the values at the points below the surface.
     pub fn profile(&self, ratio: &DVector<f64>, absent: f64) -> Profile {
         let pieces = self.stack.iter().enumerate().map(|(at, layer)| {
             let values = self.of_layer(at, ratio);
             let shrinkage = values.map(|ratio| layer.diffusion.shrinkage(ratio + absent));
-            Piece {
-                ends: layer.ends,
-                ratio: self.element.coefficients(values.as_slice()),
-                shrinkage: self.element.coefficients(shrinkage.as_slice()),
-            }
+            Piece { ends: layer.ends, ratio: self.series(&values), shrinkage: self.series(&shrinkage) }
         });
-        Profile::Layers(pieces.collect())
+        Profile(pieces.collect())
+    }
+
+    /// Coefficients of the polynomial through values at the points of a layer, and at those of its image where it has one.
+    fn series(&self, values: &DVector<f64>) -> Vec<f64> {
+        let image = values.iter().rev().skip(1).take(self.element.points.len() - values.len());
+        self.element.coefficients(&values.iter().chain(image).copied().collect::<Vec<_>>())
     }
 
     /// `∂r/∂T_v` at the points below the surface.
@@ -144,14 +199,12 @@ impl Layers {
         let mut jacobian = DMatrix::zeros(self.len(), self.len());
         for (at, layer) in self.stack.iter().enumerate() {
             let values = self.of_layer(at, ratio);
-            let coefficients = layer.coefficients(&values, load.absent);
-            let [before, after] = [-STEP, STEP].map(|step| layer.coefficients(&values, load.absent + step));
-            let change = |point: usize, i: usize| (after[point][i] - before[point][i]) / (2.0 * STEP);
+            let (coefficients, changes) = layer.coefficients_with_slopes(&values, load.absent);
             let gradient = &layer.slope * &values;
             let mut flux = layer.slope.clone();
             for q in 0..=self.order {
                 flux.row_mut(q).scale_mut(layer.weights[q] * coefficients[q][2]);
-                flux[(q, q)] += layer.weights[q] * change(q, 2) * gradient[q];
+                flux[(q, q)] += layer.weights[q] * changes[q][2] * gradient[q];
             }
             let given = layer.slope.tr_mul(&flux);
             for a in 0..=self.order {
@@ -161,7 +214,7 @@ impl Layers {
                     jacobian[(row, column)] -= given[(a, b)];
                 }
                 jacobian[(row, row)] +=
-                    layer.weights[a] * (change(a, 1) * load.rate - change(a, 0) * rate[row]);
+                    layer.weights[a] * (changes[a][1] * load.rate - changes[a][0] * rate[row]);
             }
         }
         for (row, storage) in storage.iter().enumerate() {
@@ -204,10 +257,17 @@ impl Layers {
 impl Layer {
     /// `(E_0/E) C`, `(E_0/E) C_s` and `(k/k_0) κ` at the points.
     fn coefficients(&self, values: &DVector<f64>, absent: f64) -> Coefficients {
-        let at = |ratio: &f64| {
-            let [storage, skeleton, conductance] = self.diffusion.storage_and_conductance(ratio + absent);
-            [self.compliance * storage, self.compliance * skeleton, self.conductivity * conductance]
-        };
-        values.iter().map(at).collect()
+        values.iter().map(|ratio| self.scaled(self.diffusion.coefficients(ratio + absent))).collect()
+    }
+
+    /// The coefficients, and how they change with the pressure.
+    fn coefficients_with_slopes(&self, values: &DVector<f64>, absent: f64) -> (Coefficients, Coefficients) {
+        let at =
+            |ratio: &f64| self.diffusion.with_slopes(ratio + absent).map(|three| self.scaled(three)).into();
+        values.iter().map(at).unzip()
+    }
+
+    fn scaled(&self, [storage, skeleton, conductance]: [f64; 3]) -> [f64; 3] {
+        [self.compliance * storage, self.compliance * skeleton, self.conductivity * conductance]
     }
 }

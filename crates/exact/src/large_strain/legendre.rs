@@ -72,6 +72,20 @@ impl Element {
         matrix
     }
 
+    /// Weights and derivatives of functions that are even, at the points from 1 down to 0; of an even order.
+    pub fn upper_half(&self) -> (Vec<f64>, DMatrix<f64>) {
+        let (middle, last) = (self.points.len() / 2, self.points.len() - 1);
+        let mut weights = self.weights[..=middle].to_vec();
+        weights[middle] *= 0.5;
+        let whole = self.derivative();
+        let mut half = whole.view((0, 0), (middle + 1, middle + 1)).into_owned();
+        for j in 0..middle {
+            let image = whole.view((0, last - j), (middle + 1, 1));
+            half.column_mut(j).zip_apply(&image, |own, image| *own += image);
+        }
+        (weights, half)
+    }
+
     /// Coefficients of the polynomial through values at the points.
     pub fn coefficients(&self, values: &[f64]) -> Vec<f64> {
         let order = self.points.len() - 1;

@@ -1,6 +1,5 @@
 //! Large-strain consolidation for any soil law, by a spectral method to round-off.
 
-mod chebyshev;
 pub mod diffusion;
 mod layers;
 mod legendre;
@@ -13,7 +12,8 @@ pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use crate::field_values::{Accuracy, FieldValues};
 use crate::large_strain::diffusion::{Diffusion, Loading};
-use crate::large_strain::march::{March, Profile, Space, State};
+use crate::large_strain::layers::{Layers, Profile};
+use crate::large_strain::march::{March, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
 
@@ -25,7 +25,7 @@ const ENOUGH: f64 = 1e-9;
 const ENOUGH_TO_DRAW: f64 = 1e-6;
 /// A last difference above this is no reference.
 const TOO_MUCH: f64 = 1e-6;
-/// Round-off of the collocation, below which no difference is believed.
+/// Round-off, below which no difference is believed.
 const ROUND_OFF: f64 = 1e-13;
 /// The load is put on in as many shares to find the first front.
 const LOAD_SHARES: u32 = 4;
@@ -41,11 +41,10 @@ const LOAD_SHARES: u32 = 4;
 /// w = −(k/(γ_w J)) ∂p/∂Y
 /// ```
 ///
-/// is `β ∂r/∂T_v = ∂²r/∂ζ² − G (∂r/∂ζ)² + β_s dλ/dT_v` for `r = p/q` under the share `λ` of the load,
-/// with `β`, its skeleton's part `β_s` and `G` functions of `σ'/q = r − λ`. Under a load at once, until
+/// is `C ∂r/∂T_v − C_s dλ/dT_v = ∂/∂ζ (κ ∂r/∂ζ)` for `r = p/q` under the share `λ` of the load, with the storage `C`, its
+/// skeleton's part `C_s` and the conductance `κ` functions of `σ'/q = r − λ`. Under a load at once, until
 /// the front reaches the base, the solution is a function of `ζ/√T_v`; from there, or from rest under a
-/// load that grows, Chebyshev collocation marches with Radau IIA. A column of layers under a load that grows marches on
-/// one spectral element per layer.
+/// load that grows, one spectral element per layer marches with Radau IIA.
 #[derive(Clone, Debug)]
 pub struct LargeStrain {
     parameters: ColumnParameters,
@@ -106,7 +105,7 @@ impl LargeStrain {
             .collect::<Result<Vec<_>, _>>()?;
         times.sort_by(f64::total_cmp);
         times.dedup();
-        Space::of(parameters, model, RESOLUTIONS[0].0)?;
+        Layers::of(parameters, model, RESOLUTIONS[0].0)?;
         let loading = Loading::over(parameters.time_factor(parameters.loading_time));
         let mut before: Option<Attempt> = None;
         let mut difference = f64::INFINITY;
@@ -167,7 +166,8 @@ impl LargeStrain {
     pub fn volume_ratio(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let (ratio, _) = self.ratio_and_shrinkage(time_factor, zeta)?;
-        Ok(1.0 - self.march.shrinkage(time_factor, zeta, ratio))
+        let lacking = ratio + 1.0 - self.loading.share(time_factor);
+        Ok(1.0 - self.march.layers.shrinkage(zeta, lacking))
     }
 
     /// Pressure, effective (Cauchy) stress and displacement at a Lagrangian relative depth.
@@ -201,7 +201,7 @@ impl LargeStrain {
     /// # Errors
     /// As for [`fields`](Self::fields).
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = self.parameters.height * self.march.final_shrinkage();
+        let end = self.parameters.height * self.march.layers.final_shrinkage();
         Ok(self.settlement(time_factor)? / end)
     }
 
@@ -224,7 +224,7 @@ impl Attempt {
         times: &[f64],
     ) -> Result<Self, ExactError> {
         let failed = ExactError::NotConverged { difference: f64::INFINITY };
-        let march = March::new(Space::of(parameters, model, order)?, loading, growth);
+        let march = March::new(Layers::of(parameters, model, order)?, loading, growth);
         let mut front: Option<Front> = None;
         if !loading.is_gradual() {
             // A steep front is reached by way of smaller loads.
@@ -253,11 +253,12 @@ impl Attempt {
         let early = fronts.flat_map(|(fine, coarse)| {
             let end = fine.valid_until();
             self.march
+                .layers
                 .depths()
                 .map(move |zeta| fine.pressure_ratio(end, zeta) - coarse.pressure_ratio(end, zeta))
         });
         let late = self.states.iter().zip(&other.states).flat_map(|((_, fine), (_, coarse))| {
-            self.march.depths().map(|zeta| fine.pressure_ratio(zeta) - coarse.pressure_ratio(zeta))
+            self.march.layers.depths().map(|zeta| fine.pressure_ratio(zeta) - coarse.pressure_ratio(zeta))
         });
         early.chain(late).fold(0.0, |worst, difference| difference.abs().max(worst))
     }

@@ -1,13 +1,13 @@
 //! The start of consolidation: a front that has not reached the base is a function of `ζ/(2√T)`.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::exact_error::ExactError;
-use crate::large_strain::chebyshev;
 use crate::large_strain::diffusion::Diffusion;
+use crate::large_strain::legendre::{Element, evaluate, integral_to_one};
 use oedometer_soil::elementary;
 
-/// Front in `η = ζ/(2√T)`: `f'' − G f'² + 2ηβ f' = 0`, `f(0) = 0`, `f(∞) = r_0`.
+/// Front in `η = ζ/(2√T)`: `(κ f')' + 2ηC f' = 0`, `f(0) = 0`, `f(∞) = r_0`.
 #[derive(Clone, Debug)]
 pub struct Front {
     /// `η` beyond which the pressure is `r_0` to round-off.
@@ -16,9 +16,9 @@ pub struct Front {
     undrained: f64,
     /// `1 − J` of the undrained start.
     undrained_shrinkage: f64,
-    /// Coefficients of `r` in `x = 1 − 2η/reach`.
+    /// Legendre coefficients of `r` in `x = 1 − 2η/reach`.
     ratio: Vec<f64>,
-    /// Coefficients of the shrinkage's departure from the undrained one.
+    /// Those of the shrinkage's departure from the undrained one.
     shrinkage: Vec<f64>,
 }
 
@@ -36,11 +36,12 @@ impl Front {
     /// When Newton's iteration does not converge.
     pub fn new(diffusion: &Diffusion, order: usize, guess: Option<&Self>) -> Result<Self, ExactError> {
         let undrained = diffusion.undrained_ratio();
-        let far = diffusion.coefficients(undrained).storage.sqrt();
+        let [storage, _, conductance] = diffusion.coefficients(undrained);
+        let far = (storage / conductance).sqrt();
         let reach = REACH / far;
-        let eta: Vec<f64> = chebyshev::points(order).iter().map(|x| 0.5 * reach * (1.0 - x)).collect();
-        let first = chebyshev::derivative(order) * (-2.0 / reach);
-        let second = &first * &first;
+        let element = Element::new(order);
+        let eta: Vec<f64> = element.points.iter().map(|x| 0.5 * reach * (1.0 - x)).collect();
+        let first = element.derivative() * (-2.0 / reach);
         let mut ratio = DVector::from_iterator(
             order + 1,
             eta.iter().map(|&eta| match guess {
@@ -51,17 +52,22 @@ impl Front {
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let slope = &first * &ratio;
-            let mut residual = &second * &ratio;
-            let mut jacobian = second.clone();
-            for i in 1..order {
-                let (value, change) = with_slopes(diffusion, ratio[i]);
-                let advection = 2.0 * eta[i] * value[0] - value[1] * slope[i];
-                residual[i] += advection * slope[i];
-                for j in 0..=order {
-                    jacobian[(i, j)] += (advection - value[1] * slope[i]) * first[(i, j)];
-                }
-                jacobian[(i, i)] += (2.0 * eta[i] * change[0] - change[1] * slope[i]) * slope[i];
+            let mut flux = slope.clone();
+            let mut flux_slopes = first.clone();
+            let mut jacobian = DMatrix::zeros(order + 1, order + 1);
+            let mut residual = DVector::zeros(order + 1);
+            for i in 0..=order {
+                let [[storage, _, conductance], [storage_slope, _, conductance_slope]] =
+                    diffusion.with_slopes(ratio[i]);
+                flux[i] *= conductance;
+                flux_slopes.row_mut(i).scale_mut(conductance);
+                flux_slopes[(i, i)] += conductance_slope * slope[i];
+                residual[i] = 2.0 * eta[i] * storage * slope[i];
+                jacobian.row_mut(i).copy_from(&(first.row(i) * (2.0 * eta[i] * storage)));
+                jacobian[(i, i)] += 2.0 * eta[i] * storage_slope * slope[i];
             }
+            residual += &first * flux;
+            jacobian += &first * flux_slopes;
             for (row, value) in [(0, 0.0), (order, undrained)] {
                 residual[row] = ratio[row] - value;
                 jacobian.row_mut(row).fill(0.0);
@@ -74,7 +80,7 @@ impl Front {
             let size = step.amax();
             // Round-off of the second derivative stops the iteration somewhere above 1e-14.
             if size < 1e-14 || (size < 1e-10 && size >= 0.5 * last) {
-                return Ok(Self::tabulated(diffusion, reach, undrained, ratio.as_slice()));
+                return Ok(Self::tabulated(diffusion, &element, reach, ratio.as_slice()));
             }
             if !size.is_finite() {
                 break;
@@ -84,7 +90,8 @@ impl Front {
         Err(ExactError::NotConverged { difference: last })
     }
 
-    fn tabulated(diffusion: &Diffusion, reach: f64, undrained: f64, ratio: &[f64]) -> Self {
+    fn tabulated(diffusion: &Diffusion, element: &Element, reach: f64, ratio: &[f64]) -> Self {
+        let undrained = diffusion.undrained_ratio();
         let undrained_shrinkage = diffusion.shrinkage(undrained);
         let shrinkage: Vec<f64> =
             ratio.iter().map(|&ratio| diffusion.shrinkage(ratio) - undrained_shrinkage).collect();
@@ -92,8 +99,8 @@ impl Front {
             reach,
             undrained,
             undrained_shrinkage,
-            ratio: chebyshev::coefficients(ratio),
-            shrinkage: chebyshev::coefficients(&shrinkage),
+            ratio: element.coefficients(ratio),
+            shrinkage: element.coefficients(&shrinkage),
         }
     }
 
@@ -108,7 +115,7 @@ impl Front {
         if eta >= self.reach {
             return self.undrained;
         }
-        chebyshev::evaluate(&self.ratio, 1.0 - 2.0 * eta / self.reach)
+        evaluate(&self.ratio, 1.0 - 2.0 * eta / self.reach)
     }
 
     /// Pressure ratio at a depth and an early time factor.
@@ -132,20 +139,8 @@ impl Front {
         }
         // From η to the reach is from x down to −1.
         let x = 1.0 - 2.0 * eta / self.reach;
-        let whole = chebyshev::integral_to_one(&self.shrinkage, -1.0);
-        let part = whole - chebyshev::integral_to_one(&self.shrinkage, x);
+        let whole = integral_to_one(&self.shrinkage, -1.0);
+        let part = whole - integral_to_one(&self.shrinkage, x);
         undrained + width * 0.5 * self.reach * part
     }
-}
-
-/// `[β, G, β_s]` and their slopes where the skeleton lacks a share of the full load, for Newton's
-/// matrix.
-pub fn with_slopes(diffusion: &Diffusion, lacking: f64) -> ([f64; 3], [f64; 3]) {
-    let step = 1e-5;
-    let values = |lacking| {
-        let coefficients = diffusion.coefficients(lacking);
-        [coefficients.storage, coefficients.steepening, coefficients.skeleton_storage]
-    };
-    let (before, after) = (values(lacking - step), values(lacking + step));
-    (values(lacking), [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * step)))
 }
