@@ -1,26 +1,16 @@
 //! A scene is a physical problem: geometry, load, start, the physics it needs and the references
 //! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
-//! the other. Each scene is one file; what they have in common is asked here.
+//! the other. The definitions of the scenes are in `columns`, `plane` and `manufactured`; what they have in common is
+//! asked here.
 
 pub mod arrangement;
-mod at_rest;
 pub mod column;
-mod cosine_layer;
+mod columns;
 mod definition;
-mod dynamic_column;
-mod dynamic_single_mode;
-mod footing;
-mod layered;
-mod mandel;
 mod manufactured;
 mod moment_fitting;
+mod plane;
 pub mod problem;
-mod sealed_element;
-mod single_mode;
-mod standing_wave;
-mod terzaghi;
-mod xie_leo;
-mod yield_front;
 
 use crate::explicit::scheme::Scheme;
 use crate::explicit::{Drag, ExplicitSettings};
@@ -88,19 +78,19 @@ impl SceneKind {
     /// The scene's own file.
     fn definition(self) -> &'static SceneDefinition {
         match self {
-            Self::Terzaghi => &terzaghi::TERZAGHI,
-            Self::SingleMode => &single_mode::SINGLE_MODE,
-            Self::XieLeo => &xie_leo::XIE_LEO,
-            Self::CosineLayer => &cosine_layer::COSINE_LAYER,
-            Self::DynamicColumn => &dynamic_column::DYNAMIC_COLUMN,
-            Self::DynamicSingleMode => &dynamic_single_mode::DYNAMIC_SINGLE_MODE,
-            Self::StandingWave => &standing_wave::STANDING_WAVE,
-            Self::Mandel => &mandel::MANDEL,
-            Self::AtRest => &at_rest::AT_REST,
-            Self::Layered => &layered::LAYERED,
-            Self::YieldFront => &yield_front::YIELD_FRONT,
-            Self::SealedElement => &sealed_element::SEALED_ELEMENT,
-            Self::Footing => &footing::FOOTING,
+            Self::Terzaghi => &columns::TERZAGHI,
+            Self::SingleMode => &columns::SINGLE_MODE,
+            Self::XieLeo => &columns::XIE_LEO,
+            Self::CosineLayer => &plane::COSINE_LAYER,
+            Self::DynamicColumn => &columns::DYNAMIC_COLUMN,
+            Self::DynamicSingleMode => &columns::DYNAMIC_SINGLE_MODE,
+            Self::StandingWave => &columns::STANDING_WAVE,
+            Self::Mandel => &plane::MANDEL,
+            Self::AtRest => &columns::AT_REST,
+            Self::Layered => &columns::LAYERED,
+            Self::YieldFront => &columns::YIELD_FRONT,
+            Self::SealedElement => &columns::SEALED_ELEMENT,
+            Self::Footing => &plane::FOOTING,
             Self::ManufacturedBox => &manufactured::BOX,
             Self::ManufacturedShear => &manufactured::SHEAR,
             Self::ManufacturedVortex => &manufactured::VORTEX,
