@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
-use crate::measure::fields::{LONG_AFTER, snapshot_errors};
+use crate::measure::fields::snapshot_errors;
 use crate::measure::other_measures::{load_factor, measures_of};
 use crate::measure::theory::known_reference;
 use crate::record::{
@@ -108,7 +108,6 @@ impl Results<'_> {
         if record.attached.is_some() {
             prepared.extend(&self.times);
         }
-        prepared.push(LONG_AFTER);
         let references: Vec<Arc<Reference>> = kinds
             .iter()
             .map(|kind| known_reference(case, kind.of_soil(&case.material), &prepared))
@@ -132,7 +131,7 @@ impl Results<'_> {
                 column_parameters(&case.column, &case.material).final_settlement()
             }
             Some(own) if own.kind() == ReferenceKind::Footing => own.settlement(1.0)?,
-            Some(own) => own.displacement_scale(LONG_AFTER)?,
+            Some(own) => own.displacement_scale()?,
         };
         let degree = |(time_factor, settlement, force): &(f64, f64, Option<f64>)| HistoryRow {
             time_factor: *time_factor,

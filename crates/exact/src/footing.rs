@@ -11,8 +11,8 @@
 //! yielding (Shield 1954; Bishop 1953), so that bounds from both sides meet. The fields under it are not unique.
 
 use crate::exact_error::{ExactError, checked_time_factor, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 
 /// `F/(B c_u)` at collapse.
 pub const LOAD_FACTOR: f64 = 2.0 + std::f64::consts::PI;
@@ -33,36 +33,26 @@ impl Footing {
         positive("width of the plate", layer.plate_width)?;
         Ok(Self { width: layer.plate_width })
     }
+}
 
+impl Solution for Footing {
     /// None: the load is unique at collapse, the fields are not.
-    ///
-    /// # Errors
-    /// Always.
-    pub fn fields(&self, _: f64, _: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, _: f64, _: f64) -> Result<FieldValues, ExactError> {
         Err(ExactError::NoFields)
     }
 
     /// Settlement of the plate, m.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         checked_time_factor(time_factor).map(|factor| factor * self.width)
     }
 
-    /// Settlement of the plate over its width.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        checked_time_factor(time_factor)
+    /// Its width, by which settlements are measured: it sinks without end.
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.width)
     }
 
     /// Exact.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor).map(|_| Accuracy::of(0, 0.0))
     }
 }

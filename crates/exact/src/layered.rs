@@ -15,8 +15,10 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::Complex;
 
 use crate::cosine_layer::{NODES, talbot_contour};
-use crate::exact_error::{ExactError, held_within, normal, positive};
-use crate::field_values::{Accuracy, FieldValues};
+use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, normal, positive};
+use crate::numerics::bisected;
+use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
@@ -77,9 +79,32 @@ pub struct LayeredColumn {
     height: f64,
     load: f64,
     modes: Vec<Mode>,
+    /// Seconds of a unit of the time factor, where the column has one.
+    seconds: f64,
 }
 
 impl LayeredColumn {
+    /// The layers of a column, by whose soil time factors are counted; one layer where it has none.
+    ///
+    /// # Errors
+    /// When a parameter is impossible, or the layers do not fill the column.
+    pub fn of(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+        parameters.validate()?;
+        let height = parameters.height;
+        if let Some(sum) = parameters.soils.misses(height) {
+            return Err(ExactError::LayersDoNotFill { sum, height });
+        }
+        let mut layers: Vec<(f64, Material)> =
+            parameters.soils.iter().map(|layer| (layer.thickness, layer.soil(&parameters.soil))).collect();
+        for (_, soil) in &layers {
+            ColumnParameters { soil: *soil, ..*parameters }.validate()?;
+        }
+        if layers.is_empty() {
+            layers.push((height, parameters.soil));
+        }
+        Ok(Self { seconds: parameters.time(1.0), ..Self::new(parameters.load, &layers)? })
+    }
+
     /// The column of `layers`, thickness in m and soil of each from the base up, under `load` Pa.
     ///
     /// # Errors
@@ -105,14 +130,10 @@ impl LayeredColumn {
             height: positive("height", bottom)?,
             load: normal("load", load)?,
             modes: Vec::new(),
+            seconds: 1.0,
         };
         column.modes = (0..MOST_MODES).map(|index| column.mode(index)).collect();
         Ok(column)
-    }
-
-    /// Settlement long after, `q Σ t/E_oed`, m.
-    pub fn final_settlement(&self) -> f64 {
-        self.load * self.layers.iter().map(|layer| layer.thickness / layer.modulus).sum::<f64>()
     }
 
     /// Pressure, effective stress and displacement at the height `y` above the base, `seconds` after the load.
@@ -121,7 +142,7 @@ impl LayeredColumn {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite, or `y` outside of the column.
-    pub fn fields(&self, seconds: f64, y: f64) -> Result<FieldValues, ExactError> {
+    pub fn fields_after(&self, seconds: f64, y: f64) -> Result<FieldValues, ExactError> {
         let state = self.at(seconds)?;
         let y = held_within(y, self.height).ok_or(ExactError::OutsideLayer { y, height: self.height })?;
         let pressure = state.pressure(y);
@@ -136,7 +157,7 @@ impl LayeredColumn {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
-    pub fn settlement(&self, seconds: f64) -> Result<f64, ExactError> {
+    pub fn settlement_after(&self, seconds: f64) -> Result<f64, ExactError> {
         Ok(self.load * self.at(seconds)?.shortening(self.height))
     }
 
@@ -144,7 +165,7 @@ impl LayeredColumn {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
-    pub fn accuracy(&self, seconds: f64) -> Result<Accuracy, ExactError> {
+    pub fn accuracy_after(&self, seconds: f64) -> Result<Accuracy, ExactError> {
         Ok(match self.at(seconds)?.form {
             Form::Start => Accuracy::of(0, 0.0),
             Form::Series { terms, .. } => Accuracy::of(terms, self.tail(seconds, terms)),
@@ -226,15 +247,8 @@ impl LayeredColumn {
         let wanted = (index as f64 + 0.5) * PI;
         let span: f64 = self.layers.iter().map(|layer| layer.thickness * layer.slowness()).sum();
         let margin = FRAC_PI_2 * self.layers.len() as f64;
-        let (mut low, mut high) = ((wanted - margin).max(0.0) / span, (wanted + margin) / span);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if self.waves(middle).0 < wanted { low = middle } else { high = middle }
-        }
-        let root = 0.5 * (low + high);
+        let bracket = [(wanted - margin).max(0.0) / span, (wanted + margin) / span];
+        let root = bisected(bracket[0], bracket[1], |root| self.waves(root).0 - wanted);
         let waves = self.waves(root).1;
         let (mut start, mut norm) = (0.0, 0.0);
         for (layer, &(amplitude, phase)) in self.layers.iter().zip(&waves) {
@@ -259,6 +273,26 @@ impl LayeredColumn {
     /// The layer at a height; the lower one on a face.
     fn layer_at(&self, y: f64) -> usize {
         self.layers.iter().rposition(|layer| y > layer.bottom).unwrap_or(0)
+    }
+}
+
+impl Solution for LayeredColumn {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let seconds = checked_time_factor(time_factor)? * self.seconds;
+        self.fields_after(seconds, (1.0 - checked_depth(zeta)?) * self.height)
+    }
+
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        self.settlement_after(checked_time_factor(time_factor)? * self.seconds)
+    }
+
+    /// `q Σ t/E_oed`.
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.load * self.layers.iter().map(|layer| layer.thickness / layer.modulus).sum::<f64>())
+    }
+
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        self.accuracy_after(checked_time_factor(time_factor)? * self.seconds)
     }
 }
 
@@ -443,7 +477,6 @@ fn cosh_ratio(number: Complex<f64>, a: f64, b: f64) -> Complex<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::ColumnParameters;
     use crate::terzaghi::Terzaghi;
 
     fn soil(modulus: f64, conductivity: f64, porosity: f64) -> Material {
@@ -480,11 +513,11 @@ mod tests {
                 let [time_factor, y, pressure, settlement] =
                     [1, 2, 3, 4].map(|cell| row[cell].parse::<f64>().unwrap());
                 let seconds = time_factor * seconds_per_time_factor;
-                let found = column.fields(seconds, y).unwrap().pressure;
+                let found = column.fields_after(seconds, y).unwrap().pressure;
                 assert!((found - pressure).abs() < 1e-13, "{row:?}: {found}");
-                let found = column.settlement(seconds).unwrap() / column.final_settlement();
+                let found = column.settlement_after(seconds).unwrap() / column.final_settlement().unwrap();
                 assert!((found - settlement).abs() < 1e-13, "{row:?}: {found}");
-                assert!(column.accuracy(seconds).unwrap().bound() < 1e-12);
+                assert!(column.accuracy_after(seconds).unwrap().bound() < 1e-12);
             }
         }
     }
@@ -506,7 +539,7 @@ mod tests {
                     let difference = series.pressure(y) - transform.pressure(y);
                     assert!(difference.abs() < INVERSION_ERROR, "{name} {share} {y}: {difference:e}");
                     let difference =
-                        (series.shortening(y) - transform.shortening(y)) / column.final_settlement();
+                        (series.shortening(y) - transform.shortening(y)) / column.final_settlement().unwrap();
                     assert!(difference.abs() < INVERSION_ERROR, "{name} {share} {y}: {difference:e}");
                 }
             }
@@ -539,7 +572,7 @@ mod tests {
             let seconds = seed.time(time_factor);
             for y in [0.0, 0.1, 0.2, 0.69, 0.9, 0.999, 1.0] {
                 let expected = terzaghi.fields(time_factor, 1.0 - y).unwrap();
-                let found = column.fields(seconds, y).unwrap();
+                let found = column.fields_after(seconds, y).unwrap();
                 let difference = (found.pressure - expected.pressure) / 3e3;
                 assert!(difference.abs() < 1e-12, "{time_factor} {y}: {difference:e}");
                 let difference = (found.displacement - expected.displacement) / seed.final_settlement();
@@ -555,9 +588,9 @@ mod tests {
         let column = LayeredColumn::new(1.0, &[(0.025, Material::default()); 40]).unwrap();
         for time_factor in [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0] {
             let expected = terzaghi.fields(time_factor, 0.5).unwrap().pressure;
-            let found = column.fields(seed.time(time_factor), 0.5).unwrap().pressure;
+            let found = column.fields_after(seed.time(time_factor), 0.5).unwrap().pressure;
             assert!((found - expected).abs() < 1e-12, "{time_factor}: {found} {expected}");
-            assert!(column.accuracy(seed.time(time_factor)).unwrap().bound() >= 0.0);
+            assert!(column.accuracy_after(seed.time(time_factor)).unwrap().bound() >= 0.0);
         }
     }
 
@@ -568,12 +601,12 @@ mod tests {
         let seconds = 0.01 / column.modes[0].rate;
         let step = 1e-6;
         let slope = |from: f64| {
-            let at = |y: f64| column.fields(seconds, y).unwrap().pressure;
+            let at = |y: f64| column.fields_after(seconds, y).unwrap().pressure;
             (at(from + step) - at(from)) / step
         };
         let (below, above) = (slope(0.3 - step) * 1e-8, slope(0.3 + 1e-12) * 1e-4);
         assert!((below / above - 1.0).abs() < 1e-3, "{below:e} {above:e}");
-        let start = column.fields(0.0, 0.1).unwrap().pressure;
+        let start = column.fields_after(0.0, 0.1).unwrap().pressure;
         let coupling = layers[0].1.coupling_modulus();
         assert!((start - coupling / (coupling + layers[0].1.oedometric_modulus())).abs() < 1e-15);
     }
@@ -584,6 +617,6 @@ mod tests {
         assert!(LayeredColumn::new(1.0, &[(0.0, Material::default())]).is_err());
         assert!(LayeredColumn::new(f64::NAN, &[(1.0, Material::default())]).is_err());
         let column = LayeredColumn::new(1.0, &[(1.0, Material::default())]).unwrap();
-        assert!(column.fields(-1.0, 0.5).is_err() && column.fields(1.0, 1.1).is_err());
+        assert!(column.fields_after(-1.0, 0.5).is_err() && column.fields_after(1.0, 1.1).is_err());
     }
 }

@@ -19,41 +19,37 @@
 //!
 //! Everything is SI; excess pore pressure is positive in compression, effective stress in tension, displacement upward.
 //! Depth is the Lagrangian `ζ = 1 − Y/H` below the drained surface, time the factor `T_v = c_v t/H²` with the *drained*
-//! coefficient of consolidation. Every solution has `fields`, `settlement`, `degree_of_consolidation` and `accuracy`: the
-//! terms it took and the bound on what they leave out.
+//! coefficient of consolidation. Every solution is a [`Solution`].
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod at_rest;
-mod bisection;
 pub mod consolidation;
 pub mod cosine_layer;
 pub mod dynamic_column;
 #[doc(hidden)]
 pub mod exact_error;
-#[doc(hidden)]
-pub mod field_values;
 pub mod footing;
-mod in_seconds;
 pub mod large_strain;
 pub mod layered;
 pub mod mandel;
 pub mod manufactured;
 #[doc(hidden)]
-pub mod parameters;
+pub mod numerics;
 #[doc(hidden)]
-pub mod quadrature;
+pub mod parameters;
 pub mod reference;
 pub mod shelf;
 pub mod single_mode;
 pub mod soil_layers;
+pub mod solution;
 pub mod terzaghi;
+mod unchanging;
 pub mod xie_leo;
 pub mod yield_front;
 
 pub use crate::exact_error::{ExactError, normal};
-pub use crate::field_values::{Accuracy, FieldValues};
 pub use crate::parameters::{Base, ColumnParameters, MotionParameters};
 pub use crate::reference::{Reference, ReferenceKind};
 pub use crate::shelf::{ShelfKey, ShelfParameters, ShelfProblem};
+pub use crate::solution::{Accuracy, FieldValues, Solution};

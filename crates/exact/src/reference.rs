@@ -2,24 +2,26 @@
 
 use core::fmt;
 use core::str::FromStr;
+use std::sync::Arc;
 
-use crate::at_rest::AtRest;
 use crate::cosine_layer::{CosineLayer, LayerState};
 use crate::dynamic_column::{DynamicColumn, Start};
-use crate::exact_error::ExactError;
-use crate::field_values::{Accuracy, FieldValues};
+use crate::exact_error::{ExactError, checked_time_factor};
 use crate::footing::Footing;
-use crate::in_seconds::ColumnInSeconds;
 use crate::large_strain::LargeStrain;
 use crate::large_strain::diffusion::{LargeStrainModel, Water};
+use crate::layered::LayeredColumn;
 use crate::mandel::Mandel;
 use crate::manufactured::Manufactured;
 use crate::manufactured::motion::{ManufacturedModel, Motion};
 use crate::parameters::ColumnParameters;
-use crate::shelf::{Shelf, ShelfProblem};
+use crate::shelf::ShelfProblem;
 use crate::single_mode::SingleMode;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::terzaghi::Terzaghi;
+use crate::unchanging::Unchanging;
 use crate::xie_leo::XieLeo;
+use crate::yield_front::YieldFront;
 use oedometer_soil::material::Material;
 
 /// Which exact solution a run is held against.
@@ -161,46 +163,9 @@ impl FromStr for ReferenceKind {
 #[derive(Clone, Debug)]
 pub struct Reference {
     kind: ReferenceKind,
-    solution: Solution,
+    solution: Arc<dyn Solution>,
     /// Vertical effective stress of the weight at the base, Pa; it grows with the depth.
     initial_stress: f64,
-}
-
-/// What stands behind the door.
-#[derive(Clone, Debug)]
-enum Solution {
-    Terzaghi(Terzaghi),
-    SingleMode(SingleMode),
-    XieLeo(XieLeo),
-    Dynamic(DynamicColumn),
-    LargeStrain(Box<LargeStrain>),
-    CosineLayer(CosineLayer),
-    Mandel(Mandel),
-    AtRest(AtRest),
-    InSeconds(Box<ColumnInSeconds>),
-    Footing(Footing),
-    Manufactured(Manufactured),
-    Shelf(Shelf),
-}
-
-/// One `match` for all that every solution answers.
-macro_rules! ask {
-    ($reference:expr, $solution:ident => $answer:expr) => {
-        match &$reference.solution {
-            Solution::Terzaghi($solution) => $answer,
-            Solution::SingleMode($solution) => $answer,
-            Solution::XieLeo($solution) => $answer,
-            Solution::Dynamic($solution) => $answer,
-            Solution::LargeStrain($solution) => $answer,
-            Solution::CosineLayer($solution) => $answer,
-            Solution::Mandel($solution) => $answer,
-            Solution::AtRest($solution) => $answer,
-            Solution::InSeconds($solution) => $answer,
-            Solution::Footing($solution) => $answer,
-            Solution::Manufactured($solution) => $answer,
-            Solution::Shelf($solution) => $answer,
-        }
-    };
 }
 
 impl Reference {
@@ -216,49 +181,32 @@ impl Reference {
         time_factors: &[f64],
     ) -> Result<Self, ExactError> {
         for &time_factor in time_factors {
-            crate::exact_error::checked_time_factor(time_factor)?;
+            checked_time_factor(time_factor)?;
         }
-        let in_seconds = |column| Solution::InSeconds(Box::new(column));
         let layer = |water| CosineLayer::new(parameters, parameters.length, parameters.base, water);
-        let solution = match kind {
-            ReferenceKind::Terzaghi => Solution::Terzaghi(Terzaghi::compressible(parameters)?),
-            ReferenceKind::TerzaghiIncompressible => {
-                Solution::Terzaghi(Terzaghi::incompressible(parameters)?)
-            }
-            ReferenceKind::SingleMode => Solution::SingleMode(SingleMode::compressible(parameters)?),
-            ReferenceKind::XieLeo => Solution::XieLeo(XieLeo::new(parameters)?),
-            ReferenceKind::DynamicColumn => {
-                let start = match parameters.loading_time {
-                    0.0 => Start::Step,
-                    duration => Start::Ramp { duration },
-                };
-                Solution::Dynamic(DynamicColumn::new(parameters, start, time_factors)?)
-            }
-            ReferenceKind::DynamicSingleMode => {
-                Solution::Dynamic(DynamicColumn::new(parameters, Start::Mode, time_factors)?)
-            }
-            ReferenceKind::StandingWave => {
-                Solution::Dynamic(DynamicColumn::new(parameters, Start::StandingWave, time_factors)?)
-            }
-            ReferenceKind::LargeStrain(model) => {
-                let solution = LargeStrain::new(parameters, model, time_factors)?;
-                Solution::LargeStrain(Box::new(solution))
-            }
-            ReferenceKind::CosineLayer => Solution::CosineLayer(layer(Water::Compressible)?),
-            ReferenceKind::CosineLayerIncompressible => Solution::CosineLayer(layer(Water::Incompressible)?),
-            ReferenceKind::Mandel => Solution::Mandel(Mandel::new(parameters)?),
-            ReferenceKind::AtRest => {
-                parameters.validate()?;
-                Solution::AtRest(AtRest)
-            }
-            ReferenceKind::Layered => in_seconds(ColumnInSeconds::layered(parameters)?),
-            ReferenceKind::YieldFront => in_seconds(ColumnInSeconds::yield_front(parameters)?),
-            ReferenceKind::SealedElement => in_seconds(ColumnInSeconds::sealed(parameters)?),
-            ReferenceKind::Footing => Solution::Footing(Footing::new(parameters)?),
-            ReferenceKind::Manufactured(model) => {
-                Solution::Manufactured(Manufactured::new(model, parameters)?)
-            }
-            ReferenceKind::Shelf(problem) => Solution::Shelf(Shelf::new(problem, parameters)?),
+        let dynamic = |start| DynamicColumn::new(parameters, start, time_factors);
+        let solution: Arc<dyn Solution> = match kind {
+            ReferenceKind::Terzaghi => Arc::new(Terzaghi::compressible(parameters)?),
+            ReferenceKind::TerzaghiIncompressible => Arc::new(Terzaghi::incompressible(parameters)?),
+            ReferenceKind::SingleMode => Arc::new(SingleMode::compressible(parameters)?),
+            ReferenceKind::XieLeo => Arc::new(XieLeo::new(parameters)?),
+            ReferenceKind::DynamicColumn => Arc::new(dynamic(match parameters.loading_time {
+                0.0 => Start::Step,
+                duration => Start::Ramp { duration },
+            })?),
+            ReferenceKind::DynamicSingleMode => Arc::new(dynamic(Start::Mode)?),
+            ReferenceKind::StandingWave => Arc::new(dynamic(Start::StandingWave)?),
+            ReferenceKind::LargeStrain(model) => Arc::new(LargeStrain::new(parameters, model, time_factors)?),
+            ReferenceKind::CosineLayer => Arc::new(layer(Water::Compressible)?),
+            ReferenceKind::CosineLayerIncompressible => Arc::new(layer(Water::Incompressible)?),
+            ReferenceKind::Mandel => Arc::new(Mandel::new(parameters)?),
+            ReferenceKind::AtRest => Arc::new(Unchanging::at_rest(parameters)?),
+            ReferenceKind::Layered => Arc::new(LayeredColumn::of(parameters)?),
+            ReferenceKind::YieldFront => Arc::new(YieldFront::new(parameters)?),
+            ReferenceKind::SealedElement => Arc::new(Unchanging::sealed(parameters)?),
+            ReferenceKind::Footing => Arc::new(Footing::new(parameters)?),
+            ReferenceKind::Manufactured(model) => Arc::new(Manufactured::new(model, parameters)?),
+            ReferenceKind::Shelf(problem) => problem.solution(parameters)?,
         };
         Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
@@ -275,9 +223,8 @@ impl Reference {
         let ReferenceKind::LargeStrain(model) = kind else {
             return Self::new(kind, parameters, time_factors);
         };
-        let solution = LargeStrain::for_lines(parameters, model, time_factors)?;
-        let initial_stress = parameters.initial_stress(1.0);
-        Ok(Self { kind, solution: Solution::LargeStrain(Box::new(solution)), initial_stress })
+        let solution = Arc::new(LargeStrain::for_lines(parameters, model, time_factors)?);
+        Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
     }
 
     /// Which solution this is.
@@ -295,7 +242,7 @@ impl Reference {
     /// # Errors
     /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
     pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
-        let fields = ask!(self, solution => solution.fields(time_factor, zeta))?;
+        let fields = self.solution.fields(time_factor, zeta)?;
         if self.initial_stress == 0.0 {
             return Ok(fields);
         }
@@ -305,35 +252,33 @@ impl Reference {
 
     /// Whether its fields depend on the place along a layer too.
     pub fn is_plane(&self) -> bool {
-        matches!(self.solution, Solution::CosineLayer(_) | Solution::Manufactured(_))
+        matches!(
+            self.kind,
+            ReferenceKind::CosineLayer
+                | ReferenceKind::CosineLayerIncompressible
+                | ReferenceKind::Manufactured(_)
+        )
     }
 
-    /// The motion, where it is one that was chosen: its fields vary along both directions.
+    /// The motion, as [`Solution::manufactured`].
     pub fn manufactured(&self) -> Option<&Manufactured> {
-        if let Solution::Manufactured(solution) = &self.solution { Some(solution) } else { None }
+        self.solution.manufactured()
     }
 
-    /// The whole field of a plane problem at a time factor; `None` for a column, whose fields
-    /// depend on the depth alone.
+    /// The field of a layer, as [`Solution::plane_state`].
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn plane_state(&self, time_factor: f64) -> Result<Option<LayerState>, ExactError> {
-        match &self.solution {
-            Solution::CosineLayer(layer) => layer.at(time_factor).map(Some),
-            _ => Ok(None),
-        }
+        self.solution.plane_state(time_factor)
     }
 
-    /// Strain across the body, uniform in it: that of rigid plates, and none in a column.
+    /// Strain across the body, as [`Solution::strain_across`].
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
-        match &self.solution {
-            Solution::Mandel(slab) => slab.strain_across(time_factor),
-            _ => Ok(0.0),
-        }
+        self.solution.strain_across(time_factor)
     }
 
     /// Settlement of the surface, downward positive, m.
@@ -341,21 +286,15 @@ impl Reference {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        ask!(self, solution => solution.settlement(time_factor))
+        self.solution.settlement(time_factor)
     }
 
-    /// What displacements are measured by, m: the settlement of a time factor long after, or the largest displacement
-    /// of a motion, whose walls do not settle.
+    /// What displacements are measured by, m, as [`Solution::displacement_scale`].
     ///
     /// # Errors
-    /// When the time factor is negative or not finite.
-    pub fn displacement_scale(&self, long_after: f64) -> Result<f64, ExactError> {
-        match &self.solution {
-            Solution::Manufactured(solution) => Ok(solution.largest_displacement()),
-            Solution::Shelf(problem) => Ok(problem.final_settlement().abs()),
-            Solution::InSeconds(column) => Ok(column.final_settlement()),
-            _ => self.settlement(long_after),
-        }
+    /// When the solution has no end.
+    pub fn displacement_scale(&self) -> Result<f64, ExactError> {
+        self.solution.displacement_scale()
     }
 
     /// Degree of consolidation by settlement, `s(t)/s(∞)`; of a motion the share of its largest displacement.
@@ -363,13 +302,12 @@ impl Reference {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        ask!(self, solution => solution.degree_of_consolidation(time_factor))
+        self.solution.degree_of_consolidation(time_factor)
     }
 
-    /// Time factor and height, over the load, of the highest pressure at the impermeable end, where it rises before it
-    /// falls.
+    /// Highest pressure at the impermeable end, as [`Solution::pressure_peak`].
     pub fn pressure_peak(&self) -> Option<(f64, f64)> {
-        if let Solution::Mandel(slab) = &self.solution { slab.middle_peak() } else { None }
+        self.solution.pressure_peak()
     }
 
     /// Terms used at a time factor and the bound on what they leave out.
@@ -377,7 +315,7 @@ impl Reference {
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        ask!(self, solution => solution.accuracy(time_factor))
+        self.solution.accuracy(time_factor)
     }
 }
 
@@ -432,7 +370,7 @@ mod tests {
         let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).unwrap();
         let expected = column.load / column.soil.oedometric_modulus() * column.height;
-        let found = reference.displacement_scale(100.0).unwrap();
+        let found = reference.displacement_scale().unwrap();
         assert!((found / expected - 1.0).abs() < 1e-9, "{found:e} for {expected:e}");
     }
 

@@ -3,8 +3,8 @@
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
@@ -42,22 +42,6 @@ impl SingleMode {
         FRAC_PI_2 * FRAC_PI_2 * self.storage_ratio * time_factor
     }
 
-    /// Pressure, effective stress and displacement at a relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
-        let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
-        let exponent = self.decay_exponent(time_factor);
-        let pressure = self.parameters.load * elementary::sin(FRAC_PI_2 * zeta) * elementary::exp(-exponent);
-        let amplitude = self.parameters.final_settlement() / FRAC_PI_2;
-        Ok(FieldValues {
-            pressure,
-            effective_stress: pressure,
-            displacement: amplitude * from_base(zeta) * elementary::exp_m1(-exponent),
-        })
-    }
-
     /// Velocities of both phases, from the balances of volume and Darcy's law.
     ///
     /// `∂v_s/∂y = σ̇'/E_oed` and `n (v_w − v_s) = −(k/γ_w) ∂p/∂y`. A solver starts from those at
@@ -76,29 +60,34 @@ impl SingleMode {
         let solid = -self.storage_ratio * discharge;
         Ok(PhaseVelocities { solid, water: solid + discharge / column.soil.porosity })
     }
+}
 
-    /// Degree of consolidation by settlement, `1 − exp(−M_0² B T_v)`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let time_factor = checked_time_factor(time_factor)?;
-        Ok(-elementary::exp_m1(-self.decay_exponent(time_factor)))
+impl Solution for SingleMode {
+    /// Pressure, effective stress and displacement at a relative depth.
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
+        let exponent = self.decay_exponent(time_factor);
+        let pressure = self.parameters.load * elementary::sin(FRAC_PI_2 * zeta) * elementary::exp(-exponent);
+        let amplitude = self.parameters.final_settlement() / FRAC_PI_2;
+        Ok(FieldValues {
+            pressure,
+            effective_stress: pressure,
+            displacement: amplitude * from_base(zeta) * elementary::exp_m1(-exponent),
+        })
     }
 
-    /// Settlement of the surface since `t = 0`, downward positive, m; in the end `2 m_v p_0 H/π`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(self.parameters.final_settlement() * FRAC_2_PI * self.degree_of_consolidation(time_factor)?)
+    /// Since `t = 0`.
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let exponent = self.decay_exponent(checked_time_factor(time_factor)?);
+        Ok(-self.final_settlement()? * elementary::exp_m1(-exponent))
+    }
+
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.parameters.final_settlement() * FRAC_2_PI)
     }
 
     /// One term, no tail.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
         Ok(Accuracy::of(1, 0.0))
     }

@@ -2,8 +2,8 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 
 /// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
 ///
@@ -45,12 +45,11 @@ impl Terzaghi {
         parameters.validate()?;
         Ok(Self { parameters: *parameters, storage_ratio: 1.0, immediate_ratio: 0.0 })
     }
+}
 
+impl Solution for Terzaghi {
     /// Pressure, effective stress and displacement at a relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let load = self.parameters.load;
         let slowed = self.storage_ratio * time_factor;
         let pressure = load * self.storage_ratio * isochrone(zeta, slowed)?.value;
@@ -63,28 +62,18 @@ impl Terzaghi {
         })
     }
 
-    /// Degree of consolidation by settlement, `1 − B + B U(B T_v)`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let consolidated = consolidated_below(0.0, self.storage_ratio * time_factor)?;
-        Ok(self.immediate_ratio + self.storage_ratio * consolidated.value)
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let consolidated = consolidated_below(0.0, self.storage_ratio * time_factor)?.value;
+        let degree = self.immediate_ratio + self.storage_ratio * consolidated;
+        Ok(self.parameters.final_settlement() * degree)
     }
 
-    /// Settlement of the surface, downward positive, m.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(self.parameters.final_settlement() * self.degree_of_consolidation(time_factor)?)
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.parameters.final_settlement())
     }
 
     /// Terms and tail of the pressure, the worst over the depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         // The images' tail grows with the depth, the modes' does not depend on it.
         let base = isochrone(1.0, self.storage_ratio * time_factor)?;
         Ok(Accuracy::of(base.terms, self.storage_ratio * base.tail_bound))

@@ -2,8 +2,8 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
@@ -103,12 +103,11 @@ impl XieLeo {
         let pressure = elementary::ln_1p(elementary::exp_m1(self.strain) * isochrone);
         Ok(self.parameters.load * (pressure / self.strain))
     }
+}
 
+impl Solution for XieLeo {
     /// Pressure, effective (Cauchy) stress and displacement at a relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let pressure = self.pressure(time_factor, zeta)?;
         let (scaled_time_factor, depth) = self.equivalent(time_factor, zeta);
         let below = consolidated_below(depth, scaled_time_factor)?.value;
@@ -128,29 +127,17 @@ impl XieLeo {
         })
     }
 
-    /// Degree of consolidation by settlement: Terzaghi's `U(T_v)`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         let (time_factor, _) = self.equivalent(time_factor, 0.0);
-        Ok(consolidated_below(0.0, time_factor)?.value)
+        Ok(self.final_settlement()? * consolidated_below(0.0, time_factor)?.value)
     }
 
-    /// Settlement of the surface, downward positive, m.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let degree = self.degree_of_consolidation(time_factor)?;
-        Ok(self.parameters.height * self.final_strain() * degree)
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.parameters.height * self.final_strain())
     }
 
     /// Terms and tail of the pressure, the worst over the depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let (time_factor, _) = self.equivalent(time_factor, 0.0);
         let base = isochrone(1.0, time_factor)?;
         // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.

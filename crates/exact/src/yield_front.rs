@@ -15,10 +15,10 @@
 
 use core::f64::consts::PI;
 
-use crate::bisection::bisected;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal, positive};
-use crate::field_values::{Accuracy, FieldValues};
+use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
 /// Relative difference up to which two moduli are one.
@@ -157,7 +157,7 @@ impl YieldFront {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, seconds: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    pub fn fields_after(&self, seconds: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let seconds = checked_time_factor(seconds)?;
         let depth = checked_depth(zeta)? * self.column.height;
         let pressure = self.pressure(seconds, depth);
@@ -172,15 +172,8 @@ impl YieldFront {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
-    pub fn settlement(&self, seconds: f64) -> Result<f64, ExactError> {
+    pub fn settlement_after(&self, seconds: f64) -> Result<f64, ExactError> {
         Ok(self.shortening_below(checked_time_factor(seconds)?, 0.0))
-    }
-
-    /// Settlement long after, when all of the column has yielded, m.
-    pub fn final_settlement(&self) -> f64 {
-        let Self { column, yielding, .. } = self;
-        let strain = (column.load - yielding) / self.reload + yielding / self.virgin;
-        column.height * strain
     }
 
     /// What the base, which a half-space does not have, may change of the pressure over the load: what an image of
@@ -188,7 +181,7 @@ impl YieldFront {
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
-    pub fn accuracy(&self, seconds: f64) -> Result<Accuracy, ExactError> {
+    pub fn accuracy_after(&self, seconds: f64) -> Result<Accuracy, ExactError> {
         let seconds = checked_time_factor(seconds)?;
         if seconds == 0.0 {
             return Ok(Accuracy::of(1, 0.0));
@@ -196,6 +189,30 @@ impl YieldFront {
         let second = 2.0 * self.speeds[1];
         let reached = erfc(self.column.height / (second * seconds.sqrt())) / erfc(self.front / second);
         Ok(Accuracy::of(1, (2.0 * reached * (self.start - self.yielding) / self.column.load).min(1.0)))
+    }
+}
+
+impl Solution for YieldFront {
+    /// Stresses are counted from that of the start.
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let fields = self.fields_after(self.column.time(checked_time_factor(time_factor)?), zeta)?;
+        let effective_stress = fields.effective_stress + self.column.uniform_stress;
+        Ok(FieldValues { effective_stress, ..fields })
+    }
+
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        self.settlement_after(self.column.time(checked_time_factor(time_factor)?))
+    }
+
+    /// When all of the column has yielded; the solution is that of a half-space, which settles without end.
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        let Self { column, yielding, .. } = self;
+        let strain = (column.load - yielding) / self.reload + yielding / self.virgin;
+        Ok(column.height * strain)
+    }
+
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        self.accuracy_after(self.column.time(checked_time_factor(time_factor)?))
     }
 }
 
@@ -238,11 +255,11 @@ mod tests {
             for row in rows {
                 let [seconds, depth, pressure, front, out] =
                     [1, 2, 3, 4, 5].map(|cell| row[cell].parse::<f64>().unwrap());
-                let found = solution.fields(seconds, depth).unwrap().pressure;
+                let found = solution.fields_after(seconds, depth).unwrap().pressure;
                 assert!((found - pressure).abs() < 1e-12 * column.load, "{row:?}: {found}");
                 assert!((solution.front_depth(seconds) / front - 1.0).abs() < 1e-12, "{row:?}");
                 assert!((solution.water_out(seconds) / out - 1.0).abs() < 1e-12, "{row:?}");
-                assert!(solution.accuracy(seconds).unwrap().bound() < 1e-12);
+                assert!(solution.accuracy_after(seconds).unwrap().bound() < 1e-12);
             }
         }
     }
@@ -251,17 +268,17 @@ mod tests {
     fn the_settlement_is_the_water_that_left_less_what_the_water_gave_back() {
         let column = column([1.2e6, 6e6, 1e-8, 0.4, 2e4, 6e4]);
         let solution = YieldFront::new(&column).unwrap();
-        let undrained = solution.settlement(0.0).unwrap();
+        let undrained = solution.settlement_after(0.0).unwrap();
         for seconds in [1.0, 30.0, 400.0] {
             let lost = solution.lost_pressure(seconds, 0.0) - solution.lost_pressure(seconds, 1.0);
             let expected =
                 solution.water_out(seconds) - column.soil.porosity / column.soil.water_bulk_modulus * lost;
-            let found = solution.settlement(seconds).unwrap() - undrained;
+            let found = solution.settlement_after(seconds).unwrap() - undrained;
             assert!((found / expected - 1.0).abs() < 1e-11, "{seconds}: {found:e} {expected:e}");
             // The displacement's slope is the strain of the stress at the place.
             for depth in [0.3 * solution.front_depth(seconds), 2.0 * solution.front_depth(seconds)] {
                 let step = 1e-6;
-                let at = |depth: f64| solution.fields(seconds, depth).unwrap().displacement;
+                let at = |depth: f64| solution.fields_after(seconds, depth).unwrap().displacement;
                 let strain = (at(depth + step) - at(depth - step)) / (2.0 * step);
                 let stress = column.load - solution.pressure(seconds, depth);
                 let elastic = stress.min(column.soil.preconsolidation - column.uniform_stress);
@@ -279,7 +296,7 @@ mod tests {
         let speed = solution.speeds[0];
         for depth in [0.0, 0.01, 0.05, 0.2] {
             let expected = solution.start * erf(depth / (2.0 * speed * seconds.sqrt()));
-            let found = solution.fields(seconds, depth).unwrap().pressure;
+            let found = solution.fields_after(seconds, depth).unwrap().pressure;
             assert!((found - expected).abs() < 1e-12 * column.load);
         }
     }
@@ -293,7 +310,7 @@ mod tests {
         assert!(refused([2e6, 4e6, 1e-8, 0.4, 3e4, 3.0e4]).contains("yield"));
         // The front has reached the base long ago.
         let solution = YieldFront::new(&column([2e6, 4e6, 1e-6, 0.4, 3e4, 8e4])).unwrap();
-        assert!(solution.accuracy(1e4).unwrap().bound() > 0.1);
+        assert!(solution.accuracy_after(1e4).unwrap().bound() > 0.1);
     }
 
     #[test]
@@ -302,7 +319,7 @@ mod tests {
         column.height = 3.0;
         // From 20 to 60 kPa with 6 MPa, to 120 kPa with 1.2 MPa.
         let strain = 4e4 / 6e6 + 6e4 / 1.2e6;
-        let found = YieldFront::new(&column).unwrap().final_settlement();
+        let found = YieldFront::new(&column).unwrap().final_settlement().unwrap();
         assert!((found / (3.0 * strain) - 1.0).abs() < 1e-14, "{found}");
     }
 }

@@ -1,10 +1,11 @@
 //! The dynamic column against 20-digit values and its own limits.
 #![allow(clippy::print_stderr, reason = "a test tells how far it was off")]
 
+use oedometer_exact::FieldValues;
 use oedometer_exact::dynamic_column::{DynamicColumn, DynamicFields, Start};
-use oedometer_exact::field_values::FieldValues;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::single_mode::SingleMode;
+use oedometer_exact::solution::Solution;
 use oedometer_exact::terzaghi::Terzaghi;
 use oedometer_soil::material::Material;
 
@@ -160,7 +161,7 @@ fn ramp_is_the_mean_of_steps() {
     let mean = |time: f64, zeta: f64, parts: u32, field: fn(&FieldValues) -> f64| {
         // Over τ = (√x)², for the step's fields start like √t.
         let from = (time - duration).max(0.0);
-        oedometer_exact::quadrature::integrate(
+        oedometer_exact::numerics::integrate(
             |root| {
                 let fields = step.fields(seed.time_factor(root * root), zeta).unwrap();
                 2.0 * root * field(&fields)

@@ -8,6 +8,7 @@ use oedometer_exact::large_strain::diffusion::Water;
 use oedometer_exact::parameters::Base;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_exact::solution::Solution;
 use oedometer_exact::xie_leo::{Drainage, XieLeo};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;

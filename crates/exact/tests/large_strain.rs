@@ -1,8 +1,9 @@
 //! The large-strain reference against closed forms and its own balances.
 
 use oedometer_exact::large_strain::{LargeStrain, LargeStrainModel, Water};
+use oedometer_exact::numerics::integrate;
 use oedometer_exact::parameters::ColumnParameters;
-use oedometer_exact::quadrature::integrate;
+use oedometer_exact::solution::Solution;
 use oedometer_exact::terzaghi::Terzaghi;
 use oedometer_exact::xie_leo::XieLeo;
 use oedometer_soil::continuity::Continuity;

@@ -117,7 +117,7 @@ pub fn snapshot_errors(
         return Ok(load_error(case, reference, time_factor, snapshot).into_iter().collect());
     }
     let load = case.column.pressure_scale();
-    let final_settlement = reference.displacement_scale(LONG_AFTER)?;
+    let final_settlement = reference.displacement_scale()?;
     let resolution = resolution(reference, time_factor);
     let mut rows = Vec::new();
     for (sample, samples) in [

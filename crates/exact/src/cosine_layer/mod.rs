@@ -8,9 +8,9 @@ use nalgebra::Complex;
 
 use crate::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::large_strain::diffusion::Water;
 use crate::parameters::{Base, ColumnParameters};
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
@@ -149,21 +149,11 @@ impl CosineLayer {
             .collect::<Result<_, ExactError>>()?;
         Ok(LayerState { constants: self.constants, load: self.parameters.load, parts })
     }
+}
 
-    /// Settlement under the crest of the load, `x = 0`, downward positive, m.
-    ///
-    /// # Errors
-    /// As for [`at`](Self::at).
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let crest = self.at(time_factor)?.fields(0.0, self.constants.height)?;
-        Ok(-crest.displacement[1])
-    }
-
+impl Solution for CosineLayer {
     /// Fields under the crest of the load, `x = 0`, at the depth `zeta` below the surface.
-    ///
-    /// # Errors
-    /// As for [`at`](Self::at), and when `zeta` is outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let depth = checked_depth(zeta)?;
         let crest = self.at(time_factor)?.amplitudes(self.constants.height * (1.0 - depth))?;
         Ok(FieldValues {
@@ -173,21 +163,19 @@ impl CosineLayer {
         })
     }
 
-    /// Settlement under the crest over that at the drained end.
-    ///
-    /// # Errors
-    /// As for [`at`](Self::at).
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = self.drained()?.amplitudes(self.constants.height)?;
-        Ok(self.settlement(time_factor)? / -end.displacement[1])
+    /// Settlement under the crest of the load, `x = 0`, downward positive, m.
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        let crest = self.at(time_factor)?.fields(0.0, self.constants.height)?;
+        Ok(-crest.displacement[1])
+    }
+
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(-self.drained()?.amplitudes(self.constants.height)?.displacement[1])
     }
 
     /// Nodes of the contour, and the difference that a fourth fewer make to the pressure, over the
     /// load.
-    ///
-    /// # Errors
-    /// As for [`at`](Self::at).
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let fine = self.at(time_factor)?;
         let coarse = self.inverted(time_factor, NODES * 3 / 4)?;
         let mut worst = 0.0_f64;
@@ -197,6 +185,10 @@ impl CosineLayer {
             worst = worst.max(difference.abs() / self.parameters.load);
         }
         Ok(Accuracy::of(NODES, worst))
+    }
+
+    fn plane_state(&self, time_factor: f64) -> Result<Option<LayerState>, ExactError> {
+        self.at(time_factor).map(Some)
     }
 }
 

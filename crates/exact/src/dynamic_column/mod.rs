@@ -11,9 +11,9 @@ use crate::consolidation::eigenvalue;
 use crate::dynamic_column::modes::ModeState;
 use crate::dynamic_column::summation::{BLOCK, Waves};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
 use crate::single_mode::PhaseVelocities;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// How the column is set in motion.
@@ -176,43 +176,32 @@ impl DynamicColumn {
             },
         }
     }
+}
 
+impl Solution for DynamicColumn {
     /// Pressure, effective stress and displacement of the solid at a relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         Ok(self.dynamic_fields(time_factor, zeta)?.solid)
     }
 
     /// Settlement of the surface, downward positive, m.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(-self.fields(time_factor, 0.0)?.displacement)
     }
 
-    /// Settlement over its final value. Where waves run it may exceed 1 or be negative.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = match self.start {
+    /// Where waves run the settlement may exceed it or be negative.
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(match self.start {
             Start::Step | Start::Ramp { .. } => self.parameters.final_settlement(),
             Start::Mode | Start::StandingWave => self.released().displacement[0],
-        };
-        Ok(self.settlement(time_factor)? / end)
+        })
     }
 
     /// Modes summed and the bound on the others' pressure and effective stress, over the load.
     ///
     /// As long as a wave front is sharp, the bound is the height of its jump: near the front the
     /// sum of the modes rings, whatever their number.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let snapshot = self.modes_at(checked_time_factor(time_factor)?);
         let load = self.parameters.load;
         let phases: f64 = snapshot.amplitudes.iter().map(|amplitude| amplitude.phase_error).sum();

@@ -2,6 +2,7 @@
 //! (docs/theory.md, Eq. 15), and how the load comes on: at once, or linearly over a time.
 
 use crate::exact_error::{ExactError, positive};
+use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::elementary;
@@ -115,22 +116,13 @@ impl Diffusion {
         if self.model.law == Law::Linear {
             return 1.0 / (1.0 + self.porosity * self.compliance);
         }
-        // Bisection: the water's pressure falls and the total one grows with r. Enough to be exact.
-        let (mut low, mut high) = (0.0, 1.0);
         if self.compliance == 0.0 {
-            return high;
+            return 1.0;
         }
-        while {
-            let middle = 0.5 * (low + high);
-            let water = -elementary::ln_1p(-self.shrinkage(middle) / self.porosity) / self.compliance;
-            if water > self.load * middle {
-                low = middle;
-            } else {
-                high = middle;
-            }
-            high - low > f64::EPSILON * high
-        } {}
-        0.5 * (low + high)
+        // The water's pressure falls and the total one grows with r.
+        bisected(0.0, 1.0, |ratio| {
+            self.load * ratio + elementary::ln_1p(-self.shrinkage(ratio) / self.porosity) / self.compliance
+        })
     }
 }
 

@@ -10,12 +10,12 @@ mod similarity;
 pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::large_strain::diffusion::{Diffusion, Loading};
 use crate::large_strain::layers::{Layers, Profile};
 use crate::large_strain::march::{March, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];
@@ -169,13 +169,11 @@ impl LargeStrain {
         let lacking = ratio + 1.0 - self.loading.share(time_factor);
         Ok(1.0 - self.march.layers.shrinkage(zeta, lacking))
     }
+}
 
+impl Solution for LargeStrain {
     /// Pressure, effective (Cauchy) stress and displacement at a Lagrangian relative depth.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1]; when the march to an
-    /// unprepared time fails.
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let (zeta, time_factor) = (checked_depth(zeta)?, checked_time_factor(time_factor)?);
         let (ratio, shrinkage) = self.ratio_and_shrinkage(time_factor, zeta)?;
         let load = self.parameters.load;
@@ -187,29 +185,18 @@ impl LargeStrain {
     }
 
     /// Settlement of the surface, downward positive, m.
-    ///
-    /// # Errors
-    /// As for [`fields`](Self::fields).
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         let time_factor = checked_time_factor(time_factor)?;
         let (_, shrinkage) = self.ratio_and_shrinkage(time_factor, 0.0)?;
         Ok(self.parameters.height * shrinkage)
     }
 
-    /// Degree of consolidation by settlement; the immediate settlement counts.
-    ///
-    /// # Errors
-    /// As for [`fields`](Self::fields).
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = self.parameters.height * self.march.layers.final_shrinkage();
-        Ok(self.settlement(time_factor)? / end)
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.parameters.height * self.march.layers.final_shrinkage())
     }
 
     /// Points in depth, and the difference to the next coarser resolution as the bound.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
         Ok(Accuracy::of(self.resolution, self.difference))
     }

@@ -6,7 +6,7 @@
 //! (Butcher 1976; Hairer & Wanner 1996, section IV.8). Of a pair of conjugate ones the second adds the conjugate of
 //! the first. With five stages that is a tenth of the work; what round-off leaves of a correction the next one takes.
 
-use crate::quadrature::integrate;
+use crate::numerics::integrate;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SMatrix, SVector};
 
 /// Number of stages.

@@ -10,10 +10,10 @@
 mod sums;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
-use crate::field_values::{Accuracy, FieldValues};
 pub use crate::mandel::sums::MandelRatios;
 use crate::mandel::sums::{Groups, early, series};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
@@ -64,13 +64,12 @@ impl Mandel {
     fn shear_modulus(&self) -> f64 {
         self.parameters.soil.youngs_modulus / (2.0 * (1.0 + self.parameters.soil.poissons_ratio))
     }
+}
 
+impl Solution for Mandel {
     /// Pressure, effective stress and displacement towards the drained side at the depth `zeta` below it:
     /// `1 − x/a`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let ratios = self.ratios(time_factor, 1.0 - checked_depth(zeta)?)?;
         let load = self.parameters.load;
         Ok(FieldValues {
@@ -81,35 +80,35 @@ impl Mandel {
         })
     }
 
-    /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
-    }
-
     /// What each plate has gone inward, m, at half the distance of the plates: the length of the parameters.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(-self.strain_across(time_factor)? * self.parameters.length)
     }
 
-    /// Degree of consolidation: how far the plates have come of the way that they go in the end,
-    /// `ε_yy(t)/ε_yy(∞)`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        let end = 0.5 * (1.0 - self.groups.poissons_ratio);
-        Ok(self.ratios(time_factor, 0.0)?.strain / end)
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        let strain = 0.5 * (1.0 - self.groups.poissons_ratio);
+        Ok(self.parameters.load * strain / self.shear_modulus() * self.parameters.length)
+    }
+
+    /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the
+    /// ratios.
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
+        if time < SERIES_FROM {
+            return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
+        }
+        let terms = series::terms(time);
+        Ok(Accuracy::of(terms, series::bound(time, terms)))
+    }
+
+    /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
+    fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
+        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
     }
 
     /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963); none where
     /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
-    pub fn middle_peak(&self) -> Option<(f64, f64)> {
+    fn pressure_peak(&self) -> Option<(f64, f64)> {
         let height = |time: f64| {
             let ratios = if time < SERIES_FROM { early::ratios } else { series::ratios };
             ratios(&self.groups, time, 0.0).pressure
@@ -128,20 +127,6 @@ impl Mandel {
         let time = elementary::exp(0.5 * (low + high));
         (height(time) > self.groups.start * (1.0 + LEAST_RISE))
             .then(|| (time / self.groups.storage_ratio, height(time)))
-    }
-
-    /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the
-    /// ratios.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
-        if time < SERIES_FROM {
-            return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
-        }
-        let terms = series::terms(time);
-        Ok(Accuracy::of(terms, series::bound(time, terms)))
     }
 }
 

@@ -60,7 +60,7 @@ fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
         ("seed", 0.068_017_581_9, 0.546_059_661_7, 0.999_836_39),
         ("soft", 0.059_887_797_8, 0.379_067_506_0, 0.625),
     ] {
-        let (found_time, found) = slab(case).middle_peak().expect("a peak");
+        let (found_time, found) = slab(case).pressure_peak().expect("a peak");
         assert!((found - height).abs() < 1e-10, "{case}: {found}");
         assert!((found_time * share / time - 1.0).abs() < 1e-6, "{case}: {found_time}");
         // Lower on both sides, by no second formula.
@@ -71,7 +71,7 @@ fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
     let seed = ColumnParameters::default();
     let keeps_its_volume =
         ColumnParameters { soil: Material { water_bulk_modulus: 1e-3, ..seed.soil }, ..seed };
-    assert_eq!(Mandel::new(&keeps_its_volume).expect("possible").middle_peak(), None);
+    assert_eq!(Mandel::new(&keeps_its_volume).expect("possible").pressure_peak(), None);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn the_published_case_of_porepy_is_one_of_ours() {
 }
 
 #[test]
-fn the_pressure_in_the_middle_peaks_when_and_as_high_as_it_should() {
+fn the_pressure_in_the_pressure_peaks_when_and_as_high_as_it_should() {
     // ../../tests/reference/mandel.csv: T = c t/a², p a/F, and that over the start (40 digits).
     for (case, time, height, over_start) in [
         ("seed", 0.068_017_581_878_9, 0.546_059_661_7, 1.092_238_463_6),

@@ -15,11 +15,11 @@ pub mod motion;
 pub mod motion_state;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::manufactured::dual::PLACES;
 use crate::manufactured::motion::{ManufacturedModel, Moment, Spot, Spots};
 use crate::manufactured::motion_state::{Soil, State, States};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use std::f64::consts::PI;
 
 /// Intervals of the grid on which volumes are looked at.
@@ -122,46 +122,44 @@ impl Manufactured {
             displacement: [position[0] - place[0], position[1] - place[1]],
         })
     }
+}
 
+impl Solution for Manufactured {
     /// Pressure, vertical effective stress and vertical displacement along the wall `X = 0`, at the depth `zeta`
     /// below the upper one.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite, or `zeta` outside [0, 1].
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let PlaneValues { pressure, effective_stress, displacement } =
             self.plane_fields(time_factor, [0.0, 1.0 - checked_depth(zeta)?])?;
         Ok(FieldValues { pressure, effective_stress: effective_stress[1][1], displacement: displacement[1] })
     }
 
     /// No wall moves.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         checked_time_factor(time_factor).map(|_| 0.0)
     }
 
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(0.0)
+    }
+
     /// Share of the largest displacement, `sin²(ωt)`.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         let sine = oedometer_soil::elementary::sin(PI * checked_time_factor(time_factor)?);
         Ok(sine * sine)
     }
 
     /// A formula: no terms, and what round-off leaves.
-    ///
-    /// # Errors
-    /// When `time_factor` is negative or not finite.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor).map(|_| Accuracy::of(0, ROUND_OFF))
     }
 
     /// Largest displacement of a point, m.
-    pub fn largest_displacement(&self) -> f64 {
-        self.model.motion.largest_displacement(&self.parameters.motion)
+    fn displacement_scale(&self) -> Result<f64, ExactError> {
+        Ok(self.model.motion.largest_displacement(&self.parameters.motion))
+    }
+
+    fn manufactured(&self) -> Option<&Manufactured> {
+        Some(self)
     }
 }
 

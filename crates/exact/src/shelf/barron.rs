@@ -3,10 +3,10 @@
 use core::f64::consts::PI;
 
 use super::terms_for;
-use crate::bisection::bisected;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::field_values::{Accuracy, FieldValues};
+use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{self, exp, hypot, j0, j1, ln, y0, y1};
 
 /// Roots that are known.
@@ -83,25 +83,27 @@ impl Barron {
     fn mean(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(exp(-2.0 * self.cylinder.time(time_factor)? / self.spacing))
     }
+}
 
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+impl Solution for Barron {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let mean = self.mean(time_factor)?;
         let (radius, inner) = (self.cylinder.radius(zeta)?, self.cylinder.inner);
         let profile = ln(radius / inner) - 0.5 * (radius - inner) * (radius + inner);
         Ok(self.cylinder.fields(mean * profile / self.spacing, mean))
     }
 
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(-self.cylinder.final_settlement
             * elementary::exp_m1(-2.0 * self.cylinder.time(time_factor)? / self.spacing))
     }
 
-    pub fn final_settlement(&self) -> f64 {
-        self.cylinder.final_settlement
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.cylinder.final_settlement)
     }
 
     /// Closed form; a thin cylinder cancels digits of `μ`.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         self.mean(time_factor)?;
         Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON / self.spacing, ..Accuracy::of(1, 0.0) })
     }
@@ -158,24 +160,6 @@ impl BarronFreeStrain {
         })
     }
 
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
-        let pressure = self.pressure(time_factor, self.cylinder.radius(zeta)?)?;
-        Ok(self.cylinder.fields(pressure, pressure))
-    }
-
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        if time_factor == 0.0 {
-            return Ok(0.0);
-        }
-        let area = (1.0 - self.cylinder.inner) * (1.0 + self.cylinder.inner);
-        let mean = self.sum(time_factor, |root, share| 4.0 * share / (root * root * area))?;
-        Ok(self.cylinder.final_settlement * (1.0 - mean))
-    }
-
-    pub fn final_settlement(&self) -> f64 {
-        self.cylinder.final_settlement
-    }
-
     /// Terms, with a bound on the rest: a coefficient is at most `‖1‖/‖U‖` (Bessel), and `|U| ≤ √(ln n) β‖U‖`, for
     /// `U` vanishes at the drain and `∫ r U'² = β²‖U‖²`.
     fn terms(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
@@ -192,8 +176,28 @@ impl BarronFreeStrain {
             largest * decay * (first + width / (2.0 * PI * time))
         })
     }
+}
 
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+impl Solution for BarronFreeStrain {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+        let pressure = self.pressure(time_factor, self.cylinder.radius(zeta)?)?;
+        Ok(self.cylinder.fields(pressure, pressure))
+    }
+
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+        if time_factor == 0.0 {
+            return Ok(0.0);
+        }
+        let area = (1.0 - self.cylinder.inner) * (1.0 + self.cylinder.inner);
+        let mean = self.sum(time_factor, |root, share| 4.0 * share / (root * root * area))?;
+        Ok(self.cylinder.final_settlement * (1.0 - mean))
+    }
+
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.cylinder.final_settlement)
+    }
+
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         if checked_time_factor(time_factor)? == 0.0 {
             return Ok(Accuracy::of(0, 0.0));
         }

@@ -2,12 +2,12 @@
 
 use core::f64::consts::PI;
 
-use super::porous_soil::PorousSoil;
+use super::biot::PorousSoil;
 use super::terms_for;
-use crate::bisection::bisected;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::field_values::{Accuracy, FieldValues};
+use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// Roots that are known: enough from `c t/a²` = 1e-6 on.
@@ -104,7 +104,19 @@ impl Cryer {
         Ok(sums)
     }
 
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    /// Terms, with a bound on the rest: with `β_i ≥ iπ`, `R ≤ β² + h + hβ` and `h < 3` each is at most `7 e^{−β²T}`.
+    fn terms(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+        let time = self.soil.slowed() * time_factor;
+        terms_for(MOST_TERMS, time_factor, |terms| {
+            let first = terms as f64 * PI;
+            let fall = -elementary::exp_m1(-(2.0 * first + PI) * PI * time);
+            7.0 * self.start / self.load * elementary::exp(-first * first * time) / fall
+        })
+    }
+}
+
+impl Solution for Cryer {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let distance = 1.0 - checked_depth(zeta)?;
         let sums = self.sums(time_factor, distance)?;
         let PorousSoil { modulus, shear, bulk, alpha, .. } = self.soil;
@@ -119,26 +131,16 @@ impl Cryer {
         })
     }
 
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         let mean = self.start * self.sums(time_factor, 1.0)?.mean;
         Ok(self.radius * (self.load - self.soil.alpha * mean) / (3.0 * self.soil.bulk))
     }
 
-    pub fn final_settlement(&self) -> f64 {
-        self.radius * self.load / (3.0 * self.soil.bulk)
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.radius * self.load / (3.0 * self.soil.bulk))
     }
 
-    /// Terms, with a bound on the rest: with `β_i ≥ iπ`, `R ≤ β² + h + hβ` and `h < 3` each is at most `7 e^{−β²T}`.
-    fn terms(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        let time = self.soil.slowed() * time_factor;
-        terms_for(MOST_TERMS, time_factor, |terms| {
-            let first = terms as f64 * PI;
-            let fall = -elementary::exp_m1(-(2.0 * first + PI) * PI * time);
-            7.0 * self.start / self.load * elementary::exp(-first * first * time) / fall
-        })
-    }
-
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         if checked_time_factor(time_factor)? == 0.0 {
             return Ok(Accuracy::of(0, 0.0));
         }

@@ -2,8 +2,8 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, normal, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
 /// Column of a soil that compresses with the logarithm of its effective stress, and whose permeability falls with its
@@ -35,9 +35,11 @@ impl DavisRaymond {
         let final_settlement = parameters.height * start / parameters.soil.oedometric_modulus() * logarithm;
         Ok(Self { end: start + load, load, logarithm, final_settlement })
     }
+}
 
+impl Solution for DavisRaymond {
     /// The effective stress is the whole one, with `σ'_0`.
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let pressure = -self.end * elementary::exp_m1(-self.logarithm * isochrone(zeta, time_factor)?.value);
         Ok(FieldValues {
             pressure,
@@ -46,16 +48,16 @@ impl DavisRaymond {
         })
     }
 
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(self.final_settlement * consolidated_below(0.0, time_factor)?.value)
     }
 
-    pub fn final_settlement(&self) -> f64 {
-        self.final_settlement
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.final_settlement)
     }
 
     /// The isochrone's bound times the largest slope of `p` in `W`, `σ'_f ln(σ'_f/σ'_0)`.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let base = isochrone(1.0, time_factor)?;
         Ok(Accuracy::of(base.terms, self.end / self.load * self.logarithm * base.tail_bound))
     }

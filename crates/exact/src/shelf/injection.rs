@@ -2,10 +2,10 @@
 
 use core::f64::consts::PI;
 
-use super::porous_soil::PorousSoil;
+use super::biot::PorousSoil;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
 /// Point source at a constant rate from `t = 0` on (Rudnicki 1986).
@@ -36,8 +36,10 @@ impl Injection {
     fn similarity(&self, time_factor: f64, distance: f64) -> Result<f64, ExactError> {
         Ok(0.5 * distance / (self.soil.slowed() * checked_time_factor(time_factor)?).sqrt())
     }
+}
 
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+impl Solution for Injection {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let distance = 1.0 - checked_depth(zeta)?;
         if distance == 0.0 {
             return Err(ExactError::AtTheSource);
@@ -54,16 +56,16 @@ impl Injection {
     }
 
     /// Negative: the sphere `r = H` is pushed outward.
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(-self.compressed * self.soil.alpha * pushed(self.similarity(time_factor, 1.0)?))
     }
 
-    pub fn final_settlement(&self) -> f64 {
-        -0.5 * self.compressed * self.soil.alpha
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(-0.5 * self.compressed * self.soil.alpha)
     }
 
     /// Closed form.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         self.similarity(time_factor, 1.0)?;
         Ok(Accuracy::of(1, 0.0))
     }

@@ -15,23 +15,23 @@
 //! and `y = (1 − ζ)H` counts from the other one. docs/exact.md has the equations.
 
 mod barron;
-mod biot_column;
+mod biot;
 mod cryer;
 mod davis_raymond;
 mod injection;
-mod porous_soil;
 mod seabed;
 
 use crate::exact_error::ExactError;
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, Solution};
 use barron::{Barron, BarronFreeStrain};
-use biot_column::BiotColumn;
+use biot::BiotColumn;
 use cryer::Cryer;
 use davis_raymond::DavisRaymond;
 use injection::Injection;
 use oedometer_soil::wording::words;
 use seabed::Seabed;
+use std::sync::Arc;
 
 /// A problem of the shelf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -107,103 +107,48 @@ pub struct ShelfKey {
 /// Problems of Biot's full equations.
 const OF_BIOT: &[ShelfProblem] =
     &[ShelfProblem::BiotColumn, ShelfProblem::Cryer, ShelfProblem::Seabed, ShelfProblem::Injection];
+/// Problems of flow to a drain.
+const OF_DRAINS: &[ShelfProblem] = &[ShelfProblem::Barron, ShelfProblem::BarronFreeStrain];
 
 impl ShelfKey {
     /// All of them.
     pub const ALL: [Self; 5] = [
-        Self {
-            key: "material.biot_coefficient",
-            problems: OF_BIOT,
-            unit: "",
-            set: |shelf, value| shelf.biot_coefficient = Some(value),
-        },
-        Self {
-            key: "material.grain_bulk_modulus",
-            problems: OF_BIOT,
-            unit: "Pa",
-            set: |shelf, value| shelf.grain_bulk_modulus = Some(value),
-        },
-        Self {
-            key: "drain.radius",
-            problems: &[ShelfProblem::Barron, ShelfProblem::BarronFreeStrain],
-            unit: "m",
-            set: |shelf, value| shelf.drain_radius = value,
-        },
-        Self {
-            key: "wave.period",
-            problems: &[ShelfProblem::Seabed],
-            unit: "s",
-            set: |shelf, value| shelf.wave_period = value,
-        },
-        Self {
-            key: "column.initial_stress",
-            problems: &[ShelfProblem::DavisRaymond],
-            unit: "Pa",
-            set: |shelf, value| shelf.initial_stress = Some(value),
-        },
+        Self::of("material.biot_coefficient", OF_BIOT, "", |shelf, value| {
+            shelf.biot_coefficient = Some(value);
+        }),
+        Self::of("material.grain_bulk_modulus", OF_BIOT, "Pa", |shelf, value| {
+            shelf.grain_bulk_modulus = Some(value);
+        }),
+        Self::of("drain.radius", OF_DRAINS, "m", |shelf, value| shelf.drain_radius = value),
+        Self::of("wave.period", &[ShelfProblem::Seabed], "s", |shelf, value| shelf.wave_period = value),
+        Self::of("column.initial_stress", &[ShelfProblem::DavisRaymond], "Pa", |shelf, value| {
+            shelf.initial_stress = Some(value);
+        }),
     ];
+
+    const fn of(
+        key: &'static str,
+        problems: &'static [ShelfProblem],
+        unit: &'static str,
+        set: fn(&mut ShelfParameters, f64),
+    ) -> Self {
+        Self { key, problems, unit, set }
+    }
 }
 
-/// A problem of the shelf with its numbers.
-#[derive(Clone, Debug)]
-pub(crate) enum Shelf {
-    BiotColumn(BiotColumn),
-    Cryer(Cryer),
-    Barron(Barron),
-    BarronFreeStrain(BarronFreeStrain),
-    Seabed(Seabed),
-    Injection(Injection),
-    DavisRaymond(DavisRaymond),
-}
-
-/// One `match` for all that every problem answers.
-macro_rules! ask {
-    ($shelf:expr, $problem:ident => $answer:expr) => {
-        match $shelf {
-            Shelf::BiotColumn($problem) => $answer,
-            Shelf::Cryer($problem) => $answer,
-            Shelf::Barron($problem) => $answer,
-            Shelf::BarronFreeStrain($problem) => $answer,
-            Shelf::Seabed($problem) => $answer,
-            Shelf::Injection($problem) => $answer,
-            Shelf::DavisRaymond($problem) => $answer,
-        }
-    };
-}
-
-impl Shelf {
-    pub fn new(problem: ShelfProblem, parameters: &ColumnParameters) -> Result<Self, ExactError> {
+impl ShelfProblem {
+    /// Its solution for a column.
+    pub(crate) fn solution(self, parameters: &ColumnParameters) -> Result<Arc<dyn Solution>, ExactError> {
         parameters.validate()?;
-        Ok(match problem {
-            ShelfProblem::BiotColumn => Self::BiotColumn(BiotColumn::new(parameters)?),
-            ShelfProblem::Cryer => Self::Cryer(Cryer::new(parameters)?),
-            ShelfProblem::Barron => Self::Barron(Barron::new(parameters)?),
-            ShelfProblem::BarronFreeStrain => Self::BarronFreeStrain(BarronFreeStrain::new(parameters)?),
-            ShelfProblem::Seabed => Self::Seabed(Seabed::new(parameters)?),
-            ShelfProblem::Injection => Self::Injection(Injection::new(parameters)?),
-            ShelfProblem::DavisRaymond => Self::DavisRaymond(DavisRaymond::new(parameters)?),
+        Ok(match self {
+            Self::BiotColumn => Arc::new(BiotColumn::new(parameters)?),
+            Self::Cryer => Arc::new(Cryer::new(parameters)?),
+            Self::Barron => Arc::new(Barron::new(parameters)?),
+            Self::BarronFreeStrain => Arc::new(BarronFreeStrain::new(parameters)?),
+            Self::Seabed => Arc::new(Seabed::new(parameters)?),
+            Self::Injection => Arc::new(Injection::new(parameters)?),
+            Self::DavisRaymond => Arc::new(DavisRaymond::new(parameters)?),
         })
-    }
-
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
-        ask!(self, problem => problem.fields(time_factor, zeta))
-    }
-
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
-        ask!(self, problem => problem.settlement(time_factor))
-    }
-
-    /// Settlement over what it is measured by: the final one, of a seabed that under the amplitude without drainage.
-    pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(self.settlement(time_factor)? / self.final_settlement())
-    }
-
-    pub fn final_settlement(&self) -> f64 {
-        ask!(self, problem => problem.final_settlement())
-    }
-
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        ask!(self, problem => problem.accuracy(time_factor))
     }
 }
 

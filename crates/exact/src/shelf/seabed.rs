@@ -2,10 +2,10 @@
 
 use core::f64::consts::PI;
 
-use super::porous_soil::PorousSoil;
+use super::biot::PorousSoil;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::field_values::{Accuracy, FieldValues};
 use crate::parameters::ColumnParameters;
+use crate::solution::{Accuracy, FieldValues, Solution};
 use nalgebra::Complex;
 use oedometer_soil::elementary::{self, exp_complex, exp_m1_complex};
 
@@ -66,8 +66,10 @@ impl Seabed {
     fn drainable(&self) -> f64 {
         1.0 - self.soil.alpha * self.soil.slowed()
     }
+}
 
-    pub fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
+impl Solution for Seabed {
+    fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let (turned, height) = (self.turned(time_factor)?, 1.0 - checked_depth(zeta)?);
         let one = Complex::new(1.0, 0.0);
         let ended = one + exp_complex(-2.0 * self.number);
@@ -82,16 +84,16 @@ impl Seabed {
         })
     }
 
-    pub fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
+    fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(self.final_settlement * self.compressed(self.turned(time_factor)?, 1.0))
     }
 
-    pub fn final_settlement(&self) -> f64 {
-        self.final_settlement
+    fn final_settlement(&self) -> Result<f64, ExactError> {
+        Ok(self.final_settlement)
     }
 
     /// Closed form; a phase after many periods has lost their digits.
-    pub fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
+    fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let phase = 2.0 * PI * self.periods * checked_time_factor(time_factor)?;
         Ok(Accuracy { phase_bound: 4.0 * f64::EPSILON * phase, ..Accuracy::of(1, 0.0) })
     }

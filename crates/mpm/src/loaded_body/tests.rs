@@ -12,6 +12,7 @@ use crate::scene::column::{Column, column_parameters};
 use crate::scene::problem::column_problem;
 use crate::time_limit::TimeLimit;
 use oedometer_exact::mandel::Mandel;
+use oedometer_exact::solution::Solution;
 use oedometer_soil::material::Material;
 
 /// Soft water: waves are slow, and the water gives way.

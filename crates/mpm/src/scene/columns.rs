@@ -9,6 +9,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::large_strain::diffusion::LargeStrainModel;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::single_mode::SingleMode;
+use oedometer_exact::solution::Solution;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;

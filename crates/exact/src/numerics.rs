@@ -1,4 +1,4 @@
-//! Gauss–Legendre quadrature on panels.
+//! Integrals by Gauss–Legendre quadrature on panels, and roots by bisection.
 
 /// Positive places and weights of the ten-point rule on [−1, 1] (Abramowitz & Stegun 1964,
 /// table 25.4).
@@ -23,6 +23,17 @@ pub fn integrate(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: u32) -> f64
         })
         .sum();
     half * sum
+}
+
+/// The root of a function that is negative at `low` and positive at `high`, to the last bit.
+pub(crate) fn bisected(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if function(middle) < 0.0 { low = middle } else { high = middle }
+    }
 }
 
 #[cfg(test)]
