@@ -1,6 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
-use oedometer_soil::wording::words;
+use oedometer_soil::wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::LazyLock;
@@ -172,13 +172,6 @@ pub enum Memory {
 
 words!(Memory: Points "points", Cells "cells");
 
-impl Memory {
-    /// Whether it is the paper's.
-    pub fn is_points(&self) -> bool {
-        *self == Self::Points
-    }
-}
-
 /// What volume of the initial configuration a point integrates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quadrature {
@@ -193,11 +186,6 @@ pub enum Quadrature {
 words!(Quadrature: Volumes "volumes", Moments "moments");
 
 impl Quadrature {
-    /// Whether it is the paper's.
-    pub fn is_volumes(&self) -> bool {
-        *self == Self::Volumes
-    }
-
     /// Why it does not go with a basis, where it does not.
     pub fn refuses(self, basis: Basis) -> Option<&'static str> {
         (self == Self::Moments && basis != Basis::Hat).then_some(
@@ -246,10 +234,10 @@ pub struct Method {
     /// Way of the pressure increment back to the points; full integration needs none.
     pub recovery: Recovery,
     /// Where the state is kept while points move.
-    #[serde(default, skip_serializing_if = "Memory::is_points")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub memory: Memory,
     /// What volume a point integrates.
-    #[serde(default, skip_serializing_if = "Quadrature::is_volumes")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub quadrature: Quadrature,
     /// Parameter of a pressure projection over that of its source, in thousandths.
     #[serde(default = "whole", skip_serializing_if = "is_whole")]

@@ -19,13 +19,6 @@ pub enum ConductivityMean {
 
 words!(ConductivityMean: Points "points", Chord "chord");
 
-impl ConductivityMean {
-    /// Whether this is the paper's; records of it say nothing of the mean.
-    pub fn is_paper(&self) -> bool {
-        *self == Self::Points
-    }
-}
-
 impl Law {
     /// Hydraulic conductivity, m/s, at volume ratio `J` from the initial one (docs/theory.md, section 2).
     #[inline]

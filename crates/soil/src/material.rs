@@ -4,6 +4,7 @@ use crate::conductivity::ConductivityMean;
 use crate::continuity::Continuity;
 use crate::elementary;
 use crate::law::{Law, Stiffness, StressLaw};
+use crate::wording::is_default;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the saturated soil in its initial state, SI.
@@ -30,22 +31,17 @@ pub struct Material {
     /// Continuity equation.
     pub continuity: Continuity,
     /// Mean of the conductivity at a node. Left out of the identity of a case where it is the paper's.
-    #[serde(default, skip_serializing_if = "ConductivityMean::is_paper")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub conductivity_mean: ConductivityMean,
     /// Oedometric modulus of unloading and reloading, Pa, of a preconsolidated soil; zero of others.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub reload_modulus: f64,
     /// Largest vertical effective stress so far, Pa, of a preconsolidated soil; zero of others.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub preconsolidation: f64,
     /// Undrained shear strength `c_u`, Pa, of a soil that yields by von Mises' condition; zero of others.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub undrained_strength: f64,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 impl Default for Material {

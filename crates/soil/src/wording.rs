@@ -59,6 +59,11 @@ pub fn orders(values: &[f64]) -> String {
     values.iter().map(|value| order(*value)).collect::<Vec<_>>().join(", ")
 }
 
+/// Whether a field has its default: files leave it out then.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 /// Names the choices of an enumeration, once for all: `ALL` and `NAMES` in the order of tables, `name` and `named`, and
 /// the same names in files (serde) and in their JSON Schemas.
 #[macro_export]

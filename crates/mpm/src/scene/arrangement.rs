@@ -1,6 +1,7 @@
 //! Arrangements of the points in their cells: the regular lattice, shifted or jittered points, one or two point sets.
 
 use crate::state::points::Points;
+use oedometer_soil::wording::is_default;
 use serde::{Deserialize, Serialize};
 
 /// Departure of the points from the regular lattice, the same for every point of a row.
@@ -19,22 +20,17 @@ pub struct Arrangement {
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub sets: usize,
     /// Points of the water a cell and direction in double-point MPM; 0 otherwise.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub water_per_cell: usize,
 }
 
-fn one() -> usize {
+pub(super) fn one() -> usize {
     1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-fn is_one(count: &usize) -> bool {
+pub(super) fn is_one(count: &usize) -> bool {
     *count == 1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-fn is_zero(count: &usize) -> bool {
-    *count == 0
 }
 
 impl Default for Arrangement {

@@ -1,10 +1,10 @@
 //! Geometry and load of the body of soil that a scene is about.
 
-use crate::scene::arrangement::Arrangement;
+use crate::scene::arrangement::{Arrangement, is_one, one};
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
 use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
-use oedometer_soil::wording::words;
+use oedometer_soil::wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 
 /// Geometry and load of a column, or of another body that drains at its top.
@@ -23,23 +23,23 @@ pub struct Column {
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub dimensions: usize,
     /// Time over which the load grows linearly, s; 0 where it acts at once.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub loading_time: f64,
     /// Whether skeleton and water have a weight, under a water level that stands in the surface at the start.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_weight: bool,
     /// Where the points lie in their cells.
-    #[serde(default, skip_serializing_if = "Arrangement::is_regular")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub points: Arrangement,
     /// Layers of soil from the base up, where they are of several kinds.
-    #[serde(default, skip_serializing_if = "has_one_soil")]
+    #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(with = "Vec<SoilLayer>")]
     pub soils: SoilLayers,
     /// Vertical effective stress of the start, compression positive, Pa, that other stresses are counted from.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub initial_stress: f64,
     /// Plate that is pushed into a layer.
-    #[serde(default, skip_serializing_if = "Footing::is_untouched")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub footing: Footing,
 }
 
@@ -59,11 +59,6 @@ impl Footing {
     fn is_none(&self) -> bool {
         self.width == 0.0
     }
-
-    /// Whether no key of a footing has been given.
-    fn is_untouched(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// How a soil is kept undrained.
@@ -77,10 +72,6 @@ pub enum Undrained {
 }
 
 words!(Undrained: TotalStress "total-stress", TwoPhase "two-phase");
-
-fn has_one_soil(layers: &SoilLayers) -> bool {
-    layers.is_empty()
-}
 
 /// A kind of body with its own inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,20 +112,6 @@ struct ShapeKeys {
     motion: Option<MotionParameters>,
     /// Amplitude of the prescribed pressure of a square, Pa.
     pressure: Option<f64>,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-fn one() -> usize {
-    1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_one(dimensions: &usize) -> bool {
-    *dimensions == 1
 }
 
 /// Share of a cell by which a width may miss a whole number of cells.
