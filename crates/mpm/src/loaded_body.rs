@@ -108,6 +108,42 @@ impl RigidPlate {
     }
 }
 
+/// A load that grows linearly to its full value, or acts at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GrowingLoad {
+    /// Whole load, Pa, and the time over which it grows, s.
+    load: f64,
+    loading_time: f64,
+    /// Share of it that acts.
+    share: f64,
+}
+
+impl GrowingLoad {
+    /// The load of a body, which grows over a time, s.
+    pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
+        Self { load: body.surface.load, loading_time, share: 1.0 }
+    }
+
+    /// Whether it still grows.
+    pub fn grows(&self) -> bool {
+        self.share < 1.0
+    }
+
+    /// Share of it that acts.
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// Puts the load of a time, s, on the surface, where it grows.
+    pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
+        if self.loading_time > 0.0 {
+            self.share = (time / self.loading_time).min(1.0);
+            body.surface.load = self.share * self.load;
+            body.apply_loads();
+        }
+    }
+}
+
 impl<const D: usize> Body<D> {
     /// Whether a component of a node goes with a rigid plate.
     #[inline]
@@ -155,13 +191,17 @@ impl<const D: usize> Body<D> {
     pub fn unbalanced_force(&self) -> f64 {
         let mut body = self.clone();
         body.map_forces();
-        let (forces, free) = (&body.nodes.mixture_force, &body.nodes.free);
         if let Some(plate) = &self.plate {
-            return plate.largest_force(forces, free);
+            return plate.largest_force(&body.nodes.mixture_force, &body.nodes.free);
         }
-        let forces = forces.iter().flatten().zip(free.iter().flatten());
-        forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
+        largest_free_force(&body.nodes)
     }
+}
+
+/// Largest force on a free component of a node, N.
+pub(crate) fn largest_free_force<const D: usize>(nodes: &Nodes<D>) -> f64 {
+    let forces = nodes.mixture_force.iter().flatten().zip(nodes.free.iter().flatten());
+    forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
 }
 
 /// A vector along one direction.

@@ -1,7 +1,8 @@
 //! Snapshots of double-point MPM: the skeleton at its own points, the pressure at those of the water.
 
 use crate::double_point::DoublePoint;
-use crate::run::results::snapshot::{Means, Snapshot, Totals, WaterSamples, WaterTotals};
+use crate::loaded_body::largest_free_force;
+use crate::run::results::snapshot::{InternalForces, Means, Snapshot, Totals, WaterSamples, WaterTotals};
 use crate::state::points::Points;
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
@@ -101,32 +102,23 @@ impl<const D: usize> DoublePoint<D> {
     fn unbalanced_force(&self) -> f64 {
         let mut double = self.clone();
         double.map_forces();
-        let nodes = &double.body.nodes;
-        let forces = nodes.mixture_force.iter().flatten().zip(nodes.free.iter().flatten());
-        forces.fold(0.0, |largest: f64, (force, free)| largest.max((force * free).abs()))
+        largest_free_force(&double.body.nodes)
     }
 
     /// Sum of the internal forces of both sets over the sum of their sizes: the shape functions of each are a partition
     /// of unity on whatever share of its domains counts.
     fn internal_force_imbalance(&self) -> f64 {
         let (points, water, stride) = (&self.body.points, &self.water, self.body.grid.node_stride());
-        let (mut sum, mut size) = ([0.0; D], 0.0);
-        let mut add = |stress: &Vector<D>, gradient: &Vector<D>| {
-            for d in 0..D {
-                sum[d] += stress[d] * gradient[d];
-                size += (stress[d] * gradient[d]).abs();
-            }
-        };
+        let mut forces = InternalForces::default();
         for (point, stress) in points.effective_stress.iter().enumerate() {
             let stress = std::array::from_fn(|d| points.volume(point) * stress[d][d]);
-            self.body.basis.visit(stride, point, |_, _, gradient| add(&stress, gradient));
+            self.body.basis.visit(stride, point, |_, _, gradient| forces.add(&stress, gradient));
         }
         for (point, pressure) in water.pressure.iter().enumerate() {
             let stress = [-water.volume_inside(point) * pressure; D];
-            self.basis.visit(stride, point, |_, _, gradient| add(&stress, gradient));
+            self.basis.visit(stride, point, |_, _, gradient| forces.add(&stress, gradient));
         }
-        let largest = sum.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        if size > 0.0 { largest / size } else { 0.0 }
+        forces.imbalance()
     }
 }
 

@@ -8,6 +8,7 @@ use crate::implicit::secants::Secants;
 use crate::implicit::tangent::{DIFFERENCE, Pattern};
 use crate::implicit::trial::{Skeleton, Trial};
 use crate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
+use crate::loaded_body::GrowingLoad;
 use crate::method::PressureIntegration;
 use crate::run::integrator::StepBound;
 use crate::run::results::outcome::FailureKind;
@@ -73,8 +74,7 @@ pub struct NewtonStepper<const D: usize> {
     residual: Vec<f64>,
     scratch: Vec<f64>,
     initial_height: f64,
-    /// Time over which the load grows, s.
-    loading_time: f64,
+    load: GrowingLoad,
     /// Time at the start of the step, s.
     time: f64,
     settlement_rate: f64,
@@ -118,7 +118,7 @@ impl<const D: usize> NewtonStepper<D> {
             residual: zero.clone(),
             scratch: zero,
             initial_height: plan.initial_height,
-            loading_time: plan.loading_time,
+            load: GrowingLoad::of(&trial.body, plan.loading_time),
             time: 0.0,
             settlement_rate: 0.0,
             work: Work::default(),
@@ -148,7 +148,7 @@ impl<const D: usize> NewtonStepper<D> {
                 self.start_step(stage);
                 first = false;
             }
-            self.load_at(self.time + end * dt);
+            self.load.act_at(&mut self.trial.body, self.time + end * dt);
             self.trial.act_later(end * dt);
             self.solve_stage(number)?;
             self.guess.keep(number, &self.rate, &self.start.unknowns, &self.state);
@@ -183,13 +183,6 @@ impl<const D: usize> NewtonStepper<D> {
             let start = self.start.unknowns[unknown];
             ERROR_SHARE * (start / SECOND_STAGE - (self.state[unknown] - start))
         })
-    }
-
-    /// Applies the load of a time, where it grows.
-    fn load_at(&mut self, time: f64) {
-        if self.loading_time > 0.0 {
-            self.trial.set_load_share((time / self.loading_time).min(1.0));
-        }
     }
 
     /// Starts the first stage where the last step ended.

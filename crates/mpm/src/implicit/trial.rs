@@ -31,8 +31,6 @@ pub struct Trial<const D: usize> {
     pub formulation: Formulation,
     /// Time level of the effective stress.
     pub skeleton: Skeleton,
-    /// Load at the start of the run, Pa.
-    full_load: f64,
     /// Points at the start of the run.
     pub start: Points<D>,
     /// Points of the anchored state.
@@ -65,7 +63,6 @@ impl<const D: usize> Trial<D> {
         }
         let mut trial = Self {
             unknowns: Unknowns::of(&body),
-            full_load: body.surface.load,
             start,
             anchor: Points::default(),
             anchor_deformation: Vec::new(),
@@ -78,13 +75,6 @@ impl<const D: usize> Trial<D> {
         };
         trial.anchor_here();
         trial
-    }
-
-    /// Applies a share of the full load.
-    pub fn set_load_share(&mut self, share: f64) {
-        let body = &mut self.body;
-        body.surface.load = self.full_load * share;
-        body.apply_loads();
     }
 
     /// Begins a step at a time, s: finds the points at the centres of the cells for body forces and sources.

@@ -187,7 +187,7 @@ impl<'a> Driver<'a> {
             self.stepper.advance(&most, most_error)?;
             (self.time, last) = (most.end(), most.next(1));
         }
-        let before = is_due.then(|| Settled::now(self.stepper, self.time));
+        let before = is_due.then(|| settled(self.stepper, self.time));
         let error = self.stepper.advance(&last, most_error)?;
         if error > most_error {
             self.ask_to_go_on()?;
@@ -197,7 +197,7 @@ impl<'a> Driver<'a> {
         self.sizes.largest = self.sizes.largest.max(dt);
         self.counters.steps += steps.count;
         self.counters.point_updates += steps.count * self.counters.points as u64;
-        let after = Settled::now(self.stepper, end);
+        let after = settled(self.stepper, end);
         self.watch.look(self.stepper, after.settlement, steps, &self.sizes)?;
         if let Some(before) = before {
             self.history.note(before, after, self.stepper.settlement_rate());
@@ -208,20 +208,8 @@ impl<'a> Driver<'a> {
 }
 
 /// Time and settlement at one end of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settled {
-    /// Time, s.
-    pub time: f64,
-    /// Settlement, m.
-    pub settlement: f64,
-    /// Force, N, of the soil on a plate that is pushed into it.
-    pub plate_force: Option<f64>,
-}
-
-impl Settled {
-    fn now(stepper: &dyn Stepper, time: f64) -> Self {
-        Self { time, settlement: stepper.settlement(), plate_force: stepper.plate_force() }
-    }
+fn settled(stepper: &dyn Stepper, time: f64) -> HistoryPoint {
+    HistoryPoint { time, settlement: stepper.settlement(), plate_force: stepper.plate_force() }
 }
 
 /// Times that are due and the settlements noted so far.
@@ -245,7 +233,7 @@ impl<'a> History<'a> {
 
     /// Notes the times within a step, given its two ends and the rate of the settlement at the later
     /// one: a parabola through the three. Without a rate the settlement goes straight, and so does a force.
-    pub fn note(&mut self, before: Settled, after: Settled, rate: Option<f64>) {
+    pub fn note(&mut self, before: HistoryPoint, after: HistoryPoint, rate: Option<f64>) {
         let (first, last) = (before.settlement, after.settlement);
         let dt = after.time - before.time;
         let rate = rate.unwrap_or((last - first) / dt);
@@ -270,7 +258,8 @@ mod tests {
         let rate = |time: f64| 2.0 - 1.4 * time;
         let due = [0.1, 0.15, 0.2, 0.75, 1.0];
         let mut history = History::of(&due);
-        let at = |time: f64| Settled { time, settlement: settlement(time), plate_force: Some(2.0 * time) };
+        let at =
+            |time: f64| HistoryPoint { time, settlement: settlement(time), plate_force: Some(2.0 * time) };
         // Steps with three times, with none, and with one inside and one at its end.
         for [start, end] in [[0.0, 0.2], [0.2, 0.5], [0.5, 1.0]] {
             history.note(at(start), at(end), Some(rate(end)));
@@ -287,7 +276,7 @@ mod tests {
     fn without_a_rate_the_settlement_goes_straight() {
         let due = [0.25];
         let mut history = History::of(&due);
-        let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| Settled {
+        let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| HistoryPoint {
             time,
             settlement,
             plate_force: None,

@@ -6,6 +6,7 @@ use crate::critical_step::formula;
 use crate::double_point::DoublePoint;
 use crate::explicit::ExplicitSettings;
 use crate::explicit::scheme::Rhythm;
+use crate::loaded_body::GrowingLoad;
 use crate::method::Configuration;
 use crate::run::energy::Energy;
 use crate::run::results::snapshot::Snapshot;
@@ -57,37 +58,6 @@ impl<const D: usize> PointSets<D> {
         match self {
             Self::One(body) => body,
             Self::Two(double) => &mut double.body,
-        }
-    }
-}
-
-/// A load that grows linearly to its full value, or acts at once.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct GrowingLoad {
-    /// Whole load, Pa, and the time over which it grows, s.
-    load: f64,
-    loading_time: f64,
-    /// Share of it that acts.
-    share: f64,
-}
-
-impl GrowingLoad {
-    /// The load of a body, which grows over a time, s.
-    fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
-        Self { load: body.surface.load, loading_time, share: 1.0 }
-    }
-
-    /// Whether it still grows.
-    fn grows(&self) -> bool {
-        self.share < 1.0
-    }
-
-    /// Puts the load of a time, s, on the surface, where it grows.
-    fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
-        if self.loading_time > 0.0 {
-            self.share = (time / self.loading_time).min(1.0);
-            body.surface.load = self.share * self.load;
-            body.apply_loads();
         }
     }
 }
@@ -157,7 +127,7 @@ impl<const D: usize> ExplicitStepper<D> {
     fn set_load_at(&mut self, time: f64) {
         self.load.act_at(self.points.body_mut(), time);
         for step in self.frozen.iter_mut().chain(self.account.as_deref_mut()) {
-            step.set_load_share(self.load.share);
+            step.set_load_share(self.load.share());
         }
     }
 }

@@ -30,6 +30,7 @@ use crate::run::integrator::{Formulation, IntegratorKind};
 use crate::run::results::outcome::{Failure, FailureKind, Outcome};
 use crate::run::run_plan::{Plan, UnknownLimit};
 use crate::run::stepper::{StepFailure, Stepper};
+use crate::time_limit::TimeLimit;
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
@@ -44,9 +45,9 @@ pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: O
     let water = problem.water.take();
     let mut body = Body::new(problem);
     let time_limit = schedule.time_limit;
-    let no_start = |singular| if time_limit.is_over() { out_of_time() } else { no_start(singular) };
     let start_failure = if undrained_start {
-        body.settle_undrained(schedule.threads, time_limit).err().map(no_start)
+        let settled = body.settle_undrained(schedule.threads, time_limit);
+        settled.err().map(|singular| no_start(singular, time_limit))
     } else {
         None
     };
@@ -78,10 +79,18 @@ fn stepper_of<const D: usize>(body: Body<D>, plan: &Plan<'_>) -> Box<dyn Stepper
     }
 }
 
-/// The end of a run that has no undrained start.
-fn no_start(singular: Singular) -> Failure {
+/// The end of a run before its first step.
+fn at_start(StepFailure { kind, reason }: StepFailure, growth: Option<f64>) -> Failure {
+    Failure { kind, step: 0, time: 0.0, growth, reason }
+}
+
+/// The end of a run that has no undrained start: nothing holds it, or its time was over.
+fn no_start(singular: Singular, time_limit: TimeLimit) -> Failure {
+    if time_limit.is_over() {
+        return at_start(StepFailure::out_of_time(), None);
+    }
     let reason = format!("the undrained start has no pivot in row {}: nothing holds the body", singular.row);
-    Failure { kind: FailureKind::Singular, step: 0, time: 0.0, growth: None, reason }
+    at_start(StepFailure { kind: FailureKind::Singular, reason }, None)
 }
 
 /// The end of a run whose steps are shares of an unknown limit.
@@ -91,18 +100,12 @@ fn no_limit(unknown: UnknownLimit) -> Failure {
         UnknownLimit::OffLattice => None,
     };
     let reason = format!("{unknown}; a step in `seconds` is taken as it is");
-    Failure { kind: FailureKind::Unstable, step: 0, time: 0.0, growth, reason }
-}
-
-/// The end of a run whose time was over before it had a start.
-fn out_of_time() -> Failure {
-    let StepFailure { kind, reason } = StepFailure::out_of_time();
-    Failure { kind, step: 0, time: 0.0, growth: None, reason }
+    at_start(StepFailure { kind: FailureKind::Unstable, reason }, growth)
 }
 
 /// The end of a run of double-point MPM by an integrator that has none.
 fn no_water_points(integrator: IntegratorKind) -> Option<Failure> {
     let reason = format!("two sets of points are integrated explicitly, not by `{}`", integrator.name());
-    let failure = Failure { kind: FailureKind::NotConverged, step: 0, time: 0.0, growth: None, reason };
-    (integrator != IntegratorKind::Explicit).then_some(failure)
+    (integrator != IntegratorKind::Explicit)
+        .then(|| at_start(StepFailure { kind: FailureKind::NotConverged, reason }, None))
 }

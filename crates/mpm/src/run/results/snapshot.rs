@@ -169,22 +169,8 @@ impl<const D: usize> Body<D> {
     fn sample_points(&self) -> Samples {
         let points = &self.points;
         let count = points.len();
-        let vertical = |field: &[Vector<D>]| field.iter().map(|vector| vector[D - 1]).collect();
-        let horizontal = |field: &[Vector<D>]| field.iter().map(|vector| vector[0]).collect();
-        Samples {
-            initial_height: vertical(&points.initial_position),
-            displacement_height: None,
-            volume: (0..count).map(|point| points.volume(point)).collect(),
-            pressure: points.pressure.clone(),
-            effective_stress: points.effective_stress.iter().map(|stress| stress[D - 1][D - 1]).collect(),
-            displacement: vertical(&points.displacement),
-            plane: (D > 1).then(|| PlaneSamples {
-                initial_distance: horizontal(&points.initial_position),
-                displacement_distance: None,
-                horizontal_displacement: horizontal(&points.displacement),
-            }),
-            water: None,
-        }
+        let volumes = (0..count).map(|point| points.volume(point)).collect();
+        samples_of(points, volumes, &|value| (0..count).map(value).collect())
     }
 
     fn sample_centres(&self) -> Samples {
@@ -252,19 +238,37 @@ impl<const D: usize> Body<D> {
     }
 
     fn internal_force_imbalance(&self) -> f64 {
-        let (mut sum, mut size) = ([0.0; D], 0.0);
+        let mut forces = InternalForces::default();
         for point in 0..self.points.len() {
-            let volume = self.points.volume(point);
-            self.basis.visit(self.grid.node_stride(), point, |_, _, gradient| {
-                for d in 0..D {
-                    let stress = self.points.effective_stress[point][d][d] - self.points.pressure[point];
-                    sum[d] += volume * stress * gradient[d];
-                    size += (volume * stress * gradient[d]).abs();
-                }
-            });
+            let (volume, stress) = (self.points.volume(point), &self.points.effective_stress[point]);
+            let total = std::array::from_fn(|d| volume * (stress[d][d] - self.points.pressure[point]));
+            self.basis.visit(self.grid.node_stride(), point, |_, _, gradient| forces.add(&total, gradient));
         }
-        let largest = sum.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        if size > 0.0 { largest / size } else { 0.0 }
+        forces.imbalance()
+    }
+}
+
+/// Sum of the internal forces on all nodes, N, and the sum of their sizes.
+#[derive(Default)]
+pub(crate) struct InternalForces {
+    sum: [f64; 2],
+    size: f64,
+}
+
+impl InternalForces {
+    /// Adds the force on a node of normal stresses times the volume that they act in, by the gradient there.
+    pub fn add<const D: usize>(&mut self, stresses: &Vector<D>, gradient: &Vector<D>) {
+        for d in 0..D {
+            let force = stresses[d] * gradient[d];
+            self.sum[d] += force;
+            self.size += force.abs();
+        }
+    }
+
+    /// The first over the second: zero to round-off by the partition of unity.
+    pub fn imbalance(&self) -> f64 {
+        let largest = self.sum.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        if self.size > 0.0 { largest / self.size } else { 0.0 }
     }
 }
 
@@ -309,19 +313,27 @@ impl Means {
     }
 
     fn sample<const D: usize>(&self, points: &Points<D>) -> Samples {
-        Samples {
-            initial_height: self.of(&|point| points.initial_position[point][D - 1]),
-            displacement_height: None,
-            volume: self.volumes(),
-            pressure: self.of(&|point| points.pressure[point]),
-            effective_stress: self.of(&|point| points.effective_stress[point][D - 1][D - 1]),
-            displacement: self.of(&|point| points.displacement[point][D - 1]),
-            plane: (D > 1).then(|| PlaneSamples {
-                initial_distance: self.of(&|point| points.initial_position[point][0]),
-                displacement_distance: None,
-                horizontal_displacement: self.of(&|point| points.displacement[point][0]),
-            }),
-            water: None,
-        }
+        samples_of(points, self.volumes(), &|value| self.of(value))
+    }
+}
+
+/// Samples at places of given volumes, m^D, with what a function lists for them of what each point has.
+fn samples_of<const D: usize>(
+    points: &Points<D>,
+    volume: Vec<f64>,
+    list: &dyn Fn(&dyn Fn(usize) -> f64) -> Vec<f64>,
+) -> Samples {
+    Samples {
+        initial_height: list(&|point| points.initial_position[point][D - 1]),
+        volume,
+        pressure: list(&|point| points.pressure[point]),
+        effective_stress: list(&|point| points.effective_stress[point][D - 1][D - 1]),
+        displacement: list(&|point| points.displacement[point][D - 1]),
+        plane: (D > 1).then(|| PlaneSamples {
+            initial_distance: list(&|point| points.initial_position[point][0]),
+            displacement_distance: None,
+            horizontal_displacement: list(&|point| points.displacement[point][0]),
+        }),
+        ..Samples::default()
     }
 }
