@@ -1,13 +1,12 @@
 //! The ends of an axis, its ticks, and its counterpart in plotters.
 use crate::render::chart::ChartAxis;
+use crate::render::chart::svg::units;
 use crate::render::number::minus;
 use crate::render::script::{exponent, width};
 use oedometer_soil::elementary;
-use plotters::coord::combinators::WithKeyPoints;
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{BindKeyPoints, IntoLogRange, LogCoord};
-use std::ops::Range;
+use plotters::coord::combinators::{BindKeyPoints, WithKeyPoints};
+use plotters::coord::ranged1d::Ranged;
+use plotters::coord::types::{RangedCoordf64, RangedCoordi32};
 
 /// How an axis spreads its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +144,7 @@ pub(super) struct PlacedAxis {
     /// Pixels of the lower and of the upper end.
     from: f64,
     to: f64,
+    is_inverted: bool,
     pub ticks: Vec<Tick>,
 }
 
@@ -155,7 +155,7 @@ impl PlacedAxis {
     /// An axis from its lower to its upper pixel, horizontal or upright.
     pub fn new(axis: &ChartAxis, ends: Ends, (low, high): (f64, f64), is_upright: bool) -> Self {
         let (from, to) = if axis.inverted { (high, low) } else { (low, high) };
-        let mut placed = Self { ends, from, to, ticks: Vec::new() };
+        let mut placed = Self { ends, from, to, is_inverted: axis.inverted, ticks: Vec::new() };
         let room = if is_upright { 3.4 } else { 4.8 };
         let most = ((to - from).abs() / (room * TICK_FONT)).clamp(2.0, 12.0);
         let is_narrow = elementary::log10(ends.high / ends.low) < 0.75;
@@ -172,7 +172,7 @@ impl PlacedAxis {
 
     /// The pixel of a value, inside the ends or not.
     pub fn px(&self, value: f64) -> Option<f64> {
-        let value = drawable(value, self.ends.scale).ok()?;
+        let value = self.ends.near(drawable(value, self.ends.scale).ok()?);
         Some(self.from + self.ends.share(value) * (self.to - self.from))
     }
 
@@ -187,27 +187,21 @@ impl PlacedAxis {
         labels.map(|label| width(label) * TICK_FONT).fold(0.0, f64::max)
     }
 
-    /// The label of a tick.
-    pub fn label_of(&self, value: f64) -> String {
-        let own = self.ticks.iter().find(|tick| tick.value == value);
-        own.and_then(|tick| tick.label.clone()).unwrap_or_default()
+    /// The label of the tick at a place in drawing units.
+    pub fn label_at(&self, place: i32) -> String {
+        let is_there = |tick: &&Tick| tick.label.is_some() && self.px(tick.value).map(units) == Some(place);
+        self.ticks.iter().find(is_there).and_then(|tick| tick.label.clone()).unwrap_or_default()
     }
 
-    /// The axis for plotters.
-    pub fn for_plotters(&self, is_inverted: bool) -> PlotAxis {
-        let values = |major: bool| -> Vec<f64> {
-            self.ticks.iter().filter(|tick| tick.label.is_some() == major).map(|tick| tick.value).collect()
+    /// The axis for plotters, in drawing units.
+    pub fn for_plotters(&self) -> WithKeyPoints<RangedCoordi32> {
+        let places = |is_major: bool| -> Vec<i32> {
+            let ticks = self.ticks.iter().filter(|tick| tick.label.is_some() == is_major);
+            ticks.filter_map(|tick| self.px(tick.value).map(units)).collect()
         };
-        let Ends { scale, low, high } = self.ends;
-        let range = if is_inverted { high..low } else { low..high };
-        match scale {
-            Scale::Linear => {
-                PlotAxis::Linear(range.with_key_points(values(true)).with_light_points(values(false)))
-            }
-            Scale::Log10 => PlotAxis::Log(
-                range.log_scale().with_key_points(values(true)).with_light_points(values(false)),
-            ),
-        }
+        let (from, to) = (units(self.from), units(self.to));
+        let range = if self.is_inverted { to..from } else { from..to };
+        range.with_key_points(places(true)).with_light_points(places(false))
     }
 
     /// Removes labels that would touch a neighbour; powers of ten keep theirs first.
@@ -326,43 +320,10 @@ fn whole(x: f64) -> i32 {
     x.round() as i32
 }
 
-/// An axis of plotters, linear or logarithmic: one type, so that one drawing function serves every pair of scales.
-pub(super) enum PlotAxis {
-    Linear(WithKeyPoints<RangedCoordf64>),
-    Log(WithKeyPoints<LogCoord<f64>>),
-}
-
-impl Ranged for PlotAxis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn range(&self) -> Range<f64> {
-        match self {
-            Self::Linear(axis) => axis.range(),
-            Self::Log(axis) => axis.range(),
-        }
-    }
-
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        match self {
-            Self::Linear(axis) => axis.map(value, limit),
-            Self::Log(axis) => axis.map(value, limit),
-        }
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        match self {
-            Self::Linear(axis) => axis.key_points(hint),
-            Self::Log(axis) => axis.key_points(hint),
-        }
-    }
-}
-
-impl ValueFormatter<f64> for PlotAxis {}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plotters::coord::ranged1d::BoldPoints;
 
     fn ends(axis: &ChartAxis, values: &[f64]) -> Ends {
         Ends::of(axis, values.iter().copied(), 0.04)
@@ -417,16 +378,21 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_those_of_plotters() {
-        for (axis, values) in
-            [(ChartAxis::log10(""), [1e-3, 1e-1, 1e1]), (ChartAxis::linear("").inverted(), [-1.0, 0.25, 3.0])]
-        {
-            let own = PlacedAxis::new(&axis, ends(&axis, &values), (0.0, 400.0), false);
-            let theirs = own.for_plotters(axis.inverted);
-            for value in values {
-                let px = own.px(value).expect("a value that can be drawn");
-                assert!((f64::from(theirs.map(&value, (0, 4000))) - 10.0 * px).abs() <= 1.0, "{value} {px}");
-            }
+    fn a_value_stands_at_its_share_of_the_axis_and_a_tick_keeps_its_label() {
+        // Two of four decades, and 1.25 of 4 from the other end.
+        for (axis, value, wanted) in [
+            (ChartAxis::log10("").between(1e-3, 1e1), 1e-1, 200.0),
+            (ChartAxis::log10("").between(1e-3, 1e1), 1e0, 300.0),
+            (ChartAxis::linear("").between(-1.0, 3.0).inverted(), 0.25, 275.0),
+        ] {
+            let own = PlacedAxis::new(&axis, ends(&axis, &[]), (0.0, 400.0), false);
+            let px = own.px(value).expect("a value that can be drawn");
+            assert!((px - wanted).abs() < 1e-9, "{value} {px}");
+            let theirs = own.for_plotters();
+            assert_eq!(theirs.map(&units(px), (0, 4000)), units(px));
+            let labels: Vec<String> = own.ticks.iter().filter_map(|tick| tick.label.clone()).collect();
+            let places = theirs.key_points(BoldPoints(12));
+            assert_eq!(places.into_iter().map(|place| own.label_at(place)).collect::<Vec<_>>(), labels);
         }
     }
 

@@ -1,21 +1,19 @@
 //! Draws a figure: its layout in pixels, then layer over layer from the back to the front.
 
 use crate::render::RenderError;
-use crate::render::chart::axis::{Ends, PlacedAxis, PlotAxis, Reason, Scale, TICK_FONT, drawable};
+use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
 use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
 use crate::render::chart::multiples::side_by_side;
 use crate::render::chart::svg::{
-    Area, Drawn, Font, Px, document, group, layer, scripted, stroke, units, write,
+    Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
 use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
-use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
-use plotters::coord::cartesian::Cartesian2d;
+use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::element::Rectangle;
-use plotters::prelude::{Color, RGBColor, SVGBackend};
-use plotters::series::LineSeries;
+use plotters::prelude::{Color, RGBColor};
 use plotters::style::colors::WHITE;
 use plotters::style::text_anchor::HPos;
 use std::collections::BTreeMap;
@@ -183,8 +181,6 @@ fn without_data(chart: &Chart) -> Option<String> {
     is_told.then(|| format!("Without data here: {}.", names.join(", ")))
 }
 
-type Plot<'s> = ChartContext<'s, SVGBackend<'s>, Cartesian2d<PlotAxis, PlotAxis>>;
-
 impl Chart {
     /// The figure as a self-contained SVG document.
     ///
@@ -217,33 +213,24 @@ impl Chart {
         Ok((layout.size, [back, markers, words, around].concat()))
     }
 
-    /// The chart of plotters whose axes are those of the layout.
-    fn plot<'s>(&self, area: &Area<'s>, layout: &Layout) -> Drawn<Plot<'s>> {
-        let Layout { plot, size, .. } = layout;
-        ChartBuilder::on(area)
-            .margin_left(units(PAD))
-            .margin_top(units(plot.top))
-            .margin_right(units(size.0 - plot.right))
-            .margin_bottom(units(size.1 - plot.bottom - BELOW))
-            .set_label_area_size(LabelAreaPosition::Left, units(plot.left - PAD))
-            .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW))
-            .build_cartesian_2d(
-                layout.x.for_plotters(self.x.inverted),
-                layout.y.for_plotters(self.y.inverted),
-            )
-    }
-
     /// White ground, grid and axes, or a field with its colour bar.
     fn axes(&self, layout: &Layout) -> Result<String, String> {
-        let plot = layout.plot;
-        let mut out = layer(layout.size, |area| {
+        let (plot, size) = (layout.plot, layout.size);
+        let mut out = layer(size, |area| {
             area.fill(&WHITE)?;
-            let mut chart = self.plot(area, layout)?;
+            let mut chart = ChartBuilder::on(area)
+                .margin_left(units(PAD))
+                .margin_top(units(plot.top))
+                .margin_right(units(size.0 - plot.right))
+                .margin_bottom(units(size.1 - plot.bottom - BELOW))
+                .set_label_area_size(LabelAreaPosition::Left, units(plot.left - PAD))
+                .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW))
+                .build_cartesian_2d(layout.x.for_plotters(), layout.y.for_plotters())?;
             let longest = width(&self.x.label).max(1.0);
-            let label = Font { size: LABEL.size.min((layout.size.0 - 2.0 * PAD) / longest), ..LABEL };
+            let label = Font { size: LABEL.size.min((size.0 - 2.0 * PAD) / longest), ..LABEL };
             let upright = fitted(&self.y.label, plot);
             let (x_label, y_label) =
-                (|x: &f64| scripted(&layout.x.label_of(*x)), |y: &f64| scripted(&layout.y.label_of(*y)));
+                (|x: &i32| scripted(&layout.x.label_at(*x)), |y: &i32| scripted(&layout.y.label_at(*y)));
             let mut mesh = chart.configure_mesh();
             mesh.bold_line_style(stroke(MAJOR, 1.0))
                 .light_line_style(stroke(MINOR, 1.0))
@@ -262,7 +249,7 @@ impl Chart {
             write(area, &self.x.label, at, label, HPos::Center)
         })?;
         if self.drawn_field().is_some() {
-            let cells = layer(layout.size, |area| self.cells(area, layout))?;
+            let cells = layer(size, |area| self.cells(area, layout))?;
             out += &group(" shape-rendering=\"crispEdges\"", "", &cells);
         }
         Ok(out)
@@ -272,29 +259,34 @@ impl Chart {
     fn cells(&self, area: &Area<'_>, layout: &Layout) -> Drawn {
         let Some((field, (columns, _))) = self.drawn_field() else { return Ok(()) };
         let extent = field.extent();
-        let mut chart = self.plot(area, layout)?;
-        chart.draw_series(field.values.iter().enumerate().map(|(place, value)| {
+        let rectangle = |from: (Option<f64>, Option<f64>), to: (Option<f64>, Option<f64>), share: f64| {
+            let corners = [from, to].map(|(x, y)| spot((x.unwrap_or_default(), y.unwrap_or_default())));
+            area.draw(&Rectangle::new(corners, field_colour(share).filled()))
+        };
+        for (place, value) in field.values.iter().enumerate() {
             let (row, column) = (place / columns, place % columns);
-            let corner = |after: usize| (field.x_edges[column + after], field.y_edges[row + after]);
-            Rectangle::new([corner(0), corner(1)], field_colour(value / extent).filled())
-        }))?;
+            let corner = |after: usize| {
+                (layout.x.px(field.x_edges[column + after]), layout.y.px(field.y_edges[row + after]))
+            };
+            rectangle(corner(0), corner(1), value / extent)?;
+        }
         let Some(bar) = &layout.bar else { return Ok(()) };
         let (plot, size) = (layout.plot, layout.size);
         let left = plot.right + BAR.0;
         let label_room = bar.label_width() + BESIDE;
+        for step in 0..STEPS {
+            let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
+            let (low, high) = (share(step), share(step + 1));
+            let (from, to) = (bar.px(low * extent), bar.px(high * extent));
+            rectangle((Some(left), from), (Some(left + BAR.1), to), f64::midpoint(low, high))?;
+        }
         let mut chart = ChartBuilder::on(area)
             .margin_left(units(left))
             .margin_top(units(plot.top))
             .margin_right(units(size.0 - left - BAR.1 - label_room))
             .margin_bottom(units(size.1 - plot.bottom))
             .set_label_area_size(LabelAreaPosition::Right, units(label_room))
-            .build_cartesian_2d(0.0..1.0, bar.for_plotters(false))?;
-        chart.draw_series((0..STEPS).map(|step| {
-            let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
-            let (low, high) = (share(step), share(step + 1));
-            let corners = [(0.0, low * extent), (1.0, high * extent)];
-            Rectangle::new(corners, field_colour(f64::midpoint(low, high)).filled())
-        }))?;
+            .build_cartesian_2d(0..1, bar.for_plotters())?;
         chart
             .configure_mesh()
             .disable_mesh()
@@ -302,7 +294,7 @@ impl Chart {
             .axis_style(stroke(FRAME, 1.0))
             .set_all_tick_mark_size(units(4.0))
             .label_style(TICK.style(HPos::Left))
-            .y_label_formatter(&|y| scripted(&bar.label_of(*y)))
+            .y_label_formatter(&|y| scripted(&bar.label_at(*y)))
             .axis_desc_style(fitted(&field.label, plot).style(HPos::Center))
             .y_desc(scripted(&field.label))
             .draw()
@@ -321,8 +313,14 @@ impl Chart {
                         space.add_line(a, b);
                     }
                 }
-                let style = stroke(look.colour, look.width());
-                let drawn = layer(layout.size, |area| self.curve(area, layout, series, style))?;
+                let drawn = layer(layout.size, |area| {
+                    // Broken at values that cannot be drawn.
+                    for piece in places.split(Option::is_none).filter(|piece| piece.len() > 1) {
+                        let places: Vec<Px> = piece.iter().flatten().copied().collect();
+                        line(area, &places, stroke(look.colour, look.width()))?;
+                    }
+                    Ok(())
+                })?;
                 out += &group(&look.line_attributes(), &series.name, &drawn);
             }
         }
@@ -331,25 +329,6 @@ impl Chart {
         let [x, y, w, h] = [left, top, right - left, bottom - top].map(units);
         let frame = format!("x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" viewBox=\"{x} {y} {w} {h}\"");
         Ok(if out.is_empty() { out } else { format!("<svg {frame}>\n{out}</svg>\n") })
-    }
-
-    /// The line of a series, broken at values that cannot be drawn.
-    fn curve(
-        &self,
-        area: &Area<'_>,
-        layout: &Layout,
-        series: &Series,
-        style: plotters::style::ShapeStyle,
-    ) -> Drawn {
-        let (x, y) = (layout.x.ends, layout.y.ends);
-        let is_drawable =
-            |(a, b): &(f64, f64)| drawable(*a, x.scale).is_ok() && drawable(*b, y.scale).is_ok();
-        let mut chart = self.plot(area, layout)?;
-        for piece in series.points.split(|point| !is_drawable(point)).filter(|piece| piece.len() > 1) {
-            let points = piece.iter().map(|(a, b)| (x.near(*a), y.near(*b)));
-            chart.draw_series(LineSeries::new(points, style))?;
-        }
-        Ok(())
     }
 
     /// The markers of all series. Those of later series are smaller, so that points that coincide are seen to be

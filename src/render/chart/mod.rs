@@ -4,14 +4,295 @@
 //! Values that cannot be drawn are counted below the figure.
 
 mod axis;
-mod describe;
 mod draw;
 mod looks;
 mod multiples;
 mod svg;
 mod words;
 
-pub use describe::{Chart, ChartAxis, ColourField, PointName, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::axis::{Scale, drawable};
+use crate::render::escape::csv_field;
+use crate::render::number;
+use std::fmt::Write;
+
+/// A figure: its axes and what is drawn between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// One line above the figure.
+    pub title: String,
+    /// A second, smaller line.
+    pub subtitle: Option<String>,
+    /// Horizontal axis.
+    pub x: ChartAxis,
+    /// Vertical axis.
+    pub y: ChartAxis,
+    /// Cells of colour below everything else.
+    pub field: Option<ColourField>,
+    /// Lines and markers.
+    pub series: Vec<Series>,
+    /// Horizontal lines at single values.
+    pub rules: Vec<Rule>,
+    /// Triangles that show the slope of an order.
+    pub triangles: Vec<SlopeTriangle>,
+    /// Names written beside single points.
+    pub names: Vec<PointName>,
+    /// Width of the figure and height of the plot.
+    pub size: Size,
+}
+
+impl Chart {
+    /// An empty figure of the default size.
+    pub fn new(title: impl Into<String>, x: ChartAxis, y: ChartAxis) -> Self {
+        Self {
+            title: title.into(),
+            subtitle: None,
+            x,
+            y,
+            field: None,
+            series: Vec::new(),
+            rules: Vec::new(),
+            triangles: Vec::new(),
+            names: Vec::new(),
+            size: Size::default(),
+        }
+    }
+
+    /// Adds a series.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// The data as CSV with all digits: one row per point of a series, and one per cell of a field, at its middle.
+    pub fn data_csv(&self) -> String {
+        let quoted = |text: &str| format!("\"{}\"", csv_field(text).replace('"', "\"\""));
+        let mut out = format!("series,{},{}", quoted(&self.x.label), quoted(&self.y.label));
+        if let Some(field) = &self.field {
+            let _ = write!(out, ",{}", quoted(&field.label));
+        }
+        out.push('\n');
+        let end = if self.field.is_some() { "," } else { "" };
+        for series in &self.series {
+            let name = quoted(&series.name);
+            for (x, y) in &series.points {
+                let _ = writeln!(out, "{name},{},{}{end}", number::exact(*x), number::exact(*y));
+            }
+        }
+        if let Some((field, (columns, rows))) = self.drawn_field() {
+            let middle = |edges: &[f64], at: usize| number::exact(f64::midpoint(edges[at], edges[at + 1]));
+            for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+                let value = number::exact(field.values[row * columns + column]);
+                let (x, y) = (middle(&field.x_edges, column), middle(&field.y_edges, row));
+                let _ = writeln!(out, "{},{x},{y},{value}", quoted(&self.title));
+            }
+        }
+        out
+    }
+
+    /// The field with its numbers of columns and rows, where its edges and values fit each other.
+    fn drawn_field(&self) -> Option<(&ColourField, (usize, usize))> {
+        self.field.as_ref().and_then(|field| Some((field, field.shape()?)))
+    }
+}
+
+/// Pixels at the size at which the figure is meant to be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// The whole width.
+    pub width: f64,
+    /// The height between the axes, without titles, legend and notes.
+    pub plot_height: f64,
+    /// Draw one unit of x as long as one unit of y, as maps of a body need.
+    pub equal_units: bool,
+}
+
+impl Size {
+    /// A figure with a neighbour.
+    pub const PANEL: Self = Self { width: 560.0, plot_height: 360.0, equal_units: false };
+}
+
+impl Default for Size {
+    fn default() -> Self {
+        Self { width: 760.0, plot_height: 360.0, equal_units: false }
+    }
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChartAxis {
+    /// Quantity and unit.
+    pub label: String,
+    /// Linear or logarithmic.
+    pub scale: Scale,
+    /// Lowest and highest value shown; all of the data if `None`.
+    pub range: Option<(f64, f64)>,
+    /// Whether values grow downwards or to the left, as a depth does.
+    pub inverted: bool,
+    /// Places of the ticks, such as mesh sizes; round numbers if `None`.
+    pub ticks: Option<Vec<(f64, Option<String>)>>,
+}
+
+impl ChartAxis {
+    /// A linear axis that shows all of the data.
+    pub fn linear(label: impl Into<String>) -> Self {
+        Self { label: label.into(), scale: Scale::Linear, range: None, inverted: false, ticks: None }
+    }
+
+    /// A logarithmic axis that shows all of the positive data.
+    pub fn log10(label: impl Into<String>) -> Self {
+        Self { scale: Scale::Log10, ..Self::linear(label) }
+    }
+
+    /// Turns the axis round.
+    #[must_use]
+    pub fn inverted(mut self) -> Self {
+        self.inverted = true;
+        self
+    }
+
+    /// Sets the lowest and highest value shown.
+    #[must_use]
+    pub fn between(mut self, low: f64, high: f64) -> Self {
+        self.range = Some((low, high));
+        self
+    }
+
+    /// Puts the ticks at these values.
+    #[must_use]
+    pub fn with_ticks(mut self, ticks: Vec<f64>) -> Self {
+        self.ticks = Some(ticks.into_iter().map(|value| (value, None)).collect());
+        self
+    }
+
+    /// Places the ticks, each with its own label.
+    #[must_use]
+    pub fn with_labelled_ticks(mut self, ticks: impl IntoIterator<Item = (f64, String)>) -> Self {
+        self.ticks = Some(ticks.into_iter().map(|(value, label)| (value, Some(label))).collect());
+        self
+    }
+}
+
+/// Points that belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend. Series with the same look and name share an entry; an empty name has none.
+    pub name: String,
+    /// The points in the order in which a line joins them.
+    pub points: Vec<(f64, f64)>,
+    /// What is drawn.
+    pub style: Style,
+    /// Number of its colour, marker and dashes; the place of its name in the chart if `None`.
+    pub slot: Option<usize>,
+}
+
+impl Series {
+    /// A series of markers joined by lines.
+    pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { name: name.into(), points, style: Style::LineAndMarkers, slot: None }
+    }
+
+    /// The curve that the others are compared with.
+    pub fn theory(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { style: Style::Theory, ..Self::new(name, points) }
+    }
+
+    /// Sets what is drawn.
+    #[must_use]
+    pub fn style(mut self, style: Style) -> Self {
+        self.style = style;
+        self
+    }
+
+    /// Sets the number of colour, marker and dashes.
+    #[must_use]
+    pub fn slot(mut self, slot: usize) -> Self {
+        self.slot = Some(slot);
+        self
+    }
+}
+
+/// What is drawn of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// A line.
+    Line,
+    /// Markers only.
+    Markers,
+    /// Markers joined by a line.
+    LineAndMarkers,
+    /// The reference: a dark line above other lines and below all markers. Several references differ in their
+    /// dashes.
+    Theory,
+    /// A thin grey line: a series that is coloured in another panel of small multiples.
+    Context,
+}
+
+/// A horizontal line across the figure: a floor, a limit, a tolerance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// The value on the vertical axis.
+    pub at: f64,
+    /// Words at the line.
+    pub label: String,
+}
+
+/// The name of a point, written beside it where there is room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointName {
+    /// The point.
+    pub at: (f64, f64),
+    /// Its name.
+    pub name: String,
+}
+
+/// A triangle of a given slope on doubly logarithmic axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlopeTriangle {
+    /// The slope; negative where the error falls to the right.
+    pub slope: f64,
+    /// Name of the series beside which it stands.
+    pub beside: String,
+}
+
+/// One value per cell on a rectangular grid. Its colours are near-white at zero and safe for the colour-blind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColourField {
+    /// Quantity and unit, written at the colour bar.
+    pub label: String,
+    /// Whether it has a colour bar; of several that share a reach one is enough.
+    pub has_bar: bool,
+    /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
+    /// `None`.
+    pub reach: Option<f64>,
+    /// The lines between the columns of cells, one more than columns.
+    pub x_edges: Vec<f64>,
+    /// The lines between the rows of cells, one more than rows.
+    pub y_edges: Vec<f64>,
+    /// The values, row after row, each row from the first column on. A cell that is not finite is grey.
+    pub values: Vec<f64>,
+}
+
+impl ColourField {
+    /// Columns and rows; `None` where edges and values do not fit each other.
+    fn shape(&self) -> Option<(usize, usize)> {
+        let columns = self.x_edges.len().checked_sub(1)?;
+        let rows = self.y_edges.len().checked_sub(1)?;
+        (columns > 0 && rows > 0 && self.values.len() == columns * rows).then_some((columns, rows))
+    }
+
+    /// The values that can be drawn.
+    fn drawn(&self) -> impl Iterator<Item = f64> {
+        self.values.iter().copied().filter(|value| drawable(*value, Scale::Linear).is_ok())
+    }
+
+    /// The value of the last colour.
+    fn extent(&self) -> f64 {
+        let own = self.drawn().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let reach = self.reach.unwrap_or(own);
+        if reach > 0.0 && reach.is_finite() { reach } else { 1.0 }
+    }
+}
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 
 mod gallery;
 
-use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle, Style};
+use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, SlopeTriangle, Style};
 use gallery::{convergence, gallery, nothing, pressure_field};
 
 fn svg(chart: &Chart) -> String {
@@ -176,4 +176,22 @@ fn the_first_row_of_a_field_is_the_lowest() {
         number(line.unwrap_or_else(|| panic!("{colour}")), "y")
     };
     assert!(cell("#2166AC") > cell("#B2182B"));
+}
+
+#[test]
+fn every_point_and_every_cell_has_a_row() {
+    let mut chart = Chart::new("f", ChartAxis::linear("x, m"), ChartAxis::linear("y"))
+        .with(Series::new("a \"b\"", vec![(0.1, 2.0), (0.3, 4.0)]));
+    assert_eq!(chart.data_csv(), "series,\"x, m\",\"y\"\n\"a \"\"b\"\"\",0.1,2.0\n\"a \"\"b\"\"\",0.3,4.0\n");
+    let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0], vec![0.0, 2.0]);
+    let field = ColourField {
+        label: "p".to_owned(),
+        has_bar: true,
+        reach: None,
+        x_edges,
+        y_edges,
+        values: vec![5.0, 6.0],
+    };
+    chart.field = Some(field);
+    assert!(chart.data_csv().ends_with("\"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n"), "{}", chart.data_csv());
 }
