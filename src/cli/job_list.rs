@@ -3,7 +3,7 @@
 use crate::campaign::shares::{Parting, balance_of, shares_of};
 use crate::case::Case;
 use crate::case::planned::Tier;
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
 use oedometer_soil::wording::{count_of, duration};

@@ -10,7 +10,6 @@ pub mod output;
 pub mod place;
 pub mod progress;
 pub mod slurm;
-pub mod stream;
 pub mod study_files;
 pub mod trust;
 use crate::cli::commands::{
@@ -18,7 +17,7 @@ use crate::cli::commands::{
     report, run, schema, score, solve, stability,
 };
 use crate::cli::exit::Exit;
-use crate::cli::stream::{say, written};
+use crate::cli::output::{say, written};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;

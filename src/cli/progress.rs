@@ -5,7 +5,7 @@ use crate::campaign::runner::{LongestCase, Progress};
 use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task};
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_soil::wording::{count_of, duration};

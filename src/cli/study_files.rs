@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::exit::Ended;
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use crate::record::Record;
 use crate::record::csv::long_tables::{LongTable, columns_csv};
 use crate::record::csv::{TableForm, tidy};

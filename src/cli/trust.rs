@@ -7,8 +7,8 @@
 use crate::campaign::runner::Tally;
 use crate::case::solver::Solver;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::say;
 use crate::cli::place;
-use crate::cli::stream::say;
 use crate::study::check::Study;
 use crate::study::check::solvers::digest_of_file;
 use crate::study::solver::ExternalSolver;

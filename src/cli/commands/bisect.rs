@@ -4,7 +4,7 @@
 //! bad one have moved; one that cannot be built or run, or has none of these values, is skipped.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::stream::{print_data, say};
+use crate::cli::output::{print_data, say};
 use crate::golden::compare::{Change, Difference, compare, groups_of};
 use crate::golden::{is_counter, parts};
 use crate::history::repository::{Commit, Repository};

@@ -4,10 +4,11 @@ use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studie
 use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run};
 use crate::cli::exit::{Ended, Exit, sentence};
-use crate::cli::output::{TableFormat, json_of, print_coloured};
+use crate::cli::output::{
+    TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, write_document,
+};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::progress::StudyBar;
-use crate::cli::stream::{append, is_on, path_in, print_data, say, write_document};
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;

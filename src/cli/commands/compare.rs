@@ -2,9 +2,8 @@
 
 use crate::cli::commands::run::load;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, json_of, print_tables};
+use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
 use crate::cli::place::folder_of_golden;
-use crate::cli::stream::{print_data, say, write_document};
 use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;

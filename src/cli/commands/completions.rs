@@ -1,7 +1,7 @@
 //! `oedometer completions`: shell completions.
 
 use crate::cli::exit::Exit;
-use crate::cli::stream::print_data;
+use crate::cli::output::print_data;
 use crate::study::shipped::shipped_names;
 use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;

@@ -3,8 +3,7 @@
 use crate::api::scene_of;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{csv_of, json_of};
-use crate::cli::stream::{print_data, say};
+use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::study::overrides::{Asked, Assignments, numbers};
 use clap::ValueEnum;
 use oedometer_exact::Accuracy;

@@ -2,8 +2,7 @@
 
 use crate::cli::commands::compare::repository_with;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, json_of, print_tables};
-use crate::cli::stream::{print_data, say, write_document};
+use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
 use crate::history::timeline::timelines;
 use crate::render::history_tables::{timeline_page, timeline_summary, timeline_table};
 use crate::render::page::render_html;

@@ -1,7 +1,7 @@
 //! `oedometer list`: the names of scenes, methods, integrators, references and shipped studies.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::stream::print_data;
+use crate::cli::output::print_data;
 use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
 use oedometer_exact::{ReferenceKind, ShelfProblem};

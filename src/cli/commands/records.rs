@@ -1,8 +1,7 @@
 //! `oedometer records`: lists the records of a folder of results, or prints single ones.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::json_of;
-use crate::cli::stream::{print_data, print_with, say};
+use crate::cli::output::{json_of, print_data, print_with, say};
 use crate::record::Record;
 use crate::record::csv::long_tables::LongTable;
 use crate::record::store::RecordStore;

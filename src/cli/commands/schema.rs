@@ -1,8 +1,7 @@
 //! `oedometer schema`: JSON Schemas of study files, records and mappings.
 
 use crate::cli::exit::Exit;
-use crate::cli::output::json_of;
-use crate::cli::stream::print_data;
+use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
 use crate::record::Record;

@@ -2,8 +2,8 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, quoted};
+use crate::cli::output::say;
 use crate::cli::slurm::{ClusterArguments, FOLDER};
-use crate::cli::stream::say;
 use crate::record::whole_file::write_whole;
 use oedometer_formats::input_file;
 use std::collections::BTreeSet;

@@ -2,7 +2,7 @@
 
 use crate::case::solver::{Attached, DIGEST_DIGITS};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use crate::study::file::StudySource;
 use crate::study::shipped::{name_of, refused_name, shipped_studies};
 use clap::ValueEnum;

@@ -8,7 +8,7 @@ use crate::cli::commands::compare::state_of;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::{GoldenFile, parts};
 use crate::history::comparison::StudyComparison;

@@ -3,7 +3,7 @@
 use crate::case::{Case, Quantity};
 use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
-use crate::cli::stream::say;
+use crate::cli::output::say;
 use crate::import::mapping::Mapping;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, are_tables, files_of, runs_of};
