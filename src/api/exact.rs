@@ -72,12 +72,17 @@ pub fn exact(
                 }
                 values.add(reference.fields(*time_factor, 1.0 - distance).map_err(told)?);
             }
-        } else if x.is_empty() {
-            for depth in depths {
-                values.add(reference.fields(*time_factor, *depth).map_err(told)?);
-            }
-        } else {
-            values.add_plane(&reference, &parameters, *time_factor, depths, x)?;
+            continue;
+        }
+        let distances = (!x.is_empty()).then_some(x);
+        let places = places_of(&reference, &parameters, *time_factor, depths, distances).map_err(told)?;
+        let places = places.ok_or_else(|| {
+            format!("`x` is for layers and `mandel`, and `{}` depends on the depth alone", reference.name())
+        })?;
+        for Place { pressure, effective_stress, displacement, .. } in places {
+            let (effective_stress, [horizontal, displacement]) = (effective_stress[1], displacement);
+            values.add(FieldValues { pressure, effective_stress, displacement });
+            values.horizontal_displacement.extend(distances.map(|_| horizontal));
         }
     }
     Ok(values)
@@ -89,39 +94,59 @@ impl ExactValues {
         self.effective_stress.push(fields.effective_stress);
         self.displacement.push(fields.displacement);
     }
+}
 
-    /// Adds the fields of a plane problem at every depth and distance.
-    fn add_plane(
-        &mut self,
-        reference: &Reference,
-        parameters: &ColumnParameters,
-        time_factor: f64,
-        depths: &[f64],
-        x: &[f64],
-    ) -> Result<(), String> {
-        let told = |error: ExactError| error.to_string();
-        let layer = reference.plane_state(time_factor).map_err(told)?;
-        for (depth, distance) in
-            depths.iter().flat_map(|depth| x.iter().map(move |distance| (depth, distance)))
-        {
-            let (pressure, effective_stress, [horizontal, vertical]) = if let Some(layer) = &layer {
-                let height = (1.0 - depth) * parameters.height;
-                let at = layer.fields(distance * parameters.length, height).map_err(told)?;
-                (at.pressure, at.effective_stress[1], at.displacement)
+/// The fields of a solution at one place.
+pub(crate) struct Place {
+    /// Depth over the height.
+    pub zeta: f64,
+    /// Distance over the length, in a plane.
+    pub x: Option<f64>,
+    /// Pa.
+    pub pressure: f64,
+    /// Components xx, yy and xy, Pa; of a column yy alone.
+    pub effective_stress: [f64; 3],
+    /// Along x and upward, m.
+    pub displacement: [f64; 2],
+}
+
+/// The fields at depths, and there at every distance where some are given; `None` where the solution has no such plane.
+///
+/// # Errors
+/// When the solution refuses a place.
+pub(crate) fn places_of(
+    reference: &Reference,
+    parameters: &ColumnParameters,
+    time_factor: f64,
+    depths: &[f64],
+    distances: Option<&[f64]>,
+) -> Result<Option<Vec<Place>>, ExactError> {
+    let mut places = Vec::new();
+    let layer = distances.map(|_| reference.plane_state(time_factor)).transpose()?.flatten();
+    for &zeta in depths {
+        let Some(distances) = distances else {
+            let FieldValues { pressure, effective_stress, displacement } =
+                reference.fields(time_factor, zeta)?;
+            let (effective_stress, displacement) = ([0.0, effective_stress, 0.0], [0.0, displacement]);
+            places.push(Place { zeta, x: None, pressure, effective_stress, displacement });
+            continue;
+        };
+        for &distance in distances {
+            let (pressure, displacement, effective_stress) = if let Some(layer) = &layer {
+                let at = layer.fields(distance * parameters.length, (1.0 - zeta) * parameters.height)?;
+                let [xx, yy, _, xy] = at.effective_stress;
+                (at.pressure, at.displacement, [xx, yy, xy])
             } else if let Some(motion) = reference.manufactured() {
-                let at = motion.plane_fields(time_factor, [*distance, 1.0 - depth]).map_err(told)?;
-                (at.pressure, at.effective_stress[1][1], at.displacement)
+                let at = motion.plane_fields(time_factor, [distance, 1.0 - zeta])?;
+                let [[xx, xy], [_, yy]] = at.effective_stress;
+                (at.pressure, at.displacement, [xx, yy, xy])
             } else {
-                return Err(format!(
-                    "`x` is for layers and `mandel`, and `{}` depends on the depth alone",
-                    reference.name()
-                ));
+                return Ok(None);
             };
-            self.add(FieldValues { pressure, effective_stress, displacement: vertical });
-            self.horizontal_displacement.push(horizontal);
+            places.push(Place { zeta, x: Some(distance), pressure, effective_stress, displacement });
         }
-        Ok(())
     }
+    Ok(Some(places))
 }
 
 #[cfg(test)]

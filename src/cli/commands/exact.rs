@@ -1,5 +1,6 @@
 //! `oedometer exact`: an exact solution as numbers.
 
+use crate::api::exact::{Place, places_of};
 use crate::api::scene_of;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
@@ -152,53 +153,33 @@ fn column_rows(
     for &time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
         let degree = reference.degree_of_consolidation(time_factor)?;
-        let row = |zeta: f64, pressure: f64| {
-            vec![
+        let places = places_of(reference, parameters, time_factor, &depths, distances.as_deref())?;
+        for Place { zeta, x, pressure, effective_stress: [xx, yy, xy], displacement } in
+            places.into_iter().flatten()
+        {
+            let mut columns = vec![
                 ("time_factor", time_factor),
                 ("zeta", zeta),
                 ("pressure_ratio", pressure / parameters.load),
                 ("settlement_ratio", settlement / parameters.height),
                 ("degree_of_consolidation", degree),
-            ]
-        };
-        let state = if distances.is_some() { reference.plane_state(time_factor)? } else { None };
-        for &zeta in &depths {
-            let Some(distances) = &distances else {
-                let fields = reference.fields(time_factor, zeta)?;
-                let mut columns = row(zeta, fields.pressure);
-                if matches!(kind, ReferenceKind::Shelf(_)) {
-                    columns.extend([
-                        ("effective_stress_ratio", fields.effective_stress / parameters.load),
-                        ("displacement_ratio", fields.displacement / parameters.height + 0.0),
-                    ]);
-                }
-                rows.push(PrintedRow(columns));
-                continue;
-            };
-            for &distance in distances {
-                let (pressure, displacement, [xx, yy, xy]) = if let Some(motion) = reference.manufactured() {
-                    let at = motion.plane_fields(time_factor, [distance, 1.0 - zeta])?;
-                    let [[xx, xy], [_, yy]] = at.effective_stress;
-                    (at.pressure, at.displacement, [xx, yy, xy])
-                } else if let Some(state) = &state {
-                    let height = (1.0 - zeta) * parameters.height;
-                    let at = state.fields(distance * parameters.length, height)?;
-                    let [xx, yy, _, xy] = at.effective_stress;
-                    (at.pressure, at.displacement, [xx, yy, xy])
-                } else {
-                    continue;
-                };
-                let mut columns = row(zeta, pressure);
+            ];
+            if let Some(x) = x {
                 columns.extend([
-                    ("x", distance),
+                    ("x", x),
                     ("horizontal_displacement_ratio", displacement[0] / parameters.height),
                     ("vertical_displacement_ratio", displacement[1] / parameters.height),
                     ("effective_stress_ratio_xx", xx / parameters.load),
                     ("effective_stress_ratio_yy", yy / parameters.load),
                     ("effective_stress_ratio_xy", xy / parameters.load),
                 ]);
-                rows.push(PrintedRow(columns));
+            } else if matches!(kind, ReferenceKind::Shelf(_)) {
+                columns.extend([
+                    ("effective_stress_ratio", yy / parameters.load),
+                    ("displacement_ratio", displacement[1] / parameters.height + 0.0),
+                ]);
             }
+            rows.push(PrintedRow(columns));
         }
     }
     Ok(rows)
