@@ -87,7 +87,7 @@ const GROUPS: [Group; 5] = [
 ];
 
 /// Options for clusters, other builds and the development of methods.
-const EXPERT: [&str; 20] = [
+const EXPERT: [&str; 19] = [
     "shard",
     "balance",
     "resume",
@@ -107,7 +107,6 @@ const EXPERT: [&str; 20] = [
     "despite_failing",
     "point_wise",
     "time_tolerance",
-    "against",
 ];
 
 /// The command line with its help texts.

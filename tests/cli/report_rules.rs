@@ -88,8 +88,7 @@ fn page_of(all: &[&(Study, Vec<Record>)]) -> Page {
     let race: Vec<RaceRow<'_>> =
         all.iter().filter_map(|(study, records)| RaceRow::of(study, records)).collect();
     let making = Making::default();
-    let answers =
-        Answers { results: &results, changes: Some(&[]), against: "v1.0", making: &making, race: &race };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &race };
     answer_page(&answers).expect("a page")
 }
 

@@ -30,10 +30,8 @@ use std::fmt::Write;
 pub struct Answers<'a> {
     /// The studies with their records and judgements.
     pub results: &'a [StudyResults<'a>],
-    /// The studies that differ from another state; `None` where it has none of them.
+    /// The studies that differ from their golden values; `None` where none has any.
     pub changes: Option<&'a [StudyComparison]>,
-    /// That state: a folder, a revision or the golden values.
-    pub against: &'a str,
     /// When, where and by which command.
     pub making: &'a Making,
     /// Every contender in every situation of the race.
@@ -164,7 +162,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         cost::answer(results),
         audit::answer(results),
         double_point::answer(results),
-        what_changed(answers.changes, answers.against),
+        what_changed(answers.changes),
     ];
     let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
@@ -218,20 +216,18 @@ fn verdict(results: &[StudyResults<'_>]) -> Callout {
 const CHANGES: Question = Question { heading: "What changed?", id: "changes" };
 
 /// The studies that differ, as `oedometer compare` shows them.
-fn what_changed(changes: Option<&[StudyComparison]>, against: &str) -> Answer {
+fn what_changed(changes: Option<&[StudyComparison]>) -> Answer {
     let changes = changes?;
     if changes.is_empty() {
-        let text = format!(
-            "Nothing: every value that these studies share with {against} agrees within its tolerance."
-        );
-        return Some(CHANGES.told(&text, [], Vec::new()));
+        let text = "Nothing: every value that these studies share with the golden values agrees within its tolerance.";
+        return Some(CHANGES.told(text, [], Vec::new()));
     }
     let worse = changes.iter().filter(|one| one.is_regression()).count();
     let sentence = format!(
-        "Against {against} {} changed, of which {worse} got worse.",
+        "Against the golden values {} changed, of which {worse} got worse.",
         count_of(changes.len(), "study", "studies")
     );
-    let tables = comparison_tables(changes, [against, "this report"]);
+    let tables = comparison_tables(changes, ["the golden values", "this report"]);
     let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
     Some(CHANGES.told(&sentence, [], tables.into_iter().map(block).collect()))
 }
@@ -274,11 +270,11 @@ mod tests {
         };
         let changes = [("worse", 0.3), ("better", 0.1)]
             .map(|(name, error)| StudyComparison::of(name, &state(0.2), &state(error)));
-        let Some(section) = what_changed(Some(&changes), "v1.0") else { panic!("they differ") };
+        let Some(section) = what_changed(Some(&changes)) else { panic!("they differ") };
         let told = format!("{section:?}");
-        assert!(told.contains("Against v1.0 2 studies changed, of which 1 got worse"), "{told}");
+        assert!(told.contains("Against the golden values 2 studies changed, of which 1 got worse"), "{told}");
         assert!(told.contains("regressed") && told.contains("improved"), "{told}");
-        assert!(format!("{:?}", what_changed(Some(&[]), "v1.0")).contains("Nothing"));
-        assert!(what_changed(None, "v1.0").is_none());
+        assert!(format!("{:?}", what_changed(Some(&[]))).contains("Nothing"));
+        assert!(what_changed(None).is_none());
     }
 }

@@ -4,15 +4,14 @@ use crate::campaign::runner::{RunOptions, RunReport, Tally};
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::commands::check::refuse_unfinished;
-use crate::cli::commands::compare::state_of;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::output::say;
+use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::trust::{self, TrustArguments};
-use crate::golden::{GoldenFile, parts};
+use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
-use crate::history::state::{State, StudyState};
+use crate::history::state::StudyState;
 use crate::judge::race::RaceRow;
 use crate::record::Record;
 use crate::record::provenance::Machine;
@@ -23,6 +22,7 @@ use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::pages::index_page;
 use crate::render::report::study_page::study_page;
+
 use crate::render::report::{StudyResults, race};
 use crate::study::check::Study;
 use rayon::prelude::*;
@@ -44,9 +44,6 @@ pub struct Arguments {
     /// Folder of the golden values that the records are compared with [default: `golden` beside the study or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Compare with this state instead of the golden values: a folder of records, or a git revision
-    #[arg(long, value_name = "A")]
-    against: Option<String>,
     /// Run nothing; render existing records of any program
     #[arg(long, conflicts_with = "jobs")]
     from_records: bool,
@@ -64,11 +61,6 @@ pub struct Arguments {
 /// its figures and tables as files.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let start = Instant::now();
-    let against =
-        arguments.against.as_deref().map(|named| state_of(named, arguments.golden.as_deref())).transpose()?;
-    for note in against.iter().flat_map(|state| &state.notes) {
-        say!("{note}");
-    }
     let chosen = arguments.studies.chosen()?;
     let mut studies = load_after_run(&chosen, &arguments.records)?;
     let reports = if arguments.from_records {
@@ -94,10 +86,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         cases_run: reports.iter().map(|report| report.records.len() - report.resumed).sum(),
         left_out: results.iter().map(StudyResults::left_out).sum(),
     };
-    let golden_of = |study: &str| golden_of(arguments.golden.as_deref(), study, &chosen).ok();
-    let changes = changes(&studies, &reports, against.as_ref(), &golden_of);
-    let name = against.as_ref().map_or("the golden values", |state| &state.name);
-    let written = write_files(&arguments.out, &results, (name, changes.as_deref()), making, start)?;
+    let changes =
+        changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
+    let written = write_files(&arguments.out, &results, changes.as_deref(), making, start)?;
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
     let mut tally = Tally::default();
@@ -175,23 +166,17 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
     Ok(reports)
 }
 
-/// The studies that differ from another state, or from their golden values, those that got worse first; `None` where no
-/// study is in it. Golden values are those of the CI tier; of another state all cases that it has are compared too.
+/// The studies that differ from their golden values, which are those of the CI tier, those that got worse first; `None`
+/// where no study has any.
 fn changes(
     studies: &[Study],
     reports: &[RunReport],
-    against: Option<&State>,
-    golden_of: &(dyn Fn(&str) -> Option<GoldenFile> + Sync),
+    golden_of: impl Fn(&str) -> Option<GoldenFile> + Sync,
 ) -> Option<Vec<StudyComparison>> {
     let of_study = |(study, report): &(&Study, &RunReport)| {
-        let before = match against {
-            Some(state) => state.studies.get(&study.name)?.clone(),
-            None => StudyState::of_golden(golden_of(&study.name)?),
-        };
+        let before = StudyState::of_golden(golden_of(&study.name)?);
         let of_tier: HashSet<String> = study.cases(Tier::Ci).into_iter().map(Case::hash).collect();
-        let known: HashSet<&str> = before.golden.values.keys().map(|name| parts(name).0).collect();
-        let is_known = |record: &Record| against.is_some() && known.contains(record.case.label().as_str());
-        let is_compared = |record: &&Record| of_tier.contains(&record.hash) || is_known(record);
+        let is_compared = |record: &&Record| of_tier.contains(&record.hash);
         let records: Vec<Record> = report.records.iter().filter(is_compared).cloned().collect();
         let after = StudyState::of_records(&study.name, &records);
         (!records.is_empty()).then(|| StudyComparison::of(&study.name, &before, &after))
@@ -223,7 +208,7 @@ fn command() -> String {
 fn write_files(
     out: &Path,
     results: &[StudyResults<'_>],
-    (against, changes): (&str, Option<&[StudyComparison]>),
+    changes: Option<&[StudyComparison]>,
     mut making: Making,
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
@@ -243,7 +228,7 @@ fn write_files(
     }
 
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, against, making: &making, race: &rows };
+    let answers = Answers { results, changes, making: &making, race: &rows };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
     let readme = results.iter().fold(render_markdown(&front)?, |text, one| match path_from(out, &one.file) {
