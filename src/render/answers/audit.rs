@@ -3,13 +3,15 @@
 
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::Path;
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question};
+use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, first_measure, grouped};
+use crate::study::expectation::Axis;
 use oedometer_exact::reference::ReferenceKind;
 
 const QUESTION: Question = Question { heading: "Are the published equations right?", id: "audit" };
@@ -27,26 +29,24 @@ const MAPPING_BACK: &str = "The paper's step 5, mapping velocities back, needs a
 const SETTLEMENT: (Quantity, Sample) = (Quantity::Settlement, Sample::Surface);
 const PRESSURE: (Quantity, Sample) = (Quantity::Pressure, Sample::Points);
 
-/// One pairing of law and continuity by one method, from coarse to fine.
-struct Pairing<'a> {
-    law_and_continuity: (&'static str, &'static str),
-    levels: Vec<&'a Record>,
+/// Law and continuity of a pairing, in words.
+fn name_of(pairing: &Path<'_>) -> String {
+    let (law, continuity) = law_and_continuity(&pairing.records[0].case);
+    let mark = if is_printed(pairing) { " (as printed)" } else { "" };
+    format!("{law}, {continuity}{mark}")
 }
 
-impl Pairing<'_> {
-    fn name(&self) -> String {
-        let (law, continuity) = self.law_and_continuity;
-        let mark = if self.is_printed() { " (as printed)" } else { "" };
-        format!("{law}, {continuity}{mark}")
-    }
+fn law_and_continuity(case: &Case) -> (&'static str, &'static str) {
+    (case.material.law.name(), case.material.continuity.name())
+}
 
-    fn is_printed(&self) -> bool {
-        self.law_and_continuity == PRINTED
-    }
+fn is_printed(pairing: &Path<'_>) -> bool {
+    law_and_continuity(&pairing.records[0].case) == PRINTED
+}
 
-    fn on(&self, cells: usize) -> Option<&Record> {
-        self.levels.iter().copied().find(|record| record.case.cells == cells)
-    }
+/// The run of a pairing on a mesh.
+fn on<'a>(pairing: &Path<'a>, cells: usize) -> Option<&'a Record> {
+    pairing.records.iter().copied().find(|record| record.case.cells == cells)
 }
 
 /// The error of a quantity at a time, with its sign if it has one.
@@ -54,7 +54,7 @@ fn error(record: &Record, (quantity, sample): (Quantity, Sample), time: f64) -> 
     Some(first_measure(quantity, sample, ReferenceKind::XieLeo.name(), time).error(record)?.value)
 }
 
-/// What all pairings share: their finest common mesh, its times, and the time of the figure over the mesh.
+/// What is compared: the finest mesh of all pairings, its times, and the time of the figure over the mesh.
 struct Common {
     cells: usize,
     times: Vec<f64>,
@@ -63,47 +63,31 @@ struct Common {
 
 /// Settlement over time and pressure over the mesh, in a figure each, and which equations agree.
 pub fn answer(results: &[StudyResults<'_>]) -> Answer {
-    let audited = results.iter().filter_map(|one| {
-        let pairings = pairings(one.records);
+    let (one, (pairings, common)) = study_with_most(results, |one| {
+        let pairings = pairings(one);
         let common = common_of(&pairings)?;
-        Some((one, pairings, common))
-    });
-    // More pairings first, then more meshes and times.
-    let worth = |pairings: &[Pairing<'_>], common: &Common| {
-        let levels: usize = pairings.iter().map(|one| one.levels.len()).sum();
-        (pairings.len().min(4), levels * common.times.len())
-    };
-    let best = audited.max_by_key(|(_, pairings, common)| worth(pairings, common));
-    let (one, pairings, common) = best?;
+        // More pairings first, then more meshes and times.
+        let levels: usize = pairings.iter().map(|one| one.records.len()).sum();
+        Some(((pairings.len().min(4), levels * common.times.len()), (pairings, common)))
+    })?;
     let figures = vec![over_time(&pairings, &common), over_mesh(&pairings, &common)];
     let blocks = vec![Block::Figures(figures), Block::Paragraph(MAPPING_BACK.to_owned())];
     Some(QUESTION.told(&sentence(&pairings, &common), [one.study.name.as_str()], blocks))
 }
 
-/// The pairings of the method that has most of them.
-fn pairings(records: &[Record]) -> Vec<Pairing<'_>> {
-    let is_audited = |record: &&Record| {
-        record.status == Status::Ok
-            && record.case.scene.is_large_strain()
-            && record.references.iter().any(|used| used.name == ReferenceKind::XieLeo.name())
-    };
-    let audited = records.iter().filter(is_audited).map(|record| (what_is_shared(&record.case), record));
-    let groups = grouped(audited).into_iter().map(|(_, group)| pairings_of(group));
+/// Pairings of law and continuity from coarse to fine, of the method that has most of them.
+fn pairings<'a>(one: &StudyResults<'a>) -> Vec<Path<'a>> {
+    let audited = one.paths.along(Axis::Cells).iter().filter_map(|path| {
+        let mut path = path.clone();
+        path.records.retain(|record| {
+            record.status == Status::Ok
+                && record.case.scene.is_large_strain()
+                && record.references.iter().any(|used| used.name == ReferenceKind::XieLeo.name())
+        });
+        Some((what_is_shared(&path.records.first()?.case), path))
+    });
+    let groups = grouped(audited).into_iter().map(|(_, group)| group);
     groups.max_by_key(Vec::len).unwrap_or_default()
-}
-
-/// The pairings of records that differ in mesh, law and continuity alone, each with the run of most outputs on every mesh.
-fn pairings_of<'a>(group: Vec<&'a Record>) -> Vec<Pairing<'a>> {
-    let key = |record: &Record| (record.case.material.law.name(), record.case.material.continuity.name());
-    let pairing = |(law_and_continuity, records): (_, Vec<&'a Record>)| {
-        let outputs = |record: &Record| record.case.time_factors.len();
-        let on_each_mesh = grouped(records.into_iter().map(|record| (record.case.cells, record)));
-        let most = |own: Vec<_>| own.into_iter().reduce(|a, b| if outputs(b) > outputs(a) { b } else { a });
-        let mut levels: Vec<_> = on_each_mesh.into_iter().filter_map(|(_, own)| most(own)).collect();
-        levels.sort_by_key(|record| record.case.cells);
-        Pairing { law_and_continuity, levels }
-    };
-    grouped(group.into_iter().map(|record| (key(record), record))).into_iter().map(pairing).collect()
 }
 
 /// A number for all inputs but mesh, outputs, law and continuity.
@@ -117,30 +101,24 @@ fn what_is_shared(case: &Case) -> u64 {
     })
 }
 
-/// What several pairings share; `None` for a single one.
-fn common_of(pairings: &[Pairing<'_>]) -> Option<Common> {
+/// What is compared of several pairings; `None` for a single one.
+fn common_of(pairings: &[Path<'_>]) -> Option<Common> {
     let first = pairings.first().filter(|_| pairings.len() > 1)?;
-    let is_common = |record: &&&Record| pairings.iter().all(|one| one.on(record.case.cells).is_some());
-    let finest = first.levels.iter().filter(is_common).max_by_key(|record| record.case.cells)?;
-    let cells = finest.case.cells;
-    let has_all = |time: &f64| {
-        pairings
-            .iter()
-            .all(|one| one.on(cells).is_some_and(|record| error(record, SETTLEMENT, *time).is_some()))
-    };
-    let times: Vec<f64> = finest.case.time_factors.iter().copied().filter(has_all).collect();
+    let cells = pairings.iter().filter_map(|one| Some(one.records.last()?.case.cells)).min()?;
+    let times = on(first, cells)?.case.time_factors.iter().copied();
+    let times: Vec<f64> = times.filter(|time| *time > 0.0).collect();
     let middle = *times.get(times.len().saturating_sub(1) / 2)?;
     Some(Common { cells, times, middle })
 }
 
-/// The error of the settlement of a pairing at all common times.
-fn settlement(one: &Pairing<'_>, common: &Common) -> Vec<(f64, f64)> {
-    let Some(record) = one.on(common.cells) else { return Vec::new() };
+/// The error of the settlement of a pairing at all times.
+fn settlement(one: &Path<'_>, common: &Common) -> Vec<(f64, f64)> {
+    let Some(record) = on(one, common.cells) else { return Vec::new() };
     common.times.iter().filter_map(|time| Some((*time, error(record, SETTLEMENT, *time)?))).collect()
 }
 
 /// Which pairings are the wanted equations, and how far off the others are, the printed one first.
-fn sentence(pairings: &[Pairing<'_>], common: &Common) -> String {
+fn sentence(pairings: &[Path<'_>], common: &Common) -> String {
     let mut right = Vec::new();
     let mut wrong = Vec::new();
     for one in pairings {
@@ -148,11 +126,11 @@ fn sentence(pairings: &[Pairing<'_>], common: &Common) -> String {
         let Some((time, error)) = errors.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
         let percent = number::percent(error.abs());
         if error.abs() < AGREES {
-            right.push(format!("`{}` ({percent})", one.name()));
+            right.push(format!("`{}` ({percent})", name_of(one)));
         } else {
             let sign = if error > 0.0 { "+" } else { "−" };
-            let place = if one.is_printed() { 0 } else { wrong.len() };
-            wrong.insert(place, format!("`{}` ({sign}{percent} at T_v = {time})", one.name()));
+            let place = if is_printed(one) { 0 } else { wrong.len() };
+            wrong.insert(place, format!("`{}` ({sign}{percent} at T_v = {time})", name_of(one)));
         }
     }
     let (cells, limit) = (common.cells, number::percent(AGREES));
@@ -172,7 +150,7 @@ fn sentence(pairings: &[Pairing<'_>], common: &Common) -> String {
     }
 }
 
-fn over_time(pairings: &[Pairing<'_>], common: &Common) -> Figure {
+fn over_time(pairings: &[Path<'_>], common: &Common) -> Figure {
     let mut chart = Chart::new(
         "Settlement against Xie & Leo, over time",
         ChartAxis::log10("time factor T_v (–)"),
@@ -180,15 +158,15 @@ fn over_time(pairings: &[Pairing<'_>], common: &Common) -> Figure {
     );
     chart.size = Size::PANEL;
     chart.subtitle = Some(subtitle(pairings, &format!("{} cells", common.cells)));
-    chart.series.extend(pairings.iter().map(|one| Series::new(one.name(), settlement(one, common))));
+    chart.series.extend(pairings.iter().map(|one| Series::new(name_of(one), settlement(one, common))));
     chart.rules.push(Rule { at: 0.0, label: "Xie & Leo".to_owned() });
     let caption = "One line per pairing of law and continuity; zero is Xie & Leo's column.";
     Figure::new("readme-audit-settlement", chart, caption)
 }
 
-fn over_mesh(pairings: &[Pairing<'_>], common: &Common) -> Figure {
+fn over_mesh(pairings: &[Path<'_>], common: &Common) -> Figure {
     let ticks =
-        labels::ticks(pairings.iter().flat_map(|one| &one.levels).map(|record| record.case.cell_size()));
+        labels::ticks(pairings.iter().flat_map(|one| &one.records).map(|record| record.case.cell_size()));
     let mut chart = Chart::new(
         "Pressure against Xie & Leo, over the mesh",
         ChartAxis::log10("cell size h (m)").with_ticks(ticks),
@@ -200,11 +178,11 @@ fn over_mesh(pairings: &[Pairing<'_>], common: &Common) -> Figure {
     for one in pairings {
         let point =
             |record: &&Record| Some((record.case.cell_size(), error(record, PRESSURE, common.middle)?));
-        let points: Vec<(f64, f64)> = one.levels.iter().filter_map(point).collect();
+        let points: Vec<(f64, f64)> = one.records.iter().filter_map(point).collect();
         if let [coarse, _, .., fine] = points.as_slice() {
-            falls.push((coarse.1 / fine.1, one.name()));
+            falls.push((coarse.1 / fine.1, name_of(one)));
         }
-        chart.series.push(Series::new(one.name(), points));
+        chart.series.push(Series::new(name_of(one), points));
     }
     let steepest = falls.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
     chart.triangles.extend(steepest.map(|(_, beside)| SlopeTriangle { slope: 2.0, beside }));
@@ -214,7 +192,7 @@ fn over_mesh(pairings: &[Pairing<'_>], common: &Common) -> Figure {
 }
 
 /// The method, which all pairings share.
-fn subtitle(pairings: &[Pairing<'_>], at: &str) -> String {
-    let method = pairings.first().and_then(|one| one.levels.first()).map(|record| record.case.method);
+fn subtitle(pairings: &[Path<'_>], at: &str) -> String {
+    let method = pairings.first().and_then(|one| one.records.first()).map(|record| record.case.method);
     method.map_or_else(|| at.to_owned(), |method| format!("{method}, {at}"))
 }

@@ -1,116 +1,221 @@
-//! Does the method converge, and to what? One row per method, small strain and large strain side by side.
+//! Does the method converge, and to what? The meshes of one study at small strain and of one at large strain, a row for
+//! each method.
 
+use crate::case::Case;
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
-use crate::render::answers::regime::{MethodPath, Regime};
-use crate::render::answers::{Answer, Question, short};
+use crate::judge::paths::Path;
+use crate::measure::statistics::largest;
+use crate::render::answers::{Answer, Question, short, study_with_most};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::labels::{CONVERGENCE, QUOTED_CELLS, distinct, is_settled, order_or_class};
-use crate::render::report::{StudyResults, labels, refinement};
+use crate::render::report::labels::{
+    self, CONVERGENCE, QUOTED_CELLS, distinct, first_measure, grouped, is_settled, order_or_class,
+};
+use crate::render::report::{StudyResults, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use oedometer_convergence::Class;
+use crate::study::expectation::Axis;
+use oedometer_convergence::{Class, Classification};
+use oedometer_soil::elementary;
 
 const QUESTION: Question = Question { heading: "Does the method converge, and to what?", id: "converges" };
 
 /// Headings of the measures of [`CONVERGENCE`].
 const HEADINGS: [&str; 4] = ["p, points", "p, centres", "σ′, points", "settlement"];
 
+/// Methods of a study that are enough to compare.
+const ENOUGH_METHODS: usize = 3;
+
+/// What is measured: quantity and places.
+type Measured = (Quantity, Sample);
+
+/// Pressure and effective stress at the points, and settlement, with their words.
+const MAIN: [(&str, Measured); 3] = [
+    ("in the pressure at the points", (Quantity::Pressure, Sample::Points)),
+    ("in the effective stress", (Quantity::EffectiveStress, Sample::Points)),
+    ("in the settlement", (Quantity::Settlement, Sample::Surface)),
+];
+
+/// Methods that solved one column on several meshes, in one study.
+struct Refined<'a> {
+    results: &'a StudyResults<'a>,
+    /// The column's strain in words.
+    strain: &'static str,
+    /// Methods with their runs from coarse to fine.
+    methods: Vec<(String, Path<'a>)>,
+    time_factor: f64,
+    /// The solution of the scene's own equations.
+    reference: &'static str,
+}
+
+impl<'a> Refined<'a> {
+    /// The plain runs of a study in one dimension, on the column of the first of them.
+    fn of(results: &'a StudyResults<'a>, strain: &'static str, fits: impl Fn(&Case) -> bool) -> Option<Self> {
+        let mut paths = refinement::longest_paths(results, Axis::Cells);
+        paths.retain(|path| {
+            let case = &path.records[0].case;
+            case.column.dimensions == 1 && fits(case) && is_plain(case)
+        });
+        let first = paths.first()?.records[0];
+        paths.retain(|path| {
+            let case = &path.records[0].case;
+            case.column == first.case.column
+                && case.material == first.case.material
+                && case.points_per_cell == first.case.points_per_cell
+        });
+        let (time_factor, reference) =
+            (refinement::shown_time(&paths)?, results.study.references.first()?.name());
+        let mut refined = Self { results, strain, methods: Vec::new(), time_factor, reference };
+        let by_method =
+            grouped(paths.into_iter().map(|path| (path.records[0].case.method.to_string(), path)));
+        for (method, own) in by_method {
+            // Of several integrators the first with most orders that are settled.
+            let best =
+                own.into_iter().reduce(|a, b| if refined.worth(&b) > refined.worth(&a) { b } else { a });
+            refined.methods.extend(best.map(|path| (method, path)));
+        }
+        Some(refined)
+    }
+
+    /// How much a method's runs tell: whether the quoted mesh is among them, settled orders, levels.
+    fn worth(&self, path: &Path<'_>) -> (bool, usize, usize) {
+        let is_quoted = path.records.iter().any(|record| record.case.cells == QUOTED_CELLS);
+        let settled = CONVERGENCE.iter().filter(|measured| is_settled(self.found(path, **measured).class));
+        (is_quoted, settled.count(), path.records.len())
+    }
+
+    /// The method of the sentence: the paper's, or the first.
+    fn told(&self) -> &(String, Path<'a>) {
+        self.method(PAPERS).unwrap_or(&self.methods[0])
+    }
+
+    fn method(&self, name: &str) -> Option<&(String, Path<'a>)> {
+        self.methods.iter().find(|(method, _)| method == name)
+    }
+
+    fn found(&self, path: &Path<'_>, (quantity, sample): Measured) -> Classification {
+        path.summary(&first_measure(quantity, sample, self.reference, self.time_factor)).classification
+    }
+
+    /// A method's error on a mesh.
+    fn error(&self, path: &Path<'_>, (quantity, sample): Measured, cells: usize) -> Option<f64> {
+        let record = path.records.iter().find(|record| record.case.cells == cells)?;
+        let measure = first_measure(quantity, sample, self.reference, self.time_factor);
+        Some(measure.error(record)?.value.abs())
+    }
+
+    /// The finest mesh that all methods can have run.
+    fn finest_cells(&self) -> usize {
+        let finest = |(_, path): &(String, Path<'_>)| path.records.iter().map(|one| one.case.cells).max();
+        self.methods.iter().filter_map(finest).min().unwrap_or_default()
+    }
+
+    /// The largest of a method's main errors on that mesh; infinite where one is missing.
+    fn largest_error(&self, path: &Path<'_>) -> f64 {
+        let errors = MAIN.map(|(_, measured)| self.error(path, measured, self.finest_cells()));
+        errors.into_iter().collect::<Option<Vec<f64>>>().and_then(largest).unwrap_or(f64::INFINITY)
+    }
+}
+
+/// Whether a case is of the scene's own equations, on regular points, however it is integrated.
+fn is_plain(case: &Case) -> bool {
+    let variant = case.variant();
+    variant.is_empty() || variant.split(", ").all(|part| part.ends_with(" drag"))
+}
+
 /// Sentence, table and figure.
-pub fn answer(
-    results: &[StudyResults<'_>],
-    small: Option<&Regime<'_>>,
-    large: Option<&Regime<'_>>,
-) -> Answer {
-    let regimes: Vec<(&str, &Regime<'_>)> = [("small strain", small), ("large strain", large)]
-        .into_iter()
-        .filter_map(|(name, one)| Some((name, one?)))
-        .collect();
-    if regimes.is_empty() {
+pub fn answer(results: &[StudyResults<'_>]) -> Answer {
+    let is_small = |case: &Case| {
+        let scene = case.scene;
+        !scene.is_large_strain() && !scene.has_waves() && !scene.has_plane_fields() && scene.is_loaded()
+    };
+    let of = |strain, fits: &dyn Fn(&Case) -> bool| {
+        let most = study_with_most(results, |one| {
+            let refined = Refined::of(one, strain, fits)?;
+            let (method, path) = refined.told();
+            // A few methods make a comparison; of studies with more the first is as good.
+            let methods = refined.methods.len().min(ENOUGH_METHODS);
+            let worth = (method == PAPERS, refined.worth(path).0, methods);
+            Some((worth, refined))
+        });
+        most.map(|(_, refined)| refined)
+    };
+    let (small, large) =
+        (of("small strain", &is_small), of("large strain", &|case| case.scene.is_large_strain()));
+    let all: Vec<&Refined<'_>> = [&small, &large].into_iter().flatten().collect();
+    if all.is_empty() {
         return None;
     }
     // Beside the race and timed studies, which have sections of their own on what to take and what it costs.
     let is_alone = !results.iter().any(|one| one.study.is_race || one.study.timing_repeats > 1);
-    let sentences = regimes.iter().filter_map(|(name, regime)| {
+    let sentences = all.iter().map(|refined| {
         let advice =
-            if is_alone { better(regime).unwrap_or_default() + &cost(regime) } else { String::new() };
-        Some(sentence(name, regime)? + &advice)
+            if is_alone { better(refined).unwrap_or_default() + &cost(refined) } else { String::new() };
+        sentence(refined) + &advice
     });
-    let sentences: Vec<String> = sentences.collect();
-    let studies = regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.study));
-    let mut blocks = vec![Block::Table(short(table(&regimes), "in the studies"))];
-    blocks.extend(small.and_then(|regime| figure(results, regime)).map(Block::Figure));
-    Some(QUESTION.told(&sentences.join(" "), studies, blocks))
-}
-
-/// The method of the sentence.
-fn told<'r>(regime: &'r Regime<'_>) -> Option<&'r MethodPath<'r>> {
-    regime.method(PAPERS).or(regime.methods.first())
+    let sentences = sentences.collect::<Vec<_>>().join(" ");
+    let studies = all.iter().map(|refined| refined.results.study.name.as_str());
+    let mut blocks = vec![Block::Table(short(table(&all), "in the studies"))];
+    blocks.extend(small.as_ref().and_then(figure).map(Block::Figure));
+    Some(QUESTION.told(&sentences, studies, blocks))
 }
 
 /// What the paper's method, or the first of the methods, converges to and how fast; where an order is not settled, the
 /// class instead.
-fn sentence(name: &str, regime: &Regime<'_>) -> Option<String> {
-    let one = told(regime)?;
-    let of = [
-        ("in the pressure at the points", Quantity::Pressure, Sample::Points),
-        ("in the effective stress", Quantity::EffectiveStress, Sample::Points),
-        ("in the settlement", Quantity::Settlement, Sample::Surface),
-    ];
-    let found = of.map(|(words, quantity, sample)| {
-        let class = regime.summary(one, quantity, sample).classification;
+fn sentence(refined: &Refined<'_>) -> String {
+    let (method, path) = refined.told();
+    let found = MAIN.map(|(words, measured)| {
+        let class = refined.found(path, measured);
         let order = if class.order.is_some() { "order " } else { "" };
         (is_settled(class.class), format!("{order}{} {words}", order_or_class(&class)))
     });
-    let converges = found.iter().all(|(is_settled, _)| *is_settled);
-    let orders = found.map(|(_, words)| words).join(", ");
-    let whose = if one.method == PAPERS { ", the paper's method," } else { "" };
-    let strain = match regime.strain() {
-        Some(strain) if name == "large strain" => {
-            format!("At a final strain of {},", number::percent(strain))
-        }
-        _ => format!("At {name}"),
+    let does = if found.iter().all(|(is_settled, _)| *is_settled) {
+        format!("converges to {}", labels::solution(refined.reference))
+    } else {
+        format!("does not have a settled order against {} everywhere", labels::solution(refined.reference))
     };
-    let error = regime.error(one, Quantity::Pressure, Sample::Points, QUOTED_CELLS);
-    let error = error.map_or(String::new(), |error| {
+    let orders = found.map(|(_, words)| words).join(", ");
+    let whose = if method == PAPERS { ", the paper's method," } else { "" };
+    let case = &path.records[0].case;
+    let strain = if case.scene.is_large_strain() {
+        let strain = 1.0 - elementary::exp(-case.column.load / case.material.oedometric_modulus());
+        format!("At a final strain of {},", number::percent(strain))
+    } else {
+        format!("At {}", refined.strain)
+    };
+    let error = refined.error(path, MAIN[0].1, QUOTED_CELLS).map_or(String::new(), |error| {
         format!("; on {QUOTED_CELLS} cells the error of its pressure is {}", number::percent(error))
     });
-    let (method, solution) = (&one.method, labels::solution(regime.reference));
-    Some(if converges {
-        format!("{strain} `{method}`{whose} converges to {solution}: {orders}{error}.")
-    } else {
-        format!(
-            "{strain} `{method}`{whose} does not have a settled order against {solution} everywhere: {orders}{error}."
-        )
-    })
+    format!("{strain} `{method}`{whose} {does}: {orders}{error}.")
 }
 
 /// The method to take instead of the one of the sentence: where the largest of its errors is at most half as large.
-fn better(regime: &Regime<'_>) -> Option<String> {
-    let largest = |one| regime.largest_error(one).unwrap_or(f64::INFINITY);
-    let own = largest(told(regime)?);
-    let least = regime.methods.iter().min_by(|a, b| largest(a).total_cmp(&largest(b)))?;
+fn better(refined: &Refined<'_>) -> Option<String> {
+    let largest = |one: &(String, Path<'_>)| refined.largest_error(&one.1);
+    let own = largest(refined.told());
+    let least = refined.methods.iter().min_by(|a, b| largest(a).total_cmp(&largest(b)))?;
     let instead = Some(largest(least)).filter(|instead| 2.0 * instead <= own)?;
     let [instead, own] = [instead, own].map(number::percent);
-    let (method, cells) = (&least.method, regime.finest_cells);
     Some(format!(
-        " Take `{method}` instead: the largest of its errors on {cells} cells is {instead}, against {own}."
+        " Take `{}` instead: the largest of its errors on {} cells is {instead}, against {own}.",
+        least.0,
+        refined.finest_cells()
     ))
 }
 
 /// The coarsest meshes with a pressure error of 1 %, of studies that time nothing by repeats, and what these runs took.
-fn cost(regime: &Regime<'_>) -> String {
-    let within = regime.methods.iter().filter_map(|one| {
-        let is_within = |cells| Some(regime.error(one, Quantity::Pressure, Sample::Points, cells)? <= WITHIN);
+fn cost(refined: &Refined<'_>) -> String {
+    let within = refined.methods.iter().filter_map(|(method, path)| {
+        let is_within = |cells| Some(refined.error(path, MAIN[0].1, cells)? <= WITHIN);
         // From coarse to fine; single times are too rough to choose by.
-        let run = one.path.records.iter().find(|record| is_within(record.case.cells) == Some(true))?;
+        let run = path.records.iter().find(|record| is_within(record.case.cells) == Some(true))?;
         let seconds = run.wall.iter().map(|sample| sample.seconds).reduce(f64::min)?;
-        Some((seconds, format!("`{}` {} on {} cells", one.method, number::seconds(seconds), run.case.cells)))
+        Some((seconds, format!("`{method}` {} on {} cells", number::seconds(seconds), run.case.cells)))
     });
     let mut within: Vec<(f64, String)> = within.collect();
     within.sort_by(|a, b| a.0.total_cmp(&b.0));
     let ways = within.into_iter().map(|(_, way)| way).collect::<Vec<_>>().join(", ");
-    let (share, time) = (number::number(100.0 * WITHIN), regime.time_factor);
+    let (share, time) = (number::number(100.0 * WITHIN), refined.time_factor);
     match ways.as_str() {
         "" => format!(" No run has an error of the pressure below {share} % at T_v = {time}."),
         _ => format!(
@@ -122,63 +227,55 @@ fn cost(regime: &Regime<'_>) -> String {
 /// The error whose cost is told.
 const WITHIN: f64 = 0.01;
 
-fn table(regimes: &[(&str, &Regime<'_>)]) -> Table {
-    let all =
-        distinct(regimes.iter().flat_map(|(_, regime)| regime.methods.iter().map(|one| one.method.as_str())));
-    let mut ranked: Vec<&str> = all.clone();
-    // Methods that answer most come first, then those with the smaller error where it is hardest.
+fn table(all: &[&Refined<'_>]) -> Table {
+    let methods = all.iter().flat_map(|refined| refined.methods.iter().map(|(method, _)| method.as_str()));
+    let mut ranked = distinct(methods);
+    // The paper's method first, then those that answer most, then those with the smaller error where it is hardest.
     ranked.sort_by(|a, b| {
-        let tried = |name: &str| regimes.iter().filter(|(_, regime)| regime.method(name).is_some()).count();
+        let tried = |name: &str| all.iter().filter(|refined| refined.method(name).is_some()).count();
         let error = |name: &str| {
-            let last = regimes.iter().rev().find_map(|(_, regime)| Some((regime, regime.method(name)?)));
-            last.and_then(|(regime, one)| regime.largest_error(one)).unwrap_or(f64::INFINITY)
+            let last = all.iter().rev().find_map(|refined| Some((refined, refined.method(name)?)));
+            last.map_or(f64::INFINITY, |(refined, (_, path))| refined.largest_error(path))
         };
-        let is_papers = |name: &str| usize::from(name == PAPERS);
+        let is_papers = |name: &str| name == PAPERS;
         is_papers(b).cmp(&is_papers(a)).then(tried(b).cmp(&tried(a))).then(error(a).total_cmp(&error(b)))
     });
     let mut columns = columns("method");
-    for (name, _) in regimes {
-        let of = if regimes.len() > 1 { format!("{name}: ") } else { String::new() };
+    for refined in all {
+        let of = if all.len() > 1 { format!("{}: ", refined.strain) } else { String::new() };
         columns.extend(HEADINGS.map(|what| TableColumn::text(format!("{of}{what}"))));
     }
-    let rows = ranked.iter().map(|name| {
-        let mut row = vec![method_cell(name)];
-        for (_, regime) in regimes {
-            row.extend(CONVERGENCE.map(|(quantity, sample)| match regime.method(name) {
-                Some(one) => quote(regime, one, quantity, sample),
+    let rows = ranked.into_iter().map(|name| {
+        let method = if name == PAPERS {
+            Cell::Verdict(Mood::Note, format!("{name}, the paper's"))
+        } else {
+            Cell::Code(name.to_owned())
+        };
+        let cells = all.iter().flat_map(|refined| {
+            CONVERGENCE.map(|measured| match refined.method(name) {
+                Some((_, path)) => quote(refined, path, measured),
                 None => Cell::missing("not tried on this column with at least three meshes"),
-            }));
-        }
-        row
+            })
+        });
+        std::iter::once(method).chain(cells).collect()
     });
-    let at: Vec<String> = regimes
-        .iter()
-        .map(|(name, regime)| {
-            format!("{name}: T_v = {}, against {}", regime.time_factor, labels::solution(regime.reference))
-        })
-        .collect();
+    let at = all.iter().map(|refined| {
+        let solution = labels::solution(refined.reference);
+        format!("{}: T_v = {}, against {solution}", refined.strain, refined.time_factor)
+    });
     Table::of(format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"), columns, rows).note(
         format!(
             "{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement. {}",
-            at.join("; "),
+            at.collect::<Vec<_>>().join("; "),
             labels::CLASSES
         ),
     )
 }
 
-/// A method's name, with a mark at the paper's.
-fn method_cell(name: &str) -> Cell {
-    if name == PAPERS {
-        Cell::Verdict(Mood::Note, format!("{name}, the paper's"))
-    } else {
-        Cell::Code(name.to_owned())
-    }
-}
-
 /// Order and error in a few characters.
-fn quote(regime: &Regime<'_>, one: &MethodPath<'_>, quantity: Quantity, sample: Sample) -> Cell {
-    let found = regime.summary(one, quantity, sample).classification;
-    let words = labels::order_and_error(&found, regime.error(one, quantity, sample, QUOTED_CELLS));
+fn quote(refined: &Refined<'_>, path: &Path<'_>, measured: Measured) -> Cell {
+    let found = refined.found(path, measured);
+    let words = labels::order_and_error(&found, refined.error(path, measured, QUOTED_CELLS));
     match found.class {
         Class::Locked => Cell::Verdict(Mood::Fail, words),
         Class::NotEvaluable => Cell::missing("fewer than three meshes have this error"),
@@ -186,11 +283,10 @@ fn quote(regime: &Regime<'_>, one: &MethodPath<'_>, quantity: Quantity, sample: 
     }
 }
 
-/// The error of the pressure over the mesh, of the study that refines the paper's method.
-fn figure(results: &[StudyResults<'_>], regime: &Regime<'_>) -> Option<Figure> {
-    let study = told(regime)?.study;
-    let one = results.iter().find(|one| one.study.name == study)?;
-    let mut figure = refinement::mesh_figure(one, Quantity::Pressure, Sample::Points, regime.time_factor)?;
+/// The error of the pressure over the mesh.
+fn figure(refined: &Refined<'_>) -> Option<Figure> {
+    let (quantity, sample) = MAIN[0].1;
+    let mut figure = refinement::mesh_figure(refined.results, quantity, sample, refined.time_factor)?;
     "readme-mesh".clone_into(&mut figure.name);
     Some(figure)
 }

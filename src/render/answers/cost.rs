@@ -4,7 +4,7 @@
 use crate::case::contender::PAPERS;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
-use crate::render::answers::{Answer, Question, short};
+use crate::render::answers::{Answer, Question, short, study_with_most};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, cost};
@@ -13,11 +13,11 @@ const QUESTION: Question = Question { heading: "What does accuracy cost?", id: "
 
 /// Sentence, figure and the other programs.
 pub fn answer(results: &[StudyResults<'_>]) -> Answer {
-    let compared = results.iter().filter(|one| one.study.timing_repeats > 1).filter_map(|one| {
-        let precision = WorkPrecision::of(one.records, one.study.references.first()?.name())?;
-        Some((one, precision))
-    });
-    let (one, precision) = compared.max_by_key(|(_, precision)| precision.runs.len())?;
+    let (one, precision) = study_with_most(results, |one| {
+        let own = one.study.references.first().filter(|_| one.study.timing_repeats > 1)?;
+        let precision = WorkPrecision::of(one.records, own.name())?;
+        Some((precision.runs.len(), precision))
+    })?;
     let figure = Figure::new("readme-cost", cost::chart_of(&precision), cost::caption(&precision));
     let mut blocks = vec![Block::Figure(figure)];
     if peers::solve_their_column(&precision.runs) {

@@ -5,7 +5,6 @@ use crate::case::keys::{Key, Value};
 use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
 use crate::measure::record_checks::has_burst;
 use crate::render::answers::{Answer, Question, short};
-use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
@@ -41,7 +40,8 @@ fn compare(results: &[StudyResults<'_>], key: &Key) -> Answer {
             |place: usize| Cell::of(one.ratios.map(|all| all[place]), Cell::Number, "no pair has an error");
         vec![
             one.situation.name().into(),
-            one.method.map_or(Cell::Text(others(&told, one)), |method| Cell::Code(method.to_string())),
+            one.method
+                .map_or_else(|| Cell::Text(others(&told, one)), |method| Cell::Code(method.to_string())),
             Cell::Count(one.pairs as u64),
             ratio(0),
             ratio(1),
@@ -92,49 +92,34 @@ fn runs(count: usize) -> String {
     }
 }
 
-/// Ratios of errors this close to one are the same error.
-const ALIKE: f64 = 0.05;
+/// The least and the largest ratio, in words; `None` without any.
+fn range(ratios: impl Iterator<Item = f64> + Clone) -> Option<String> {
+    let ends = [ratios.clone().reduce(f64::min)?, ratios.reduce(f64::max)?];
+    let [least, most] = ends.map(|ratio| format!("{ratio:.2}"));
+    Some(if least == most { least } else { format!("{least} to {most}") })
+}
 
-/// Where the errors agree, where double-point MPM is better or worse, and what it costs.
+/// How far the errors of double-point MPM are from the others, how the runs ended, and what it costs.
 fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
     let pairs: usize = told.iter().map(|one| one.pairs).sum();
+    let errors = range(told.iter().filter_map(|one| one.ratios).flat_map(|[least, _, most]| [least, most]))
+        .map_or(String::new(), |ratios| format!(": double-point MPM has {ratios} times the error"));
+    let cost = range(told.iter().filter_map(|one| one.cost))
+        .map_or(String::new(), |ratios| format!(" A double-point run takes {ratios} times as long."));
     let failed = [0, 1].map(|side| told.iter().map(|one| one.failed[side]).sum::<usize>());
-    let mut parts: Vec<String> = Vec::new();
-    for one in told {
-        let Some([least, median, largest]) = one.ratios else { continue };
-        let off = (largest - 1.0).max(1.0 - least);
-        let method = one.method.map_or(others(told, one), |method| format!("`{method}`"));
-        let errors = if one.method.is_none() {
-            format!("the same error to within {:.0e}", off.max(1e-16))
-        } else if off <= ALIKE {
-            format!("the same error to within {}", number::percent(off))
-        } else {
-            let [least, median, largest] = [least, median, largest].map(|ratio| format!("{ratio:.2}"));
-            format!(
-                "double-point MPM has {median} times the error in the median, {least} to {largest} times in all"
-            )
-        };
-        parts.push(format!("“{}”, {method}: {errors}", one.situation.name()));
-    }
-    let costs: Vec<f64> = told.iter().filter_map(|one| one.cost).collect();
-    let cost = match (costs.iter().copied().reduce(f64::min), costs.iter().copied().reduce(f64::max)) {
-        (Some(least), Some(most)) => {
-            let [least, most] = [least, most].map(|ratio| format!("{ratio:.1}"));
-            let times = if least == most { least } else { format!("{least} to {most}") };
-            format!(" A double-point run takes {times} times as long.")
-        }
-        _ => String::new(),
-    };
     let ended = match failed {
-        [0, 0] => "All runs of the pairs reached their last output".to_owned(),
-        [single, _] => format!(
-            "{} and {} of the pairs ended before their last output",
+        [0, 0] => "All of them reached their last output".to_owned(),
+        [single, double] => format!(
+            "{} and {} of them ended before their last output",
             count_of(single, "single-point run", "single-point runs"),
-            runs(failed[1])
+            runs(double)
         ),
     };
-    let burst = runs(bursts);
-    format!("{pairs} pairs of runs: {}. {ended}; {burst} had a pressure burst.{cost}", parts.join("; "))
+    format!(
+        "{} that differ in the point sets alone{errors}. {ended}; {} had a pressure burst.{cost}",
+        count_of(pairs, "pair of runs", "pairs of runs"),
+        runs(bursts)
+    )
 }
 
 #[cfg(test)]
@@ -157,11 +142,9 @@ mod tests {
         let key = Key::named("points_per_cell", "sweep").expect("a key");
         let Some(section) = compare(&results, key) else { panic!("both are there") };
         let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("a sentence first") };
-        let start =
-            "2 pairs of runs: “Small strain, points out of place”, `GC-SRI-patch`: double-point MPM has ";
+        let start = "2 pairs of runs that differ in the point sets alone: double-point MPM has ";
         assert!(sentence.starts_with(start), "{sentence}");
-        let end =
-            "All runs of the pairs reached their last output; no double-point run had a pressure burst.";
+        let end = "All of them reached their last output; no double-point run had a pressure burst.";
         assert!(sentence.contains(end), "{sentence}");
         let dimensions = Key::named("dimensions", "column").expect("a key");
         assert!(compare(&results, dimensions).is_none());

@@ -10,7 +10,6 @@ mod double_point;
 mod locking;
 pub(crate) mod paper;
 mod race;
-mod regime;
 mod soil;
 mod time_step;
 
@@ -139,6 +138,16 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
 }
 
+/// The study that has most of what answers a question, the first of equals. The race has an answer of its own.
+fn study_with_most<'a, T, W: PartialOrd>(
+    results: &'a [StudyResults<'a>],
+    found: impl Fn(&'a StudyResults<'a>) -> Option<(W, T)>,
+) -> Option<(&'a StudyResults<'a>, T)> {
+    let studies = results.iter().filter(|one| !one.study.is_race);
+    let all = studies.filter_map(|one| found(one).map(|(worth, found)| (worth, (one, found))));
+    all.reduce(|most, next| if next.0 > most.0 { next } else { most }).map(|(_, found)| found)
+}
+
 /// Links to the pages of studies, each once, in running text.
 fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
     let links = distinct(studies).into_iter().map(|study| format!("[`{study}`]({})", page_of(study)));
@@ -151,11 +160,10 @@ fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
 /// When a reference refuses a case.
 pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let results = answers.results;
-    let (small, large) = (regime::small_strain(results), regime::large_strain(results));
     let all = [
         race::answer(answers.race),
         locking::answer(results)?,
-        converges::answer(results, small.as_ref(), large.as_ref()),
+        converges::answer(results),
         paper::answer(results)?,
         time_step::answer(results),
         soil::answer(results),

@@ -6,7 +6,7 @@ use crate::case::keys::{Key, Kind, Value};
 use crate::case::quantity::Quantity;
 use crate::judge::paths::{first_error, grouped};
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question, short};
+use crate::render::answers::{Answer, Question, short, study_with_most};
 use crate::render::page::Block;
 use crate::render::report::{StudyResults, setting};
 use crate::render::table::{Cell, Table, columns};
@@ -34,9 +34,10 @@ const COMPARED: [Compared; 3] = [
 
 /// The study that varies most keys of the soil; of a layer the section on locking says more.
 pub fn answer(results: &[StudyResults<'_>]) -> Answer {
-    let fits = |one: &&StudyResults<'_>| !one.study.is_race && !one.study.scene.shows_locking();
-    let studies = results.iter().filter(fits).map(|one| (one, varied(one.records)));
-    let (one, keys) = studies.reduce(|most, next| if next.1.len() > most.1.len() { next } else { most })?;
+    let (one, keys) = study_with_most(results, |one| {
+        let keys = varied(one.records);
+        (!one.study.scene.shows_locking()).then_some((keys.len(), keys))
+    })?;
     let reference = one.study.references.first()?.name();
     let told: Vec<String> = keys.iter().filter_map(|varied| sentence(varied, reference)).collect();
     if told.is_empty() {

@@ -3,7 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question, short};
+use crate::render::answers::{Answer, Question, short, study_with_most};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::StudyResults;
@@ -31,7 +31,6 @@ struct Row<'a> {
 
 /// A study along the step.
 struct Steps<'a> {
-    study: &'a str,
     reference: &'static str,
     time: f64,
     rows: Vec<Row<'a>>,
@@ -48,33 +47,21 @@ impl<'a> Steps<'a> {
         let labels = path_labels(&paths);
         let rows = paths.iter().zip(&labels.each);
         let rows: Vec<_> = rows.filter_map(|(path, label)| row(path, label, reference, time)).collect();
-        (!rows.is_empty()).then_some(Self {
-            study: &one.study.name,
-            reference,
-            time,
-            rows,
-            shared: labels.shared,
-        })
-    }
-
-    /// Rows with an order; what else there is counts less.
-    fn worth(&self) -> (usize, usize) {
-        (self.rows.iter().filter(|row| row.order.is_some()).count(), self.rows.len())
+        (!rows.is_empty()).then_some(Self { reference, time, rows, shared: labels.shared })
     }
 }
 
 /// The study that says the order in the step of most methods.
 pub fn answer(results: &[StudyResults<'_>]) -> Answer {
-    let studies = results.iter().filter(|one| !one.study.is_race).filter_map(Steps::of);
-    let steps = studies.reduce(|most, next| if next.worth() > most.worth() { next } else { most })?;
-    let sentence = sentence(&steps.rows, steps.time);
+    let (one, steps) = study_with_most(results, |one| {
+        let steps = Steps::of(one)?;
+        let with_order = steps.rows.iter().filter(|row| row.order.is_some()).count();
+        Some(((with_order, steps.rows.len()), steps))
+    })?;
     let table = table(&steps.rows, steps.reference, steps.time)
         .notes((!steps.shared.is_empty()).then(|| format!("all with {}", steps.shared)));
-    Some(QUESTION.told(
-        &sentence,
-        [steps.study],
-        vec![Block::Table(short(table, "on the page of the study"))],
-    ))
+    let blocks = vec![Block::Table(short(table, "on the page of the study"))];
+    Some(QUESTION.told(&sentence(&steps.rows, steps.time), [one.study.name.as_str()], blocks))
 }
 
 fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>> {
