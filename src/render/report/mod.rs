@@ -9,8 +9,6 @@ pub mod pages;
 pub mod race;
 pub(crate) mod refinement;
 pub(crate) mod setting;
-pub mod study_page;
-mod survival;
 pub(crate) mod theory_lines;
 
 use crate::case::planned::Tier;

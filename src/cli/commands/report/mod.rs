@@ -20,8 +20,7 @@ use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::{Answers, Making, answer_page};
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
-use crate::render::report::pages::index_page;
-use crate::render::report::study_page::study_page;
+use crate::render::report::pages::{index_page, study_page};
 
 use crate::render::report::{StudyResults, race};
 use crate::study::check::Study;
