@@ -43,4 +43,5 @@ mod tests {
     mod classes;
     mod known_truth;
     mod second_opinion;
+    mod whole_answers;
 }

@@ -8,36 +8,36 @@ use crate::series::ErrorSeries;
 use crate::uncertainty::{Behaviour, ValueSeries};
 use std::fmt::Write as _;
 
-const RATIOS: [f64; 6] = [1.2, 1.5, 2.0, 2.5, 3.0, 4.0];
+pub(super) const RATIOS: [f64; 6] = [1.2, 1.5, 2.0, 2.5, 3.0, 4.0];
 
 /// Series of a kind at each ratio.
 const TIMES: usize = 4;
 
 /// Numbers between two others, the same on every machine (the generator of Park & Miller 1988).
-struct Draw(u64);
+pub(super) struct Draw(pub u64);
 
 impl Draw {
-    fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
         self.0 = self.0 * 48_271 % 2_147_483_647;
         from + (to - from) * self.0 as f64 / 2_147_483_647.0
     }
 
-    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
+    pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.place(choices.len() as f64).min(choices.len() - 1)]
     }
 
     /// A whole number from 0 on, below another.
-    fn place(&mut self, below: f64) -> usize {
+    pub fn place(&mut self, below: f64) -> usize {
         let at = self.between(0.0, below);
         (1..u16::MAX).take_while(|number| f64::from(*number) <= at).count()
     }
 }
 
 /// A series with what is true of it.
-struct Known {
+pub(super) struct Known {
     /// Errors with their signs, coarse to fine.
-    points: Vec<(f64, f64)>,
-    formal: Option<f64>,
+    pub points: Vec<(f64, f64)>,
+    pub formal: Option<f64>,
     /// Classes that are right.
     right: &'static [Class],
     /// Where the class is asymptotic, the order that it must have, and within how much.
@@ -107,9 +107,9 @@ fn noisy(draw: &mut Draw, points: &mut [(f64, f64)], share: f64) {
 
 use Class::{Asymptotic, Contaminated, Divergent, FloorLimited, Oscillatory, PreAsymptotic, Superconvergent};
 
-type Kind = (&'static str, fn(&mut Draw, f64) -> Known);
+pub(super) type Kind = (&'static str, fn(&mut Draw, f64) -> Known);
 
-const KINDS: [Kind; 19] = [
+pub(super) const KINDS: [Kind; 19] = [
     ("one power, order known", |draw, ratio| {
         let p = draw.between(0.5, 4.0);
         let c = draw.between(0.1, 10.0);
