@@ -29,8 +29,6 @@ pub use steps::{Kind, Step, read_states, steps_of};
 use std::path::{Path, PathBuf};
 
 #[cfg(test)]
-mod edited_files;
-#[cfg(test)]
 mod tests;
 
 /// Longest reason in an error, bytes.

@@ -76,7 +76,7 @@ fn edits(text: &mut String, folder: &Path, name: &str, file: &str, edits: &[(&st
 
 fn assert_snapshot(name: &str, text: &str) {
     insta::with_settings!({
-        snapshot_path => "../../../golden/snapshots", prepend_module_to_snapshot => false, omit_expression => true
+        snapshot_path => "../../../../golden/snapshots", prepend_module_to_snapshot => false, omit_expression => true
     }, { insta::assert_snapshot!(name, text) });
 }
 
@@ -437,13 +437,15 @@ fn collections_with_one_edit() {
     assert_snapshot("formats_collections", &text);
 }
 
+/// A data set: its name and its shape.
+type Set = (&'static str, &'static [u64]);
+
 #[test]
 fn stores_are_read_by_time_by_name_and_by_shape() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("a.h5");
     let mut text = String::new();
     let numbers = |count: u32| (1..=count).map(|number| f64::from(number) + 0.25).collect::<Vec<f64>>();
-    type Set = (&'static str, &'static [u64]);
     let stores: [(&str, &[Set]); 6] = [
         (
             "by time",
