@@ -259,8 +259,12 @@ fn floor_found(band: FloorBand, series: &ErrorSeries, formal: Option<f64>, found
     }
     // A floor may bend the series without governing it yet.
     let floor = found.floor.as_ref().map_or_else(|| hidden_floor(series, formal), |floor| floor.value);
-    let limits = format!("{} … {}", short(band.above), short(band.below));
-    Check::compared("floor", band.contains(floor), floor, &format!("floor {}", short(floor)), IN, &limits)
+    let (words, limits) = if band.below == f64::MAX {
+        (["at least", "less than"], short(band.above))
+    } else {
+        (IN, format!("{} … {}", short(band.above), short(band.below)))
+    };
+    Check::compared("floor", band.contains(floor), floor, &format!("floor {}", short(floor)), words, &limits)
 }
 
 fn oscillation_found(bound: f64, oscillation: Option<f64>) -> Check {

@@ -6,7 +6,7 @@ use crate::judge::score::coverage::Bare;
 use crate::judge::score::score_series::time_factors;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
-use oedometer_soil::wording::{short, typed, words};
+use oedometer_soil::wording::{count_of, short, typed, words};
 
 /// Share of the height within which a sample lies on the surface or the base.
 const RIM: f64 = 1e-6;
@@ -231,10 +231,13 @@ impl Whole<'_> {
         let first = fewer.first()?;
         let more = match fewer.len() - 1 {
             0 => String::new(),
-            more => format!("; {more} more times have fewer samples than that"),
+            more => {
+                format!("; {} fewer samples than that", count_of(more, "more time has", "more times have"))
+            }
         };
-        let [few, many] = [*first, most].map(|state| (self.when(state), count(state)));
-        let sentence = format!("{} has {} samples, and {} has {}{more}", few.0, few.1, many.0, many.1);
+        let samples = count_of(count(first), "sample", "samples");
+        let [few, many] = [*first, most].map(|state| self.when(state));
+        let sentence = format!("{few} has {samples}, and {many} has {}{more}", count(most));
         Some(Finding::new(Lack::SamplesDiffer, sentence))
     }
 
