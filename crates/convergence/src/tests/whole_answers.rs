@@ -64,7 +64,7 @@ fn context(draw: &mut Draw, points: &[(f64, f64)], formal: Option<f64>) -> Conte
     match draw.place(9.0) {
         0 => context.round_off = Some(least * draw.one_of(&[0.5, 0.99, 1.5, 4.0])),
         1 => context.reference_accuracy = Some(least * draw.one_of(&[0.05, 0.099, 0.11, 0.7])),
-        2 => context.mobility = points.iter().map(|_| draw.one_of(&[0.1, 0.3, 0.49, 0.499, 0.51])).collect(),
+        2 => context.mobility = points.iter().map(|_| draw.one_of(&[0.1, 0.3, 0.499, 0.5])).collect(),
         3 | 4 => {
             for (kind, name) in [(LimiterKind::Step, "the step"), (LimiterKind::Model, "the water's storage")]
             {
@@ -74,8 +74,10 @@ fn context(draw: &mut Draw, points: &[(f64, f64)], formal: Option<f64>) -> Conte
                 context.limiters.push(Limiter { magnitude, order, ..Limiter::new(kind, name) });
             }
         }
-        5 => context.signed = points.iter().map(|point| point.1).collect(),
         _ => {}
+    }
+    if points.iter().any(|point| point.1 < 0.0) {
+        context.signed = points.iter().map(|point| point.1).collect();
     }
     context
 }
@@ -109,6 +111,49 @@ fn assert_snapshot(name: &str, text: &str) {
     }, { insta::assert_snapshot!(name, text) });
 }
 
+/// A power over floors of several heights, of which some have a known cause.
+fn floors(draw: &mut Draw, text: &mut String) {
+    *text += "floors and their causes\n";
+    for turn in 0..70 {
+        let (order, ratio) = (draw.one_of(&[0.6, 1.0, 1.5, 2.0, 3.0]), draw.one_of(&[1.5, 2.0, 3.0]));
+        let count = draw.one_of(&[4, 5, 6, 7]);
+        let (mut points, mut size) = (Vec::new(), 0.25);
+        let floor = draw.one_of(&[1e-4, 1e-3, 0.01, 0.03]) * if turn % 9 == 4 { -1.0 } else { 1.0 };
+        for _ in 0..count {
+            points.push((size, 0.4 * f64::powf(size, order) + floor));
+            size /= ratio;
+        }
+        let formal = draw.one_of(&[None, Some(order), Some(2.0)]);
+        let mut context = context(draw, &points, formal);
+        for kind in [LimiterKind::Step, LimiterKind::Mesh, LimiterKind::PointsPerCell, LimiterKind::Model] {
+            if draw.place(3.0) == 0 {
+                let magnitude =
+                    draw.one_of(&[None, Some(0.5 * floor.abs()), Some(floor.abs()), Some(2.1 * floor.abs())]);
+                let order = draw.one_of(&[None, Some(1.0), Some(2.0)]);
+                context.limiters.push(Limiter { magnitude, order, ..Limiter::new(kind, "something") });
+            }
+        }
+        line(text, &context, &points);
+    }
+}
+
+/// Errors that go up and down, a few of them equal.
+fn ups_and_downs(draw: &mut Draw, text: &mut String) {
+    *text += "ups and downs\n";
+    for _ in 0..40 {
+        let count = draw.one_of(&[3, 4, 5, 6]);
+        let factors = [0.5, 0.7, 1.0, 1.0, 1.3, 1.31, 1.5, 2.0];
+        let mut points = vec![(0.25, 0.3)];
+        for _ in 0..count {
+            let (size, error) = points[points.len() - 1];
+            points.push((0.5 * size, error * draw.one_of(&factors)));
+        }
+        let formal = draw.one_of(&[None, Some(1.0)]);
+        let context = context(draw, &points, formal);
+        line(text, &context, &points);
+    }
+}
+
 #[test]
 fn classes_of_series_are_told_with_their_numbers() {
     let mut draw = Draw(19_880_401);
@@ -128,7 +173,9 @@ fn classes_of_series_are_told_with_their_numbers() {
             if turn % 3 > 0 {
                 // Near a steady order the rules differ by little.
                 let (steady, by) = (draw.one_of(&ORDERS), draw.one_of(&[0.02, 0.06, 0.11, 0.2, 0.3]));
-                orders.iter_mut().for_each(|order| *order = steady + draw.between(-by, by));
+                for order in &mut orders {
+                    *order = steady + draw.between(-by, by);
+                }
             }
             let points = with_orders(&orders);
             let formal = draw.one_of(&[None, Some(1.0), Some(2.0)]);
@@ -136,6 +183,8 @@ fn classes_of_series_are_told_with_their_numbers() {
             line(&mut text, &context, &points);
         }
     }
+    floors(&mut draw, &mut text);
+    ups_and_downs(&mut draw, &mut text);
     assert_snapshot("convergence_classes", &text);
 }
 

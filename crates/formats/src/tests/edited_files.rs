@@ -228,6 +228,9 @@ fn legacy_files_with_one_edit() {
             ("level 1 2 int", "METADATA\nINFORMATION 0\n\nlevel 1 2 unsigned_char"),
             ("POINTS 4", "FIELD FieldData 2\nTIME 1 1 double\n7.25\nCYCLE 1 1 int\n3\nPOINTS 4"),
             ("7 8\n", "7 8"),
+            ("POINTS 4 float\n", "FIELD none 1\nx 3 4 float\n"),
+            ("CELLS 2 8\n3 0 1 2 3 0 2 3\nCELL_TYPES 2\n5 5\n", ""),
+            ("CELLS 2 8\n3 0 1 2 3 0 2 3\nCELL_TYPES 2\n5 5\n", "CELLS 0 0\nCELL_TYPES 0\n"),
         ],
     );
     assert_snapshot("formats_legacy_vtk", &text);
@@ -474,4 +477,57 @@ fn stores_are_read_by_time_by_name_and_by_shape() {
         writeln!(text, "{what}{}", told(&path)).expect("memory");
     }
     assert_snapshot("formats_hdf5", &text);
+}
+
+#[test]
+fn files_of_other_programs_are_read_as_they_were() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/foreign");
+    let names: BTreeSet<String> = [
+        "p",
+        "u",
+        "pressure",
+        "displacement",
+        "WATER_PRESSURE",
+        "DISPLACEMENT",
+        "coord_y",
+        "pore_pressures",
+        "position",
+    ]
+    .map(str::to_owned)
+    .into();
+    let mut text = String::new();
+    for name in [
+        "cb-geo/particles005.h5",
+        "cb-geo/pore_pressures005.vtp",
+        "geotaichi/particles/MPMParticle000001.npz",
+        "geotaichi/GraphicMPMParticle000001.vtu",
+        "kratos-mpm/column_0_2.vtk",
+        "kratos-mpm/binary_0_2.vtk",
+        "kratos-vtk/porous_computational_model_part_0_50.vtk",
+        "kratos-vtu/PorousDomain.porous_computational_model_part.vtm.series",
+        "ogs/col.pvd",
+        "ogs-xdmf/col_bulk.xdmf",
+        "porepy/col_2_000000.vtu",
+    ] {
+        writeln!(text, "## {name}").expect("memory");
+        let steps = steps_of(&folder.join(name), &mut Vec::new()).expect("states");
+        let taken = read_states(&steps[..steps.len().min(2)], Wanted(&names), &mut |step, frame| {
+            let (points, cells) = (frame.coordinates.len(), frame.cells.as_ref().map_or(0, Cells::count));
+            let ends = [frame.coordinates.first(), frame.coordinates.last()];
+            writeln!(text, "{:?} {:?} {points} points {ends:?}, {cells} cells", step.time, frame.time)
+                .expect("memory");
+            for array in &frame.arrays {
+                let ends = [array.values.first(), array.values.last()].map(Option::<&f64>::copied);
+                let sum: f64 = array.values.iter().sum();
+                let of =
+                    format!("{} on {} {} × {}", array.name, array.on.name(), array.tuples, array.components);
+                writeln!(text, "  {of}: {} numbers {ends:?}, sum {sum:.6e}", array.values.len())
+                    .expect("memory");
+            }
+            writeln!(text, "  notes {:?}", frame.notes).expect("memory");
+            Ok(())
+        });
+        taken.expect("they are read");
+    }
+    assert_snapshot("formats_foreign", &text);
 }
