@@ -170,6 +170,7 @@ fn tables_of_records_are_what_they_were() {
             record.wall =
                 vec![WallSample { seconds, cpu_seconds: Some(0.5 * seconds), ..WallSample::default() }];
             record.hash = "hash".to_owned();
+            record.provenance.sources = "sources".to_owned();
         }
         let rows: String = records.iter().map(|one| tidy::rows_of("the study", one).expect("rows")).collect();
         let rows: Vec<&str> = rows.lines().step_by(7).collect();

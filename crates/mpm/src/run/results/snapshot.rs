@@ -317,12 +317,11 @@ impl Means {
     }
 }
 
-/// Samples at places of given volumes, m^D, with what a function lists for them of what each point has.
-fn samples_of<const D: usize>(
-    points: &Points<D>,
-    volume: Vec<f64>,
-    list: &dyn Fn(&dyn Fn(usize) -> f64) -> Vec<f64>,
-) -> Samples {
+/// Lists for some places what each point has.
+type List<'a> = &'a dyn Fn(&dyn Fn(usize) -> f64) -> Vec<f64>;
+
+/// Samples at places of given volumes, m^D, with what is listed for them.
+fn samples_of<const D: usize>(points: &Points<D>, volume: Vec<f64>, list: List<'_>) -> Samples {
     Samples {
         initial_height: list(&|point| points.initial_position[point][D - 1]),
         volume,
