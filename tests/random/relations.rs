@@ -139,16 +139,7 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             is_small && bare && !yields && base.scene != "at-rest" && !has_weight
         }
         Relation::Layers => {
-            let height = base.number("column.height").unwrap_or(1.0);
-            // The stable step is of a formula for one soil, and of the step's own eigenvalues for layers.
-            take_seconds(&mut base, height);
-            other.time_step = base.time_step;
-            if base.scene == "terzaghi" {
-                other.scene = "layered";
-            }
-            let lower = rounded(height * numbers.between(0.1, 0.9));
-            let layers = format!("[{{thickness={lower:e}}},{{thickness={:e}}}]", height - lower);
-            other.set("column.soils", layers);
+            split_in_layers(&mut base, &mut other, numbers);
             let takes_layers = matches!(base.scene, "terzaghi" | "xie-leo");
             // A patch that keeps to the soil of its point keeps to the layer, whatever the soils are.
             let looks_across = !base.method.contains("patch-soils");
@@ -157,6 +148,19 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
         }
     };
     fits.then_some((base, other))
+}
+
+/// Makes two layers of the soil of a case, which takes the same steps.
+fn split_in_layers(base: &mut Options, other: &mut Options, numbers: &mut Numbers) {
+    let height = base.number("column.height").unwrap_or(1.0);
+    // The stable step is of a formula for one soil, and of the step's own eigenvalues for layers.
+    take_seconds(base, height);
+    other.time_step = base.time_step;
+    if base.scene == "terzaghi" {
+        other.scene = "layered";
+    }
+    let lower = rounded(height * numbers.between(0.1, 0.9));
+    other.set("column.soils", format!("[{{thickness={lower:e}}},{{thickness={:e}}}]", height - lower));
 }
 
 /// The pair that a relation makes of the case of a command.
