@@ -21,10 +21,10 @@ mod study_limits;
 mod whole_pages;
 mod whole_records;
 
-/// Holds a text against its snapshot in `golden/snapshots`.
+/// Holds a text against its snapshot in `tests/snapshots`.
 fn assert_snapshot(name: &str, text: &str) {
     insta::with_settings!({
-        snapshot_path => "../../golden/snapshots", prepend_module_to_snapshot => false, omit_expression => true
+        snapshot_path => "../../tests/snapshots", prepend_module_to_snapshot => false, omit_expression => true
     }, { insta::assert_snapshot!(name, text) });
 }
 

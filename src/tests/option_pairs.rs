@@ -330,7 +330,7 @@ fn the_pairs_of_options_that_no_case_has_are_known() {
         counts[1],
         counts[2]
     );
-    insta::with_settings!({ snapshot_path => "../../golden/snapshots", prepend_module_to_snapshot => false }, {
+    insta::with_settings!({ snapshot_path => "../../tests/snapshots", prepend_module_to_snapshot => false }, {
         insta::assert_snapshot!("option_pairs", told);
     });
 }

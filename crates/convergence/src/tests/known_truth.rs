@@ -278,7 +278,7 @@ fn series_of_known_truth_get_their_class() {
             write!(table, "{cell:>8}").expect("memory");
         }
     }
-    insta::with_settings!({ snapshot_path => "../../../../golden/snapshots", prepend_module_to_snapshot => false }, {
+    insta::with_settings!({ snapshot_path => "../../../../tests/snapshots", prepend_module_to_snapshot => false }, {
         insta::assert_snapshot!("known_truth", format!("{right} of {all} calls are right\n\n{table}\n{wrong}"));
     });
 }

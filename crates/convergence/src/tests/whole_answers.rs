@@ -107,7 +107,7 @@ fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
 
 fn assert_snapshot(name: &str, text: &str) {
     insta::with_settings!({
-        snapshot_path => "../../../../golden/snapshots", prepend_module_to_snapshot => false, omit_expression => true
+        snapshot_path => "../../../../tests/snapshots", prepend_module_to_snapshot => false, omit_expression => true
     }, { insta::assert_snapshot!(name, text) });
 }
 

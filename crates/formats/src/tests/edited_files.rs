@@ -76,7 +76,7 @@ fn edits(text: &mut String, folder: &Path, name: &str, file: &str, edits: &[(&st
 
 fn assert_snapshot(name: &str, text: &str) {
     insta::with_settings!({
-        snapshot_path => "../../../../golden/snapshots", prepend_module_to_snapshot => false, omit_expression => true
+        snapshot_path => "../../../../tests/snapshots", prepend_module_to_snapshot => false, omit_expression => true
     }, { insta::assert_snapshot!(name, text) });
 }
 
