@@ -133,9 +133,10 @@ pub fn answer(results: &[StudyResults<'_>]) -> Answer {
         let most = study_with_most(results, |one| {
             let refined = Refined::of(one, strain, fits)?;
             let (method, path) = refined.told();
-            // A few methods make a comparison; of studies with more the first is as good.
+            // A few methods make a comparison; of studies with more the one whose orders are settled tells most.
             let methods = refined.methods.len().min(ENOUGH_METHODS);
-            let worth = (method == PAPERS, refined.worth(path).0, methods);
+            let worth = refined.worth(path);
+            let worth = (method == PAPERS, worth.0, methods, worth);
             Some((worth, refined))
         });
         most.map(|(_, refined)| refined)
