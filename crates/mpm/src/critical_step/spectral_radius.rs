@@ -2,8 +2,6 @@
 
 use crate::assembled::step::AssembledStep;
 use crate::explicit::ExplicitSettings;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
 use nalgebra::DMatrix;
 use oedometer_soil::elementary;
 
@@ -25,8 +23,8 @@ const BISECTIONS: u32 = 24;
 /// eigenvalues that are exactly one.
 struct Powers {
     /// `A^m` over a norm, which is kept in `log_scale`.
-    power: Mat<f64>,
-    squared: Mat<f64>,
+    power: DMatrix<f64>,
+    squared: DMatrix<f64>,
     /// `ln(scale)/m`.
     log_scale: f64,
     /// `1/m`.
@@ -35,20 +33,17 @@ struct Powers {
 
 impl Powers {
     fn of(operator: &DMatrix<f64>) -> Self {
-        let (rows, columns) = operator.shape();
-        let power = MatRef::from_column_major_slice(operator.as_slice(), rows, columns).to_owned();
-        Self { squared: Mat::zeros(rows, columns), power, log_scale: 0.0, share: 1.0 }
+        Self { power: operator.clone(), squared: operator.clone(), log_scale: 0.0, share: 1.0 }
     }
 
     /// Upper bound of the spectral radius.
     fn most(&self) -> f64 {
-        self.bound(self.power.norm_l2())
+        self.bound(self.power.norm())
     }
 
     /// Lower bound of the spectral radius.
     fn least(&self) -> f64 {
-        let trace: f64 = (0..self.power.nrows()).map(|i| self.power[(i, i)]).sum();
-        self.bound(trace.abs() / self.power.nrows() as f64)
+        self.bound(self.power.trace().abs() / self.power.nrows() as f64)
     }
 
     fn bound(&self, size: f64) -> f64 {
@@ -57,14 +52,14 @@ impl Powers {
 
     /// Goes on to `A^(2m)`; false where that is zero or not finite.
     fn square(&mut self) -> bool {
-        let norm = self.power.norm_l2();
+        let norm = self.power.norm();
         if norm == 0.0 || !norm.is_finite() {
             return false;
         }
         self.log_scale += self.share * elementary::ln(norm);
         self.share *= 0.5;
         let scale = 1.0 / norm;
-        matmul(&mut self.squared, Accum::Replace, &self.power, &self.power, scale * scale, Par::Seq);
+        self.squared.gemm(scale * scale, &self.power, &self.power, 0.0);
         std::mem::swap(&mut self.power, &mut self.squared);
         true
     }

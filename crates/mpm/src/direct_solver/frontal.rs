@@ -1,24 +1,16 @@
-//! LU factorisation of a sparse matrix, front by front (Duff & Reid 1983), on faer's dense kernels.
+//! LU factorisation of a sparse matrix, front by front (Duff & Reid 1983).
 //!
 //! Unknowns are ordered by nested dissection of their places (George 1973): a set is cut across its longest direction, and
 //! those of the lower half that touch the upper half are its separator, eliminated after both halves. So a matrix of the
 //! plane fills in as `N log N`, and its factors cost `N^1.5`. A front gathers the rows and columns of the unknowns of a
 //! separator and what its halves left there, eliminates them with pivots among themselves, and leaves a Schur complement
 //! to the front above. The order of all sums is fixed: any number of threads gives the same bits.
-//!
-//! faer's own sparse LU was measured on a layer of 128 by 128 cells (49 152 unknowns) and not taken: it orders columns for
-//! any choice of pivots and needs 1.8 GB and several times the time; the fronts need 0.45 GB.
 
 use crate::direct_solver::Singular;
+use crate::direct_solver::dense::{factor_columns, solve_unit_lower, swap_rows};
 use crate::direct_solver::sparse_matrix::SparseMatrix;
 use crate::time_limit::TimeLimit;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use nalgebra::{DMatrix, DVectorViewMut};
 
 /// Unknowns of a set that is cut no further: a front of some hundred rows is as fast as two of half of them.
 const SMALLEST_SET: usize = 96;
@@ -50,12 +42,12 @@ struct Front {
     in_parent: Vec<usize>,
     /// Entries of the matrix that belong to it: row and column of the front, and number in the matrix.
     entries: Vec<[u32; 3]>,
-    /// Rows that it eliminates, `[count][count + boundary]`: `L` and `U` of the pivots, then the rest of `U`.
-    upper: Mat<f64>,
-    /// Rows of the boundary, `[boundary][count]`: the rest of `L`.
-    lower: Mat<f64>,
-    /// Row that each pivot was taken from, and the inverse.
-    pivots: [Vec<usize>; 2],
+    /// Columns that it eliminates, `[count + boundary][count]`: `L` and `U` of the pivots, below them the rest of `L`.
+    left: DMatrix<f64>,
+    /// The rest of `U`, `[count][boundary]`.
+    right: DMatrix<f64>,
+    /// How many rows below its own each pivot was found.
+    pivots: Vec<usize>,
 }
 
 impl FrontalLu {
@@ -132,9 +124,9 @@ fn dissect(set: Vec<usize>, matrix: &SparseMatrix, is_upper: &mut [bool], order:
         boundary: Vec::new(),
         in_parent: Vec::new(),
         entries: Vec::new(),
-        upper: Mat::new(),
-        lower: Mat::new(),
-        pivots: [vec![0; count], vec![0; count]],
+        left: DMatrix::zeros(0, 0),
+        right: DMatrix::zeros(0, 0),
+        pivots: vec![0; count],
     }
 }
 
@@ -187,8 +179,8 @@ impl Front {
             }
         }
         self.entries.shrink_to_fit();
-        self.upper = Mat::zeros(count, count + boundary.len());
-        self.lower = Mat::zeros(boundary.len(), count);
+        self.left = DMatrix::zeros(count + boundary.len(), count);
+        self.right = DMatrix::zeros(count, boundary.len());
     }
 
     /// Most unknowns that any front eliminates or has on its boundary.
@@ -201,7 +193,12 @@ impl Front {
     ///
     /// # Errors
     /// The place without a pivot, or at which the time was over.
-    fn factor(&mut self, entries: &[f64], time_limit: TimeLimit, threads: usize) -> Result<Mat<f64>, usize> {
+    fn factor(
+        &mut self,
+        entries: &[f64],
+        time_limit: TimeLimit,
+        threads: usize,
+    ) -> Result<DMatrix<f64>, usize> {
         let left = match &mut self.children[..] {
             [low, high] if threads > 1 => {
                 let (low, high) = std::thread::scope(|scope| {
@@ -224,34 +221,30 @@ impl Front {
     }
 
     /// Fills the front with its entries of the matrix and what its children left; the block of the boundary.
-    fn gather(&mut self, entries: &[f64], left: Vec<Mat<f64>>) -> Mat<f64> {
+    fn gather(&mut self, entries: &[f64], schur_complements: Vec<DMatrix<f64>>) -> DMatrix<f64> {
         let count = self.count;
-        self.upper.fill(0.0);
-        self.lower.fill(0.0);
-        let mut rest = Mat::zeros(self.boundary.len(), self.boundary.len());
+        self.left.fill(0.0);
+        self.right.fill(0.0);
+        let mut rest = DMatrix::zeros(self.boundary.len(), self.boundary.len());
         for entry in &self.entries {
             let [row, column, entry] = entry.map(|number| number as usize);
-            if row < count {
-                self.upper[(row, column)] += entries[entry];
-            } else {
-                self.lower[(row - count, column)] += entries[entry];
+            match column.checked_sub(count) {
+                None => self.left[(row, column)] += entries[entry],
+                Some(column) => self.right[(row, column)] += entries[entry],
             }
         }
-        for (child, left) in self.children.iter().zip(left) {
+        for (child, schur_complement) in self.children.iter().zip(schur_complements) {
             let rows = &child.in_parent;
-            let (rows_above, rows_below) = rows.split_at(rows.partition_point(|row| *row < count));
-            for (number, column) in rows.iter().enumerate() {
-                let (above, below) = left.col_as_slice(number).split_at(rows_above.len());
-                let own = self.upper.col_as_slice_mut(*column);
-                for (row, value) in rows_above.iter().zip(above) {
-                    own[*row] += value;
-                }
-                let own = match column.checked_sub(count) {
-                    None => self.lower.col_as_slice_mut(*column),
-                    Some(column) => rest.col_as_slice_mut(column),
-                };
-                for (row, value) in rows_below.iter().zip(below) {
-                    own[*row - count] += value;
+            let own_rows = rows.partition_point(|row| *row < count);
+            for (column, values) in rows.iter().zip(schur_complement.column_iter()) {
+                match column.checked_sub(count) {
+                    None => add_to_rows(column_of(&mut self.left, *column), rows, 0, values.as_slice()),
+                    Some(column) => {
+                        let (above, below) = values.as_slice().split_at(own_rows);
+                        let (rows_above, rows_below) = rows.split_at(own_rows);
+                        add_to_rows(column_of(&mut self.right, column), rows_above, 0, above);
+                        add_to_rows(column_of(&mut rest, column), rows_below, count, below);
+                    }
                 }
             }
         }
@@ -262,23 +255,21 @@ impl Front {
     ///
     /// # Errors
     /// The place without a pivot.
-    fn eliminate(&mut self, rest: &mut Mat<f64>) -> Result<(), usize> {
-        let (count, size) = (self.count, self.upper.ncols());
-        let [taken, inverse] = &mut self.pivots;
-        let room = lu_in_place_scratch::<usize, f64>(count, size, Par::Seq, faer::Spec::default());
-        let mut room = MemBuffer::new(room);
-        let stack = MemStack::new(&mut room);
-        lu_in_place(self.upper.as_mut(), taken, inverse, Par::Seq, stack, faer::Spec::default());
-        for column in 0..count {
-            let pivot = self.upper[(column, column)];
-            if pivot == 0.0 || !pivot.is_finite() {
-                return Err(self.first + column);
-            }
+    fn eliminate(&mut self, rest: &mut DMatrix<f64>) -> Result<(), usize> {
+        let count = self.count;
+        // Halves that do not touch each other have no separator.
+        if count == 0 {
+            return Ok(());
         }
-        let (pivots, right) = self.upper.as_ref().split_at_col(count);
-        // L U = A, solved as Uᵀ Lᵀ = Aᵀ.
-        solve_lower_triangular_in_place(pivots.transpose(), self.lower.as_mut().transpose_mut(), Par::Seq);
-        matmul(rest.as_mut(), Accum::Add, self.lower.as_ref(), right, -1.0, Par::Seq);
+        factor_columns(self.left.as_view_mut(), count, &mut self.pivots);
+        let is_pivot = |value: f64| value != 0.0 && value.is_finite();
+        if let Some(column) = (0..count).find(|column| !is_pivot(self.left[(*column, *column)])) {
+            return Err(self.first + column);
+        }
+        swap_rows(&mut self.right.as_view_mut(), &self.pivots);
+        let (own, below) = self.left.rows_range_pair(..count, count..);
+        solve_unit_lower(own, self.right.as_view_mut());
+        rest.gemm(-1.0, &below, &self.right, 1.0);
         Ok(())
     }
 
@@ -287,14 +278,18 @@ impl Front {
         for child in &self.children {
             child.go_forward(values, gathered);
         }
-        let own = &mut values[self.first..][..self.count];
-        for (gathered, row) in gathered.iter_mut().zip(&self.pivots[0]) {
-            *gathered = own[*row];
+        if self.count == 0 {
+            return;
         }
-        own.copy_from_slice(&gathered[..self.count]);
-        solve_unit_lower_triangular_in_place(self.pivot_block(), column(own), Par::Seq);
+        let own = &mut values[self.first..][..self.count];
+        for (row, below) in self.pivots.iter().enumerate() {
+            own.swap(row, row + below);
+        }
+        let mut own = DVectorViewMut::from_slice(own, self.count);
+        self.left.rows(0, self.count).solve_lower_triangular_with_diag_mut(&mut own, 1.0);
         let change = &mut gathered[..self.boundary.len()];
-        matmul(column(change), Accum::Replace, self.lower.as_ref(), column(own), 1.0, Par::Seq);
+        let below = self.left.rows_range(self.count..);
+        DVectorViewMut::from_slice(change, self.boundary.len()).gemv(1.0, &below, &own, 0.0);
         for (place, change) in self.boundary.iter().zip(change) {
             values[*place] -= *change;
         }
@@ -302,29 +297,37 @@ impl Front {
 
     /// `b ← U⁻¹ b`.
     fn go_back(&self, values: &mut [f64], gathered: &mut [f64]) {
-        let later = &mut gathered[..self.boundary.len()];
-        for (value, place) in later.iter_mut().zip(&self.boundary) {
-            *value = values[*place];
-        }
-        let own = &mut values[self.first..][..self.count];
-        let right = self.upper.subcols(self.count, self.boundary.len());
-        matmul(column(own), Accum::Add, right, column(later), -1.0, Par::Seq);
-        solve_upper_triangular_in_place(self.pivot_block(), column(own), Par::Seq);
+        self.go_back_in_own(values, gathered);
         for child in self.children.iter().rev() {
             child.go_back(values, gathered);
         }
     }
 
-    /// `L` and `U` of the pivots.
-    fn pivot_block(&self) -> MatRef<'_, f64> {
-        self.upper.subcols(0, self.count)
+    fn go_back_in_own(&self, values: &mut [f64], gathered: &mut [f64]) {
+        if self.count == 0 {
+            return;
+        }
+        let later = &mut gathered[..self.boundary.len()];
+        for (value, place) in later.iter_mut().zip(&self.boundary) {
+            *value = values[*place];
+        }
+        let mut own = DVectorViewMut::from_slice(&mut values[self.first..][..self.count], self.count);
+        own.gemv(-1.0, &self.right, &DVectorViewMut::from_slice(later, self.boundary.len()), 1.0);
+        self.left.rows(0, self.count).solve_upper_triangular_mut(&mut own);
     }
 }
 
-/// A slice as a matrix of one column.
-fn column(values: &mut [f64]) -> MatMut<'_, f64> {
-    let rows = values.len();
-    MatMut::from_column_major_slice_mut(values, rows, 1)
+/// A column of a matrix.
+fn column_of(matrix: &mut DMatrix<f64>, column: usize) -> &mut [f64] {
+    let rows = matrix.nrows();
+    &mut matrix.as_mut_slice()[column * rows..][..rows]
+}
+
+/// Adds values to rows of a column that begins at row `first`.
+fn add_to_rows(column: &mut [f64], rows: &[usize], first: usize, values: &[f64]) {
+    for (row, value) in rows.iter().zip(values) {
+        column[*row - first] += value;
+    }
 }
 
 /// A number of an entry in less room.

@@ -1,0 +1,114 @@
+//! LU factorisation of dense blocks in place, by halves (Toledo 1997): nearly all of the work is products of matrices.
+
+use nalgebra::{DMatrixView, DMatrixViewMut};
+
+/// Columns that are eliminated one by one: products of narrower matrices are slower.
+const NARROW: usize = 16;
+
+/// Replaces a tall matrix by `L` and `U` of its first rows, as many as columns, and the rest of `L` below. Pivots are taken
+/// among its first `pivot_rows` rows; `pivots` becomes how many rows below its own each was found. A column without a
+/// pivot has a zero on the diagonal.
+pub(crate) fn factor_columns(mut matrix: DMatrixViewMut<'_, f64>, pivot_rows: usize, pivots: &mut [usize]) {
+    let columns = matrix.ncols();
+    if columns <= NARROW {
+        eliminate_one_by_one(&mut matrix, pivot_rows, pivots);
+        return;
+    }
+    let half = columns / 2;
+    let (mut left, mut right) = matrix.columns_range_pair_mut(..half, half..);
+    let (first, second) = pivots.split_at_mut(half);
+    factor_columns(left.as_view_mut(), pivot_rows, first);
+    swap_rows(&mut right, first);
+    let (mut above, mut below) = right.rows_range_pair_mut(..half, half..);
+    solve_unit_lower(left.rows_range(..half), above.as_view_mut());
+    below.gemm(-1.0, &left.rows_range(half..), &above, 1.0);
+    factor_columns(below, pivot_rows - half, second);
+    swap_rows(&mut left.rows_range_mut(half..), second);
+}
+
+fn eliminate_one_by_one(matrix: &mut DMatrixViewMut<'_, f64>, pivot_rows: usize, pivots: &mut [usize]) {
+    for (place, below) in pivots.iter_mut().enumerate() {
+        *below = matrix.column(place).rows_range(place..pivot_rows).icamax();
+        matrix.swap_rows(place, place + *below);
+        let (mut done, mut later) = matrix.columns_range_pair_mut(..place + 1, place + 1..);
+        let pivot = done[(place, place)];
+        if pivot == 0.0 {
+            continue;
+        }
+        let mut factors = done.column_mut(place);
+        let mut factors = factors.rows_range_mut(place + 1..);
+        factors /= pivot;
+        for mut column in later.column_iter_mut() {
+            let own = column[place];
+            column.rows_range_mut(place + 1..).axpy(-own, &factors, 1.0);
+        }
+    }
+}
+
+/// Swaps rows of a matrix in the order of pivots.
+pub(crate) fn swap_rows(matrix: &mut DMatrixViewMut<'_, f64>, pivots: &[usize]) {
+    for (row, below) in pivots.iter().enumerate() {
+        matrix.swap_rows(row, row + below);
+    }
+}
+
+/// `B ← L⁻¹ B` for a lower triangle with ones on its diagonal.
+pub(crate) fn solve_unit_lower(lower: DMatrixView<'_, f64>, mut right: DMatrixViewMut<'_, f64>) {
+    let count = lower.nrows();
+    if count <= NARROW {
+        lower.solve_lower_triangular_with_diag_mut(&mut right, 1.0);
+        return;
+    }
+    let half = count / 2;
+    let (mut above, mut below) = right.rows_range_pair_mut(..half, half..);
+    let (upper_rows, lower_rows) = lower.rows_range_pair(..half, half..);
+    solve_unit_lower(upper_rows.columns_range(..half), above.as_view_mut());
+    let (left, corner) = lower_rows.columns_range_pair(..half, half..);
+    below.gemm(-1.0, &left, &above, 1.0);
+    solve_unit_lower(corner, below);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn factors_multiply_to_the_matrix_with_its_rows_swapped(
+            columns in 1..70usize, own_below in 0..5usize, below in 0..40usize, seed in 1..1_000_000_u32,
+        ) {
+            let (pivot_rows, rows) = (columns + own_below, columns + own_below + below);
+            let mut state = seed;
+            let matrix = DMatrix::from_fn(rows, columns, |_, _| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(state >> 8) / f64::from(1 << 23) - 1.0
+            });
+            let (mut factors, mut swapped, mut pivots) = (matrix.clone(), matrix, vec![0; columns]);
+            factor_columns(factors.as_view_mut(), pivot_rows, &mut pivots);
+            swap_rows(&mut swapped.as_view_mut(), &pivots);
+            let lower = DMatrix::from_fn(rows, columns, |row, column| match row.cmp(&column) {
+                std::cmp::Ordering::Less => 0.0,
+                std::cmp::Ordering::Equal => 1.0,
+                std::cmp::Ordering::Greater => factors[(row, column)],
+            });
+            prop_assert!(lower.rows(0, pivot_rows).amax() <= 1.0, "the largest of a column is its pivot");
+            let upper = factors.rows(0, columns).upper_triangle();
+            prop_assert!((&lower * upper - &swapped).amax() < 1e-12 * lower.amax().max(1.0).powi(2));
+            let mut right = swapped.clone();
+            solve_unit_lower(lower.rows(0, columns), right.rows_mut(0, columns));
+            prop_assert!((lower.rows(0, columns) * right.rows(0, columns) - swapped.rows(0, columns)).amax() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_column_without_a_pivot_has_a_zero_on_the_diagonal() {
+        for empty in [0, 7, 20, 39] {
+            let mut matrix = DMatrix::<f64>::identity(40, 40);
+            matrix[(empty, empty)] = 0.0;
+            factor_columns(matrix.as_view_mut(), 40, &mut [0; 40]);
+            assert_eq!((0..40).find(|place| matrix[(*place, *place)] == 0.0), Some(empty));
+        }
+    }
+}
