@@ -80,7 +80,12 @@ pub fn run(
     let campaign = Campaign::new(arguments, files, studies, tier, results)?;
     let scripts = Scripts::new(arguments, &campaign.list, &campaign.name)?;
     if arguments.dry_run {
-        print_data(&scripts.shown(&campaign.shares_to_run()))?;
+        let shares = campaign.shares_to_run();
+        if shares.is_empty() {
+            say!("{}: every case has its record: nothing would be submitted", campaign.name);
+        } else {
+            print_data(&scripts.shown(&shares))?;
+        }
         return Ok(Exit::Pass);
     }
     let folder = results.join(FOLDER);

@@ -240,6 +240,23 @@ mod tests {
     }
 
     #[test]
+    fn a_gap_at_an_end_is_held_against_the_spacing_at_that_end() {
+        // Cells that shrink by a third each towards the surface, without the last three rows.
+        let mut towards_surface = vec![0.0];
+        let mut cell = 1.0 / 3.0;
+        for _ in 0..12 {
+            towards_surface.push(towards_surface[towards_surface.len() - 1] + cell);
+            cell *= 2.0 / 3.0;
+        }
+        let extent = towards_surface[12];
+        let cut = &towards_surface[..10];
+        assert!(extent - cut[9] < towards_surface[1], "shorter than the spacing at the base");
+        assert_eq!(bare(cut, extent), Some(Bare { from: cut[9], to: extent }));
+        let towards_base: Vec<f64> = cut.iter().rev().map(|place| extent - place).collect();
+        assert_eq!(bare(&towards_base, extent), Some(Bare { from: 0.0, to: towards_base[0] }));
+    }
+
+    #[test]
     fn a_lattice_with_holes_is_told_from_elements_with_mid_side_nodes() {
         let lattice = |keep: &dyn Fn(usize, usize) -> bool| {
             let places = (0..21).flat_map(|i| (0..21).map(move |j| (i, j))).filter(|(i, j)| keep(*i, *j));

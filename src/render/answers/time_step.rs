@@ -157,3 +157,34 @@ fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
          neighbouring steps, on the finest {WINDOW}"
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::planned::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    #[test]
+    fn the_smallest_step_that_fails_is_the_one_named() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP-SRI']\n\
+                    integrator = ['implicit']\ncells = [5]\n\
+                    time_step = [{ seconds = 0.04 }, { seconds = 0.02 }, { seconds = 0.01 }, { seconds = 0.005 }]\n";
+        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+        let study = Study::check(&source).expect("a sound study");
+        let mut records = records_of(text);
+        for record in &mut records[..2] {
+            let (kind, reason) = (FailureKind::Unstable, "it grew".to_owned());
+            record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+        }
+        let results = [StudyResults::new(&study, &records, Tier::Full)];
+        let steps = Steps::of(&results[0]).expect("a study of the step");
+        let [row] = &steps.rows[..] else { panic!("one method") };
+        let step = |record: &Record| labels::step(record);
+        assert_eq!(row.unstable.map(step), Some(step(&records[1])));
+        assert_eq!([row.largest, row.smallest].map(step), [2, 3].map(|place| step(&records[place])));
+        assert!(sentence(&steps.rows, 0.1).contains(&format!("unstable from {} on", step(&records[1]))));
+    }
+}

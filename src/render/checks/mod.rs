@@ -53,6 +53,9 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
         for failure in failures_of(check).into_iter().flatten() {
             add("error", failure.line, failure.subject, &failure.sentence);
         }
+        for input in &check.inputs {
+            add("error", 1, "input changed", &input.sentence());
+        }
         match &check.golden {
             Err(error) => add("error", 1, "golden values", &error.to_string()),
             Ok(_) => {
@@ -115,12 +118,14 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             suite.add_test_case(TestCase::new(name, status(false, &failure.sentence)));
         }
         let (agrees, sentence) = match &check.golden {
-            Ok(differences) if differences.is_empty() => (true, String::new()),
             Ok(differences) => {
-                let groups: Vec<String> = check.groups.iter().map(sentence).collect();
-                let worst = differences.iter().take(MOST_NAMED).map(|one| one.name.as_str());
-                let worst = worst.collect::<Vec<_>>().join("; ");
-                (false, format!("{}. The worst: {worst}", groups.join(". ")))
+                let inputs = check.inputs.iter().map(|input| format!("input changed: {}", input.sentence()));
+                let mut sentences: Vec<String> = inputs.chain(check.groups.iter().map(sentence)).collect();
+                if !differences.is_empty() {
+                    let worst = differences.iter().take(MOST_NAMED).map(|one| one.name.as_str());
+                    sentences.push(format!("The worst: {}", worst.collect::<Vec<_>>().join("; ")));
+                }
+                (sentences.is_empty(), sentences.join(". "))
             }
             Err(error) => (false, error.to_string()),
         };
@@ -168,6 +173,7 @@ fn status(pass: bool, sentence: &str) -> TestCaseStatus {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::inputs::InputChange;
     use crate::judge::study_check::CaseNote;
 
     fn check(failures: usize) -> StudyCheck {
@@ -199,5 +205,22 @@ mod tests {
         assert!(lines[0].starts_with("::error file=studies/study.toml,line=1,title="));
         assert_eq!(lines[9], "::notice title=oedometer check::12 more: see the summary");
         assert!(annotations_of(&[StudyCheck { warnings: Vec::new(), ..check(0) }], |_| None).is_empty());
+    }
+    #[test]
+    fn a_changed_input_fails_in_every_form_although_no_value_moved() {
+        let changed = InputChange {
+            key: "material.youngs_modulus".to_owned(),
+            before: "1e6 Pa".to_owned(),
+            after: "1.1e6 Pa".to_owned(),
+            cases: 4,
+        };
+        let changed = StudyCheck { inputs: vec![changed], warnings: Vec::new(), ..check(0) };
+        let told = "material.youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases";
+        let lines = annotations_of(std::slice::from_ref(&changed), |_| None);
+        assert_eq!(lines, [format!("::error title=study%3A input changed::{told}")]);
+        let document = junit(&[changed]).unwrap();
+        assert!(document.contains(r#"tests="1" failures="1""#), "{document}");
+        assert!(document.contains("input changed: material.youngs_modulus 1e6 Pa"), "{document}");
+        assert!(junit(&[check(0)]).unwrap().contains(r#"tests="1" failures="0""#));
     }
 }

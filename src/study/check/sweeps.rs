@@ -435,6 +435,8 @@ mod tests {
         let mut uneven = sweep(&["cells", "time_step"]);
         uneven.keys[2].values.pop();
         assert_eq!(uneven.uneven_path(), Some(("time_step".to_owned(), 2, 3)));
+        uneven.path.reverse();
+        assert_eq!(uneven.uneven_path(), Some(("cells".to_owned(), 3, 2)), "the longer list second");
         assert_eq!(sweep(&["cells", "time_step"]).uneven_path(), None);
     }
 }
