@@ -46,7 +46,7 @@ const GROUPS: [Group; 5] = [
                 "score",
                 [
                     "score result.vtu --preset ogs --scene terzaghi",
-                    "score coarse.csv fine.csv --cells 10,20 --scene terzaghi --below 5e-3",
+                    "score a.csv b.csv --cells 10,20 --scene terzaghi --below 5e-3",
                 ],
             ),
             (
@@ -60,17 +60,14 @@ const GROUPS: [Group; 5] = [
         &[
             (
                 "compare",
-                [
-                    "compare HEAD~1 HEAD",
-                    "compare --commands './old {case} {out}' './new {case} {out}' gate.toml --allow-solvers",
-                ],
+                ["compare HEAD~1 HEAD", "compare --commands './a {case} {out}' './b {case} {out}' gate.toml"],
             ),
             ("history", ["history", "history terzaghi-mesh --format csv"]),
             (
                 "bisect",
                 [
                     "bisect studies/gate.toml --good v1.0 --bad HEAD --allow-solvers",
-                    "bisect gate --good v1.0 --bad HEAD --build 'make' --run './solver-study {out}'",
+                    "bisect gate --good v1.0 --bad HEAD --build make --run './run {out}'",
                 ],
             ),
         ],
@@ -174,6 +171,7 @@ mod tests {
         for (name, examples) in GROUPS.iter().flat_map(|(_, commands)| *commands) {
             for example in examples {
                 assert_eq!(example.split(' ').next(), Some(*name), "{example}");
+                assert!("  oedometer ".len() + example.len() <= 80, "{example}: would be broken in two");
                 let mut quoted = example.split(['"', '\'']);
                 let mut words = vec!["oedometer".to_owned()];
                 while let Some(bare) = quoted.next() {
