@@ -241,14 +241,14 @@ mod tests {
 
     #[test]
     fn a_gap_at_an_end_is_held_against_the_spacing_at_that_end() {
-        // Cells that shrink by a third each towards the surface, without the last three rows.
+        // Cells that shrink by a fifth each towards the surface, without the last four rows.
         let mut towards_surface = vec![0.0];
-        let mut cell = 1.0 / 3.0;
-        for _ in 0..12 {
+        let mut cell = 1.0;
+        for _ in 0..13 {
             towards_surface.push(towards_surface[towards_surface.len() - 1] + cell);
-            cell *= 2.0 / 3.0;
+            cell *= 0.8;
         }
-        let extent = towards_surface[12];
+        let extent = towards_surface[13];
         let cut = &towards_surface[..10];
         assert!(extent - cut[9] < towards_surface[1], "shorter than the spacing at the base");
         assert_eq!(bare(cut, extent), Some(Bare { from: cut[9], to: extent }));
