@@ -215,8 +215,8 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::case::quantity::Norm;
     use crate::case::quantity::Sample;
-    use crate::judge::paths::{first_norm, paths};
-    use oedometer_convergence::{Class, Classification};
+    use crate::judge::paths::{first_measure, first_norm, paths};
+    use oedometer_convergence::{Class, Classification, ErrorBound, OrderBand};
     use oedometer_mpm::run::integrator::IntegratorKind;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
@@ -312,5 +312,66 @@ mod tests {
         assert_eq!(orders("GIMP-SRI-patch"), [2.0, 1.0, 2.0, 2.0]);
         assert_eq!(orders("GC-SRI-patch"), [2.0, 2.0, 2.0, 2.0]);
         assert_eq!(orders("VP"), [2.0, 1.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn an_oscillation_is_that_of_the_level_that_is_named_and_else_of_the_finest() {
+        let mut runs = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
+             integrator = ['implicit']\ncells = [4, 8, 16]\npoints_per_cell = [2, 3, 4]\n",
+        );
+        // A saw of another height in each run.
+        for (number, run) in runs.iter_mut().enumerate() {
+            let height = 0.01 * (number + 1) as f64 * run.case.column.pressure_scale();
+            for (point, pressure) in run.snapshots[0].points.pressure.iter_mut().enumerate() {
+                *pressure += if point.is_multiple_of(2) { height } else { -height };
+            }
+        }
+        let measure = first_measure(Quantity::Pressure, Sample::Points, "terzaghi", 0.2);
+        for axis in [Axis::Cells, Axis::PointsPerCell] {
+            let all = paths(&runs, axis);
+            assert_eq!(all.len(), 3, "{axis:?}");
+            for path in &all {
+                let found = |size: Option<f64>| {
+                    let at = size.map(|size| ErrorBound { size, below: 1.0, above: 0.0 });
+                    let demand = SeriesDemand { at, oscillation_below: Some(1.0), ..SeriesDemand::default() };
+                    path.beside(&demand, &measure, None).oscillation
+                };
+                let own: Vec<Option<f64>> =
+                    path.records.iter().map(|record| oscillation_of(record, &measure)).collect();
+                assert!(own[0].is_some() && own[0] != own[1] && own[1] != own[2], "{axis:?}: {own:?}");
+                for (record, own) in path.records.iter().zip(&own) {
+                    assert_eq!(found(Some(level_size(record, axis))), *own, "{axis:?}");
+                }
+                assert_eq!(found(None), own[2], "{axis:?}");
+                let nothing = path.beside(&SeriesDemand::default(), &measure, None);
+                assert!(nothing.oscillation.is_none() && nothing.uncertainty.is_none());
+            }
+        }
+    }
+
+    #[test]
+    fn an_uncertainty_is_by_the_order_of_the_method_or_else_that_of_the_study() {
+        let mut runs = records("{ growth = 0.1 }", "[4, 8, 16]");
+        for (run, settlement) in runs.iter_mut().zip([1.0, 1.25, 1.28]) {
+            run.snapshots.iter_mut().for_each(|snapshot| snapshot.settlement = settlement);
+        }
+        let measure = first_measure(Quantity::Settlement, Sample::Surface, NO_REFERENCE, 0.2);
+        let path = &paths(&runs, Axis::Cells)[0];
+        let by = |order: f64| format!("{:?}", path.values(&measure).uncertainty(order));
+        assert!(by(1.0) != by(2.0) && by(2.0) != by(1.5) && by(1.0) != by(1.5), "{}", by(1.0));
+        for (formal, promised, order) in [
+            (Some(1.0), Some(1.5), 1.0),
+            (Some(1.5), None, 1.5),
+            (None, Some(1.5), 1.5),
+            (None, Some(1.0), 1.0),
+            (None, None, USUAL_ORDER),
+        ] {
+            let order_band = promised.map(|value| OrderBand { value, minus: 0.1, plus: 0.1 });
+            let demand =
+                SeriesDemand { order: order_band, uncertainty_below: Some(1.0), ..SeriesDemand::default() };
+            let found = path.beside(&demand, &measure, formal).uncertainty.expect("it is asked for");
+            assert_eq!(format!("{found:?}"), by(order), "{formal:?} {promised:?}");
+        }
     }
 }

@@ -173,3 +173,119 @@ fn level_of(study: &Study, one: &SeriesExpectation, size: f64) -> String {
         Axis::WaterBulkModulus => format!("water_bulk_modulus = {:?}", 1.0 / size),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{RunOptions, run_study};
+    use crate::judge::verdict::judge_study;
+    use crate::record::Record;
+    use crate::study::file::StudySource;
+
+    const HEAD: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n";
+
+    fn study_with(text: &str) -> Study {
+        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+        Study::check(&source).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    }
+
+    fn run(study: &Study, tier: Tier) -> Vec<Record> {
+        run_study(study, &RunOptions::whole(tier, 1), None, &|_| {}).records
+    }
+
+    /// The proposed lines of a study, and the study with them.
+    fn pasted(text: &str) -> (Vec<String>, Study) {
+        let study = study_with(text);
+        let records = run(&study, Tier::Full);
+        let proposed = proposals(&study, &StudyPaths::of(&records));
+        let whole = study_with(&format!("{text}\n{}", proposed.join("\n")));
+        (proposed, whole)
+    }
+
+    #[test]
+    fn what_needs_a_level_of_the_full_tier_is_expected_of_the_full_tier() {
+        for tiers in [
+            ["ci", "ci", "ci"],
+            ["smoke", "smoke", "smoke"],
+            ["full", "ci", "ci"],
+            ["ci", "full", "smoke"],
+            ["smoke", "ci", "full"],
+            ["full", "full", "full"],
+        ] {
+            let sweep = |(cells, tier): (u32, &str)| {
+                format!(
+                    "[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [{cells}]\ntier = '{tier}'\n"
+                )
+            };
+            let sweeps: String = [4, 8, 16].into_iter().zip(tiers).map(sweep).collect();
+            let (proposed, whole) = pasted(&(HEAD.to_owned() + &sweeps));
+            assert_eq!(proposed.len(), 1, "{tiers:?}: {proposed:?}");
+            let needs_all = tiers.contains(&"full");
+            assert_eq!(proposed[0].contains("tier = \"full\""), needs_all, "{tiers:?}: {proposed:?}");
+            for (tier, judged) in [(Tier::Ci, usize::from(!needs_all)), (Tier::Full, 1)] {
+                let judgements = judge_study(&whole, &run(&whole, tier), tier);
+                assert!(judgements.iter().all(|one| one.verdict.pass), "{tiers:?} {tier:?}: {judgements:?}");
+                assert_eq!(judgements.len(), judged, "{tiers:?} {tier:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_series_has_an_expectation_of_its_own_in_the_words_of_its_axis_and_inputs() {
+        let implicit = "integrator = ['implicit']\n";
+        let explicit = "integrator = ['explicit']\n";
+        for (swept, series, words) in [
+            (
+                format!("{implicit}cells = [4, 8, 16]\nporosity = [0.3, 0.4]"),
+                2,
+                ["method = \"MPM\"\n", "porosity = 0.4\n", "at = { cells = 16, below ="],
+            ),
+            (
+                format!("{implicit}cells = [4]\npoints_per_cell = [2, 3, 4]"),
+                1,
+                [
+                    "axis = \"points_per_cell\"\n",
+                    "sample = \"points\"\n",
+                    "at = { points_per_cell = 4, below =",
+                ],
+            ),
+            (
+                format!(
+                    "{implicit}cells = [4]\ntime_step = [{{ seconds = 20.0 }}, {{ seconds = 10.0 }}, {{ seconds = 5.0 }}]"
+                ),
+                1,
+                ["axis = \"time_step\"\n", "reference = \"next-finer\"\n", "at = { seconds = "],
+            ),
+            (
+                format!(
+                    "{implicit}cells = [2, 4, 8]\ntime_step = [{{ seconds = 20.0 }}, {{ growth = 0.1 }}]"
+                ),
+                2,
+                [
+                    "time_step = { seconds = 20.0 }\n",
+                    "time_step = { growth = 0.1 }\n",
+                    "at = { cells = 8, below =",
+                ],
+            ),
+            (
+                format!("{explicit}cells = [2, 4, 8]\ntime_step = [{{ stable = 0.5 }}, {{ courant = 0.2 }}]"),
+                2,
+                [
+                    "time_step = { stable = 0.5 }\n",
+                    "time_step = { courant = 0.2 }\n",
+                    "at = { cells = 8, below =",
+                ],
+            ),
+        ] {
+            let (proposed, whole) = pasted(&format!("{HEAD}[[sweep]]\nmethod = ['MPM']\n{swept}\n"));
+            assert_eq!(proposed.len(), series, "{swept}: {proposed:?}");
+            let all = proposed.join("\n");
+            for word in words {
+                assert!(all.contains(word), "{word}: {all}");
+            }
+            let judgements = judge_study(&whole, &run(&whole, Tier::Ci), Tier::Ci);
+            assert_eq!(judgements.len(), series, "each is of one series: {all}");
+            assert!(judgements.iter().all(|one| one.verdict.pass), "{judgements:?}");
+        }
+    }
+}

@@ -234,5 +234,86 @@ mod tests {
             assert_eq!(damped(&mut case, &times), most, "{times:?}");
             times.rotate_left(1);
         }
+        // Every rule has the steps that it means.
+        case.cells = 50;
+        let soil = case.material.clone();
+        let limit = formula::semi_implicit_limit(&soil, case.cell_size(), case.has_undamped_motions());
+        let crossing = case.cell_size() / formula::fastest_wave_speed(&soil, soil.porosity);
+        let mut by = |rule: TimeStepRule| {
+            case.time_step = rule;
+            damped(&mut case, &times)
+        };
+        for (rule, step) in
+            [(TimeStepRule::Stable(0.5), 0.5 * limit), (TimeStepRule::Courant(0.5), 0.5 * crossing)]
+        {
+            assert_eq!(by(rule), by(TimeStepRule::Seconds(step)));
+            assert!(by(rule) > by(TimeStepRule::Seconds(0.5 * step)), "{rule:?}");
+        }
+        for rule in [TimeStepRule::Growth(0.5), TimeStepRule::Tolerance(1e-3)] {
+            assert_eq!(by(rule), 0.0, "{rule:?} is not taken with these steps");
+        }
+    }
+
+    #[test]
+    fn waves_rule_out_a_case_that_leaves_out_or_damps_what_they_need() {
+        // Stiffness, height, and porosity each change the slowest wave.
+        for (porosity, height, stiffness) in
+            [(0.3, 1.0, 1e6), (0.5, 1.0, 1e6), (0.2, 1.0, 1e6), (0.3, 3.0, 1e6), (0.3, 1.0, 1e8)]
+        {
+            let mut case =
+                Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::DynamicColumn);
+            case.column.height = height;
+            case.column.loading_time = 0.0;
+            case.material.porosity = porosity;
+            case.material.youngs_modulus = stiffness;
+            case.material.poissons_ratio = 0.0;
+            case.material.water_bulk_modulus = 2e9;
+            case.material.grain_density = 2650.0;
+            case.material.water_density = 1000.0;
+            case.material.gravity = 9.81;
+            (case.integrator, case.formulation) = (IntegratorKind::Explicit, Formulation::UP);
+            case.time_factors = vec![0.0, 1e-3].into();
+            let density = (1.0 - porosity) * 2650.0 + porosity * 1000.0;
+            let speed: f64 = ((stiffness + 2e9 / porosity) / density).sqrt();
+            let frequency = 0.5 * std::f64::consts::PI / height * speed;
+            // `ω k/(n g)` at the limit.
+            let conductivity = 0.3 * porosity * 9.81 / frequency;
+            let rules = |change: &dyn Fn(&mut Case)| {
+                let mut case = case.clone();
+                change(&mut case);
+                inertia_rules(&case, ReferenceKind::Terzaghi).unwrap_or_default()
+            };
+            let open = |case: &mut Case| case.material.hydraulic_conductivity = 1.02 * conductivity;
+            let told = rules(&open);
+            assert!(
+                told.contains("the water's inertia against the skeleton is 3.1e-1 of its drag"),
+                "{told}"
+            );
+            let semi_implicit = |case: &mut Case, step: f64| {
+                open(case);
+                case.formulation = Formulation::VW;
+                case.integrator = IntegratorKind::SemiImplicit;
+                case.time_step = TimeStepRule::Seconds(step);
+                case.time_factors = vec![1.0 / (frequency * case.seconds_per_time_factor())].into();
+            };
+            // One radian of the wave: steps take `1 − exp(−ω Δt/2)` of it, and the drag a share that is small here.
+            for (what, found) in [
+                ("a tight soil", rules(&|case| case.material.hydraulic_conductivity = 0.98 * conductivity)),
+                (
+                    "the water's own inertia",
+                    rules(&|case| (open(case), case.formulation = Formulation::VW).1),
+                ),
+                ("no inertia", rules(&|case| (open(case), case.formulation = Formulation::QuasiStatic).1)),
+                ("the start alone", rules(&|case| (open(case), case.time_factors = vec![0.0].into()).1)),
+                ("a slow load", rules(&|case| (open(case), case.column.loading_time = 20.2 / frequency).1)),
+                ("short steps", rules(&|case| semi_implicit(case, 0.1 / frequency))),
+            ] {
+                assert_eq!(found, "", "{what}: {porosity} {height} {stiffness}");
+            }
+            let fast = rules(&|case| (open(case), case.column.loading_time = 19.8 / frequency).1);
+            assert_eq!(fast, told, "a load that is fast enough");
+            let damped = rules(&|case| semi_implicit(case, 1.0 / frequency));
+            assert!(damped.contains("semi-implicit steps damp 0."), "{damped}");
+        }
     }
 }

@@ -176,4 +176,23 @@ mod tests {
             assert!((noise_floor(&PairedRatio { ratios, interval }) - noise).abs() < 1e-12, "{interval:?}");
         }
     }
+
+    #[test]
+    fn the_interval_of_a_ratio_lies_between_ranks_that_are_as_far_from_either_end() {
+        for (count, low, high) in
+            [(6, 1, 6), (8, 1, 8), (9, 2, 8), (12, 3, 10), (15, 4, 12), (20, 6, 15), (50, 18, 33)]
+        {
+            let mut ratios: Vec<f64> = (1..=count).map(f64::from).collect();
+            // The order of the rounds does not count.
+            for _ in 0..3 {
+                ratios.rotate_left(2);
+                ratios.swap(0, 3);
+                let found = paired_ratio(&ratios, &vec![1.0; ratios.len()]).expect("times");
+                assert_eq!(found.interval, Some((f64::from(low), f64::from(high))), "{count}");
+                // Turned over, the fast one is the slow one.
+                let turned = paired_ratio(&vec![1.0; ratios.len()], &ratios).expect("times");
+                assert_eq!(turned.interval, Some((1.0 / f64::from(high), 1.0 / f64::from(low))), "{count}");
+            }
+        }
+    }
 }

@@ -338,15 +338,22 @@ mod tests {
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
 
-    /// A study whose error goes from one value to another.
-    fn study(name: &str, before: f64, after: Option<f64>) -> StudyComparison {
-        let state = |error: Option<f64>| {
-            let measure = |cells: u32| format!("GIMP cells={cells} | pressure points l2 terzaghi T_v=1");
-            let values = [Some((measure(4), 0.5)), error.map(|error| (measure(8), error))];
-            let values = values.into_iter().flatten().collect();
+    /// A study whose errors, one a mesh, go from these values to others.
+    fn meshes<const N: usize>(name: &str, states: [[Option<f64>; N]; 2]) -> StudyComparison {
+        let state = |errors: [Option<f64>; N]| {
+            let measure =
+                |mesh: usize| format!("GIMP cells={} | pressure points l2 terzaghi T_v=1", 4 << mesh);
+            let value = |(mesh, error): (usize, Option<f64>)| Some((measure(mesh), error?));
+            let values = errors.into_iter().enumerate().filter_map(value).collect();
             StudyState::of_golden(GoldenFile { values, ..GoldenFile::of(name, &[], "-") })
         };
-        StudyComparison::of(name, &state(Some(before)), &state(after))
+        let [before, after] = states.map(state);
+        StudyComparison::of(name, &before, &after)
+    }
+
+    /// A study whose error on the second mesh goes from one value to another.
+    fn study(name: &str, before: f64, after: Option<f64>) -> StudyComparison {
+        meshes(name, [Some(before), after].map(|error| [Some(0.5), error]))
     }
 
     #[test]
@@ -354,7 +361,10 @@ mod tests {
         let mut found: Vec<StudyComparison> =
             (0..=MOST_SAME).map(|one| study(&format!("a{one}"), 0.2, Some(0.2))).collect();
         found.push(study("better", 0.2, Some(0.1)));
+        found.push(meshes("new", [None, Some(0.2)].map(|error| [Some(0.5), error])));
         found.push(study("gone", 0.2, None));
+        let states = [[Some(0.5), Some(0.3), None, None], [Some(0.6), None, Some(0.2), Some(0.1)]];
+        found.push(meshes("all-kinds", states));
         found.push(study("much-worse", 0.2, Some(0.4)));
         found.push(study("worse", 0.2, Some(0.3)));
         let rows = |table: &Table| -> Vec<String> {
@@ -362,16 +372,14 @@ mod tests {
         };
         let tables = comparison_tables(&found, ["A", "B"]);
         let told = rows(&tables[0]);
-        let names = ["much-worse", "worse", "gone", "better"];
+        let names = ["much-worse", "worse", "all-kinds", "gone", "better", "new"];
         assert_eq!(told.len(), names.len(), "{told:?}");
         for (row, name) in told.iter().zip(names) {
             assert!(row.contains(&format!("Code(\"{name}\")")), "{name}: {told:?}");
         }
-        assert!(told[2].contains("Count(1)"), "one value is gone: {told:?}");
         // In both, moved, gone, new.
-        for (row, counts) in
-            tables[0].rows.iter().zip([[2, 1, 0, 0], [2, 1, 0, 0], [1, 0, 1, 0], [2, 1, 0, 0]])
-        {
+        let counts = [[2, 1, 0, 0], [2, 1, 0, 0], [1, 1, 1, 2], [1, 0, 1, 0], [2, 1, 0, 0], [1, 0, 0, 1]];
+        for (row, counts) in tables[0].rows.iter().zip(counts) {
             assert_eq!(format!("{:?}", &row[3..7]), format!("{:?}", counts.map(Cell::Count)));
         }
         assert!(tables[0].notes.iter().any(|note| note.starts_with("11 studies are the same: a0, a1")));

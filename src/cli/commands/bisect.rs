@@ -6,7 +6,6 @@
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{print_data, say};
 use crate::golden::compare::{Change, Difference, compare, groups_of};
-use crate::golden::{is_counter, parts};
 use crate::history::repository::{Commit, Repository};
 use crate::history::state::{State, StudyState};
 use crate::render::tables::golden_changes::sentence;
@@ -123,9 +122,7 @@ fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
     let both = |one: &Difference| one.golden.is_some() && one.found.is_some();
     let moved: Vec<Difference> =
         compare(&right.golden, &wrong.golden.values).into_iter().filter(both).collect();
-    let is_worse = |one: &&Difference| {
-        if is_counter(parts(&one.name).1) { one.found > one.golden } else { one.change == Change::Moved }
-    };
+    let is_worse = |one: &&Difference| one.change == Change::Moved;
     let worse: Vec<Difference> = moved.iter().filter(is_worse).cloned().collect();
     if worse.is_empty() { moved } else { worse }
 }
@@ -293,5 +290,52 @@ mod tests {
         }
         let none = StudyState::of_golden(GoldenFile::of("s", &[], "-"));
         assert_eq!(moved_like(&state(0.1), &none, &moved_values(&state(0.1), &state(0.2))), None);
+    }
+
+    #[test]
+    fn a_commit_is_bad_where_any_of_the_values_that_got_worse_has_moved() {
+        let names = [NAME, "b | pressure T_v=0.1", "a | steps", "b | point updates"];
+        let states = |values: [Option<f64>; 4]| {
+            let values =
+                names.iter().zip(values).filter_map(|(name, value)| Some(((*name).to_owned(), value?)));
+            StudyState::of_golden(GoldenFile { values: values.collect(), ..GoldenFile::of("s", &[], "-") })
+        };
+        let of = |values: [f64; 4]| states(values.map(Some));
+        let right = [0.1, 0.2, 100.0, 200.0];
+        let sought = |wrong: [f64; 4]| -> Vec<String> {
+            moved_values(&of(right), &of(wrong)).into_iter().map(|one| one.name).collect()
+        };
+        let mut all = sought([0.15, 0.3, 110.0, 210.0]);
+        all.sort();
+        assert_eq!(all, [names[0], names[2], names[3], names[1]]);
+        // What got better is sought only where nothing got worse.
+        for (wrong, place) in [
+            ([0.15, 0.1, 90.0, 190.0], 0),
+            ([0.05, 0.3, 90.0, 190.0], 1),
+            ([0.05, 0.1, 110.0, 190.0], 2),
+            ([0.05, 0.1, 90.0, 210.0], 3),
+        ] {
+            assert_eq!(sought(wrong), [names[place]], "{wrong:?}");
+        }
+        assert_eq!(sought([0.05, 0.1, 90.0, 190.0]).len(), 4);
+        let wrong = [0.15, 0.3, 110.0, 210.0];
+        let moved = moved_values(&of(right), &of(wrong));
+        // Which of the values have moved, and which are there at all.
+        for number in 0..16_usize {
+            let has = |place: usize| number >> place & 1 == 1;
+            let here = std::array::from_fn(|place| if has(place) { wrong[place] } else { right[place] });
+            assert_eq!(moved_like(&of(right), &of(here), &moved), Some(number > 0), "{here:?}");
+            let only = |bad: bool| {
+                let from = if bad { wrong } else { right };
+                let there = std::array::from_fn(|place| has(place).then_some(from[place]));
+                moved_like(&of(right), &states(there), &moved)
+            };
+            let (none, some) = (number == 0, number > 0);
+            assert_eq!(
+                [only(true), only(false)],
+                [some.then_some(true), (!none).then_some(false)],
+                "{number}"
+            );
+        }
     }
 }

@@ -274,4 +274,54 @@ time_step = [{ growth = 0.005 }]
         assert_eq!(soils[1].broken, ["GC-SRI-patch implicit"]);
         assert!(mapped_soils(&records[..1], "terzaghi").is_empty(), "one soil is no map");
     }
+
+    #[test]
+    fn the_worst_error_is_that_of_all_later_outputs_and_none_where_one_is_missing() {
+        let record = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0, 0.05, 0.1, 0.2]\n[[sweep]]\n\
+             method = ['MPM']\nintegrator = ['implicit']\ncells = [5]\ntime_step = [{ growth = 0.2 }]\n",
+        )
+        .remove(0);
+        let times = [0.0, 0.05, 0.1, 0.2];
+        let with = |errors: [Option<f64>; 4]| {
+            let (mut record, sample) = (record.clone(), record.main_sample());
+            record.errors.retain_mut(|row| {
+                let is_asked = (row.quantity, row.sample, row.reference.as_str())
+                    == (Quantity::Pressure, sample, "terzaghi");
+                let given =
+                    errors[times.iter().position(|time| *time == row.time_factor).expect("an output")];
+                row.value = given.filter(|_| is_asked).unwrap_or(row.value);
+                !is_asked || given.is_some()
+            });
+            record
+        };
+        let worst = |errors: [Option<f64>; 4]| worst_error(&with(errors), "terzaghi");
+        // The undrained start does not count.
+        let plain = [Some(9.0), Some(0.01), Some(-0.02), Some(0.015)];
+        assert_eq!(worst(plain), Some(0.02));
+        assert_eq!(worst([None, plain[1], plain[2], plain[3]]), Some(0.02));
+        assert_eq!(worst_error(&with(plain), "another"), None);
+        for place in 1..4 {
+            let changed = |error: Option<f64>| {
+                let mut errors = plain;
+                errors[place] = error;
+                errors
+            };
+            assert_eq!([Some(0.5), Some(-0.5)].map(|error| worst(changed(error))), [Some(0.5); 2]);
+            assert!(worst(changed(Some(f64::NAN))).is_some_and(f64::is_nan), "{place}");
+            assert_eq!(worst(changed(None)), None, "{place}");
+            // Such a run is no way to a tolerance, and takes no part in a comparison.
+            let mut runs = [plain, plain, changed(None)].map(with);
+            for run in &mut runs {
+                run.wall = vec![WallSample { seconds: 1.0, alone: true, ..WallSample::default() }; 2];
+            }
+            let precision = WorkPrecision::of(&runs, "terzaghi").expect("two timed runs");
+            assert_eq!(precision.runs.len(), 2, "{place}");
+            let wide = [Some(9.0), Some(1e-3), Some(1e-3), Some(1e-3)];
+            let mut missing = wide;
+            missing[place] = None;
+            let found = [wide, missing].map(|errors| ways(&[&with(errors)], "terzaghi").len());
+            assert_eq!(found, [1, 0], "{place}");
+        }
+    }
 }

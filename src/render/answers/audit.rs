@@ -122,8 +122,13 @@ fn sentence(pairings: &[Path<'_>], common: &Common) -> String {
     let mut right = Vec::new();
     let mut wrong = Vec::new();
     for one in pairings {
-        let errors = settlement(one, common).into_iter();
-        let Some((time, error)) = errors.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
+        let errors = settlement(one, common);
+        // What has no error at one of the times agrees at every time with nothing.
+        if errors.len() < common.times.len() {
+            continue;
+        }
+        let worst = errors.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let Some((time, error)) = worst else { continue };
         let percent = number::percent(error.abs());
         if error.abs() < AGREES {
             right.push(format!("`{}` ({percent})", name_of(one)));
@@ -195,4 +200,81 @@ fn over_mesh(pairings: &[Path<'_>], common: &Common) -> Figure {
 fn subtitle(pairings: &[Path<'_>], at: &str) -> String {
     let method = pairings.first().and_then(|one| one.records.first()).map(|record| record.case.method);
     method.map_or_else(|| at.to_owned(), |method| format!("{method}, {at}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::judge::paths::paths;
+
+    const TIMES: [f64; 3] = [0.1, 0.5, 1.0];
+
+    #[test]
+    fn equations_are_judged_by_their_largest_error_of_either_sign_at_any_time() {
+        let runs = records_of(
+            "title = 't'\nscene = 'xie-leo'\noutput.time_factors = [0.1, 0.5, 1.0]\n[[sweep]]\n\
+             method = ['TL-GIMP-SRI-patch']\nlaw = ['log-linear', 'porosity-dependent']\n\
+             continuity = ['conservative', 'constant-porosity-gradient']\nintegrator = ['implicit']\ncells = [2, 4]\n\
+             time_step = [{ growth = 0.5 }]\n",
+        );
+        let common = Common { cells: 4, times: TIMES.to_vec(), middle: 0.5 };
+        // Settlement errors of each pairing on the finer mesh; none is taken away.
+        let told = |errors: [[Option<f64>; 3]; 4]| {
+            let mut records = runs.clone();
+            let finer = records.iter_mut().filter(|record| record.case.cells == 4);
+            for (record, errors) in finer.zip(errors) {
+                record.errors.retain_mut(|row| {
+                    let place = TIMES.iter().position(|time| *time == row.time_factor).expect("an output");
+                    let is_settlement = row.quantity == Quantity::Settlement;
+                    row.value = errors[place].filter(|_| is_settlement).unwrap_or(row.value);
+                    !is_settlement || errors[place].is_some()
+                });
+            }
+            let pairings = paths(&records, Axis::Cells);
+            assert_eq!(pairings.len(), 4);
+            sentence(&pairings, &common)
+        };
+        let all = |errors: [f64; 3]| errors.map(Some);
+        let small = all([0.001, -0.002, 0.0]);
+        assert_eq!(
+            told([
+                all([0.001, -0.004, 0.002]),
+                all([-0.02, 0.005, 0.001]),
+                all([0.001, 0.03, -0.02]),
+                all([0.0, 0.02, -0.05]),
+            ]),
+            "On 4 cells these pairings of law and continuity give Xie & Leo's settlement at every time (largest error): \
+             `log-linear, conservative` (0.40 %). These are other theories (largest difference): \
+             `porosity-dependent, constant-porosity-gradient (as printed)` (−5.00 % at T_v = 1), \
+             `log-linear, constant-porosity-gradient` (−2.00 % at T_v = 0.1), \
+             `porosity-dependent, conservative` (+3.00 % at T_v = 0.5)."
+        );
+        let right = |pairing: usize, errors: [Option<f64>; 3]| {
+            let mut given = [small; 4];
+            given[pairing] = errors;
+            let text = told(given);
+            let (right, wrong) = text.split_once("These are other theories").unwrap_or((&text, ""));
+            (right.matches('`').count() / 2, wrong.matches('`').count() / 2)
+        };
+        for pairing in 0..4 {
+            for place in 0..3 {
+                for (error, counts) in [
+                    (Some(0.02), (3, 1)),
+                    (Some(-0.02), (3, 1)),
+                    (Some(0.009), (4, 0)),
+                    (Some(-0.009), (4, 0)),
+                    (Some(f64::NAN), (3, 1)),
+                    // Neither told to agree nor to be another theory.
+                    (None, (3, 0)),
+                ] {
+                    let mut errors = small;
+                    errors[place] = error;
+                    assert_eq!(right(pairing, errors), counts, "{pairing} {errors:?}");
+                }
+            }
+        }
+        let none = told([all([0.02, 0.0, 0.0]); 4]);
+        assert!(none.starts_with("On 4 cells no pairing of law and continuity gives Xie & Leo's"), "{none}");
+    }
 }

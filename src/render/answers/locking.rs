@@ -158,4 +158,68 @@ mod tests {
             assert!(numbers.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 1e-12), "{row:?}");
         }
     }
+
+    #[test]
+    fn a_result_is_lost_with_either_quantity_from_the_first_value_on() {
+        let method = |name: &str| Solver::Own(Method::named(name).expect("a method"));
+        // Oscillation does not count.
+        let row = |name: &str, errors: [[Option<f64>; 2]; 3]| SweepRow {
+            method: method(name),
+            time_factor: 0.1,
+            found: errors.map(|[displacement, pressure]| [displacement, pressure, Some(9.0)]).to_vec(),
+        };
+        let (kept, lost) = (Some(0.05), Some(0.2));
+        let sound = [[kept; 2]; 3];
+        assert_eq!(lost_from(&row("MPM", sound)), None);
+        assert_eq!(lost_from(&row("MPM", [[Some(0.099), Some(0.0)]; 3])), None);
+        for bad in [
+            [lost, kept],
+            [kept, lost],
+            [lost, lost],
+            [None, kept],
+            [kept, None],
+            [Some(f64::NAN), kept],
+            [kept, Some(f64::NAN)],
+            [Some(KEPT), kept],
+            [kept, Some(KEPT)],
+        ] {
+            for place in 0..3 {
+                let mut errors = sound;
+                errors[place] = bad;
+                assert_eq!(lost_from(&row("MPM", errors)), Some(place), "{errors:?}");
+                errors[2] = [lost; 2];
+                assert_eq!(lost_from(&row("MPM", errors)), Some(place), "{errors:?}");
+            }
+        }
+        let rows = [
+            row("MPM", [[kept, kept], [kept, Some(0.25)], [Some(3.2), kept]]),
+            row("GIMP", sound),
+            row("GIMP-SRI", [[kept, kept], [kept, kept], [Some(4.6), Some(0.1)]]),
+            row("VP", [[kept, kept], [Some(0.5), kept], [kept, kept]]),
+        ];
+        let sweep = StiffnessSweep {
+            stiffness: SweptStiffness::Skeleton,
+            cells: 4,
+            values: vec![0.2, 0.4, 0.49],
+            time_factors: vec![0.1],
+            rows: rows.to_vec(),
+        };
+        let all: Vec<&SweepRow> = rows.iter().collect();
+        assert_eq!(
+            sentence(&sweep, &all, 0.1),
+            "Of 4 methods on 4 cells, at T_v = 0.1, 1 keep displacement and pressure within 10 % up to ν = 0.49: `GIMP`; \
+             lost from ν = 0.4 on (off by up to 50.0 %): `MPM`, `VP`; lost from ν = 0.49 on (off by up to 5 times the \
+             exact value): `GIMP-SRI`."
+        );
+        let words = |cell: &Cell| cell.show();
+        let shown = table(&sweep, &all);
+        let told: Vec<[String; 2]> = shown.rows.iter().map(|row| [words(&row[0]), words(&row[1])]).collect();
+        let methods: Vec<&str> = told.iter().map(|row| row[0].as_str()).collect();
+        assert_eq!(methods, ["GIMP", "GIMP-SRI", "MPM", "VP"], "those that keep it first: {told:?}");
+        for (row, word) in
+            told.iter().zip(["kept", "lost from ν = 0.49", "lost from ν = 0.4", "lost from ν = 0.4"])
+        {
+            assert!(row[1].ends_with(word), "{told:?}");
+        }
+    }
 }

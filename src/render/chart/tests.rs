@@ -164,18 +164,21 @@ fn depth_runs_downwards() {
 }
 
 #[test]
-fn the_first_row_of_a_field_is_the_lowest() {
+fn the_first_row_of_a_field_is_the_lowest_and_its_first_column_the_leftmost() {
     let mut chart = pressure_field();
     if let Some(field) = &mut chart.field {
-        (field.x_edges, field.y_edges) = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
-        field.values = vec![-1.0, 1.0];
+        (field.x_edges, field.y_edges) = (vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 1.0, 2.0]);
+        // The lowest at the right end of the first row, the highest at the left end of the second.
+        field.values = vec![0.0, 0.0, -1.0, 1.0, 0.0, 0.0];
     }
     let text = svg(&chart);
     let cell = |colour: &str| {
         let line = text.lines().find(|l| l.starts_with("<rect") && l.contains(colour));
-        number(line.unwrap_or_else(|| panic!("{colour}")), "y")
+        let line = line.unwrap_or_else(|| panic!("{colour}"));
+        (number(line, "x"), number(line, "y"))
     };
-    assert!(cell("#2166AC") > cell("#B2182B"));
+    let (low, high) = (cell("#2166AC"), cell("#B2182B"));
+    assert!(low.1 > high.1 && low.0 > high.0, "{low:?} {high:?}");
 }
 
 #[test]
@@ -183,15 +186,20 @@ fn every_point_and_every_cell_has_a_row() {
     let mut chart = Chart::new("f", ChartAxis::linear("x, m"), ChartAxis::linear("y"))
         .with(Series::new("a \"b\"", vec![(0.1, 2.0), (0.3, 4.0)]));
     assert_eq!(chart.data_csv(), "series,\"x, m\",\"y\"\n\"a \"\"b\"\"\",0.1,2.0\n\"a \"\"b\"\"\",0.3,4.0\n");
-    let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0], vec![0.0, 2.0]);
+    let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0, 4.0], vec![0.0, 2.0, 6.0]);
     let field = ColourField {
         label: "p".to_owned(),
         has_bar: true,
         reach: None,
         x_edges,
         y_edges,
-        values: vec![5.0, 6.0],
+        values: vec![5.0, 6.0, 7.0, 8.0, 9.0, 10.0],
     };
     chart.field = Some(field);
-    assert!(chart.data_csv().ends_with("\"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n"), "{}", chart.data_csv());
+    assert_eq!(
+        chart.data_csv(),
+        "series,\"x, m\",\"y\",\"p\"\n\"a \"\"b\"\"\",0.1,2.0,\n\"a \"\"b\"\"\",0.3,4.0,\n\
+         \"f\",0.5,1.0,5.0\n\"f\",1.5,1.0,6.0\n\"f\",3.0,1.0,7.0\n\
+         \"f\",0.5,4.0,8.0\n\"f\",1.5,4.0,9.0\n\"f\",3.0,4.0,10.0\n"
+    );
 }

@@ -173,10 +173,38 @@ fn status(pass: bool, sentence: &str) -> TestCaseStatus {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::GoldenError;
+    use crate::golden::compare::{Difference, DifferenceGroup};
     use crate::golden::inputs::InputChange;
     use crate::judge::study_check::CaseNote;
 
-    fn check(failures: usize) -> StudyCheck {
+    /// Golden values of one kind of change.
+    pub(super) fn group(change: Change) -> DifferenceGroup {
+        let name = "MPM | pressure".to_owned();
+        let worst = Difference { name, change, golden: Some(1.0), found: Some(2.0), tolerance: 1e-9 };
+        let shared = Vec::new();
+        DifferenceGroup {
+            change,
+            values: 1,
+            cases: 1,
+            shared_by_cases: shared.clone(),
+            shared_by_measures: shared,
+            worst,
+            place: None,
+        }
+    }
+
+    pub(super) fn input_change() -> InputChange {
+        InputChange {
+            key: "material.youngs_modulus".to_owned(),
+            before: "1e6 Pa".to_owned(),
+            after: "1.1e6 Pa".to_owned(),
+            cases: 4,
+        }
+    }
+
+    /// A check with failed cases and a warning.
+    pub(super) fn check(failures: usize) -> StudyCheck {
         let note =
             |number| CaseNote { case: format!("case {number}"), sentence: "unstable: 5 %,\nsoon".to_owned() };
         StudyCheck {
@@ -206,15 +234,54 @@ mod tests {
         assert_eq!(lines[9], "::notice title=oedometer check::12 more: see the summary");
         assert!(annotations_of(&[StudyCheck { warnings: Vec::new(), ..check(0) }], |_| None).is_empty());
     }
+
+    #[test]
+    fn errors_of_any_study_come_before_the_warnings_of_all() {
+        // Failed cases and warnings of two studies.
+        for counts in [[(0, 12), (2, 0)], [(2, 0), (0, 12)], [(1, 12), (1, 0)], [(1, 3), (1, 9)]] {
+            let checks = counts.map(|(failures, warnings)| StudyCheck {
+                warnings: vec!["slow".to_owned(); warnings],
+                ..check(failures)
+            });
+            let lines = annotations_of(&checks, |_| None);
+            let count = |start: &str| lines.iter().filter(|line| line.starts_with(start)).count();
+            assert_eq!([count("::error "), count("::warning "), count("::notice ")], [2, 7, 1], "{lines:?}");
+            assert!(lines[..2].iter().all(|line| line.starts_with("::error ")), "{lines:?}");
+            assert!(lines[9].ends_with("::5 more: see the summary"), "{lines:?}");
+        }
+    }
+
+    #[test]
+    fn only_a_golden_value_that_is_worse_than_the_present_one_is_a_warning() {
+        let levels = |check: StudyCheck| {
+            let lines = annotations_of(&[StudyCheck { warnings: Vec::new(), ..check }], |_| None);
+            lines
+                .iter()
+                .map(|line| line.split("::").nth(1).unwrap_or_default().to_owned())
+                .collect::<Vec<_>>()
+        };
+        for (change, level) in [
+            (Change::Moved, "error"),
+            (Change::Missing, "error"),
+            (Change::Extra, "error"),
+            (Change::Smaller, "error"),
+            (Change::Stale, "warning"),
+        ] {
+            let found = levels(StudyCheck { groups: vec![group(change)], ..check(0) });
+            assert_eq!(found, [format!("{level} title=study%3A golden values {}", property(change.name()))]);
+        }
+        let missing = GoldenError::Missing("study.csv".into());
+        assert_eq!(
+            levels(StudyCheck { golden: Err(missing), ..check(0) }),
+            ["error title=study%3A golden values"]
+        );
+        let unsound = vec![CaseNote { case: "case".to_owned(), sentence: "water is lost".to_owned() }];
+        assert_eq!(levels(StudyCheck { unsound, ..check(0) }), ["error title=study%3A case"]);
+    }
+
     #[test]
     fn a_changed_input_fails_in_every_form_although_no_value_moved() {
-        let changed = InputChange {
-            key: "material.youngs_modulus".to_owned(),
-            before: "1e6 Pa".to_owned(),
-            after: "1.1e6 Pa".to_owned(),
-            cases: 4,
-        };
-        let changed = StudyCheck { inputs: vec![changed], warnings: Vec::new(), ..check(0) };
+        let changed = StudyCheck { inputs: vec![input_change()], warnings: Vec::new(), ..check(0) };
         let told = "material.youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases";
         let lines = annotations_of(std::slice::from_ref(&changed), |_| None);
         assert_eq!(lines, [format!("::error title=study%3A input changed::{told}")]);

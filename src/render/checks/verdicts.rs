@@ -98,12 +98,14 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
         }
         let agrees = check.golden.is_ok() && check.differences().is_empty() && check.inputs.is_empty();
         let (mood, word) = if agrees { (Mood::Pass, "pass") } else { (Mood::Fail, "fail") };
+        let inputs = check.inputs.iter().map(|input| format!("input changed: {}", input.sentence()));
+        let reason: Vec<String> = std::iter::once(headline(check)).chain(inputs).collect();
         whole.rows.push(vec![
             check.study.as_str().into(),
             Cell::Verdict(mood, word.to_owned()),
             "golden values".into(),
             "".into(),
-            Cell::Text(headline(check)),
+            Cell::Text(reason.join(". ")),
         ]);
     }
     whole
@@ -327,7 +329,10 @@ fn case_change(one: &CaseChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::GoldenError;
     use crate::golden::compare::Change;
+    use crate::judge::study_check::CaseNote;
+    use crate::render::checks::tests::{check, group, input_change};
     use crate::render::table::columns;
     use oedometer_convergence::ParetoChange;
 
@@ -406,5 +411,54 @@ mod tests {
         };
         let told = difference(&moved);
         assert!(told.contains("0.75 was 0.5") && told.contains("4 times its tolerance"), "{told}");
+    }
+
+    #[test]
+    fn golden_values_pass_in_the_table_for_programs_only_where_nothing_is_to_be_accepted() {
+        let differing = |change: Change| {
+            let group = group(change);
+            StudyCheck { golden: Ok(vec![group.worst.clone()]), groups: vec![group], ..check(0) }
+        };
+        let accept = "oedometer accept s.toml --reason \"why the new values are right\"";
+        let missing = GoldenError::Missing("study.csv".into());
+        let note = CaseNote { case: "case".to_owned(), sentence: "water is lost".to_owned() };
+        for (check, word, reason, next) in [
+            (check(0), "pass", "0 golden values agree", None),
+            (
+                StudyCheck { inputs: vec![input_change()], ..check(0) },
+                "fail",
+                "agree. input changed: material.youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases",
+                Some(accept),
+            ),
+            (
+                StudyCheck { golden: Err(missing), ..check(0) },
+                "fail",
+                "there is no golden file",
+                Some(accept),
+            ),
+            (differing(Change::Stale), "fail", "1 do not", Some(accept)),
+            (differing(Change::Extra), "fail", "1 do not", Some(accept)),
+            (
+                differing(Change::Moved),
+                "fail",
+                "1 do not",
+                Some("oedometer explain \"MPM | pressure\" s.toml"),
+            ),
+            (check(2), "pass", "2 cases failed", Some("oedometer explain \"case 0\" s.toml")),
+            (
+                StudyCheck { unsound: vec![note], ..check(0) },
+                "pass",
+                "1 complaint about records",
+                Some("oedometer explain \"case\" s.toml"),
+            ),
+        ] {
+            assert_eq!(next_command(&check, Some("s.toml")).as_deref(), next, "{check:?}");
+            let failures: usize = failures_of(&check).iter().map(Vec::len).sum();
+            assert_eq!(word == "pass" && failures == 0, check.end() == CheckEnd::Pass, "{check:?}");
+            let csv = all_judgements(&[check]).to_csv().expect("a table");
+            let row = csv.lines().last().expect("a row of golden values");
+            assert!(row.starts_with(&format!("study,{word},golden values,,")), "{csv}");
+            assert!(row.contains(reason), "{csv}");
+        }
     }
 }

@@ -346,8 +346,11 @@ mod tests {
     use crate::record::Record;
     use oedometer_convergence::{Floor, Undefined};
 
-    /// Series of two methods with the floors and the finest orders that are given.
-    fn summaries<'a>(records: &'a [Record], given: [(Option<f64>, f64); 2]) -> Vec<SeriesSummary<'a>> {
+    /// Series of methods with the floors and the finest orders that are given.
+    fn summaries<'a, const N: usize>(
+        records: &'a [Record],
+        given: [(Option<f64>, f64); N],
+    ) -> Vec<SeriesSummary<'a>> {
         let paths = StudyPaths::of(records);
         let measure = first_measure(Quantity::Pressure, Sample::Points, "terzaghi", 0.2);
         let summary = |(path, (floor, order)): (&Path<'a>, (Option<f64>, f64))| {
@@ -363,19 +366,35 @@ mod tests {
     #[test]
     fn a_floor_is_that_of_the_only_series_with_one_or_of_all_that_have_about_the_same() {
         let records = records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['MPM', 'GIMP']\n\
-             integrator = ['implicit']\ncells = [2, 4]\n",
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\n\
+             method = ['MPM', 'GIMP', 'GIMP-SRI']\nintegrator = ['implicit']\ncells = [2, 4]\n",
         );
-        let labels = ["a", "b"].map(str::to_owned);
-        let floor = |floors: [Option<f64>; 2]| {
-            shared_floor(&summaries(&records, floors.map(|floor| (floor, 1.0))), &labels)
+        let labels = ["a", "b", "c"].map(str::to_owned);
+        let floors = |floors: &[Option<f64>; 3], shown: usize| {
+            let all = summaries(&records, floors.map(|floor| (floor, 1.0)));
+            assert_eq!(all.len(), 3);
+            shared_floor(&all[..shown], &labels[..shown])
         };
+        let floor = |[a, b]: [Option<f64>; 2]| floors(&[a, b, None], 2);
         assert_eq!(floor([None, None]), None);
         assert_eq!(floor([None, Some(0.3)]), Some((0.3, "b".to_owned())));
         let (both, name) = floor([Some(0.4), Some(0.42)]).expect("about the same");
         assert!((both - 0.168_f64.sqrt()).abs() < 1e-15 && name == "all series", "{both} {name}");
         assert_eq!(floor([Some(0.4), Some(0.8)]), None);
         assert_eq!(floor([Some(0.8), Some(0.4)]), None);
+        let alike = [Some(0.42), Some(0.4), Some(0.41)];
+        assert_eq!(floors(&alike, 3).expect("about the same").1, "all series");
+        for place in 0..3 {
+            let with = |floor: Option<f64>, rest: [Option<f64>; 3]| {
+                let mut all = rest;
+                all[place] = floor;
+                floors(&all, 3)
+            };
+            assert_eq!(with(None, alike), None, "two of three are neither one nor all: {place}");
+            assert_eq!(with(Some(0.8), alike), None, "{place}");
+            assert_eq!(with(Some(0.1), alike), None, "{place}");
+            assert_eq!(with(Some(0.3), [None; 3]), Some((0.3, labels[place].clone())));
+        }
 
         let triangles = |orders: [f64; 2]| {
             let mut chart = Chart::new("c", ChartAxis::log10("h"), ChartAxis::log10("e"));

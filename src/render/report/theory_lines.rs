@@ -1,6 +1,7 @@
 //! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::measure::statistics::largest;
 use crate::measure::theory::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
     theory_consolidation, theory_isochrones,
@@ -55,9 +56,9 @@ fn coincide(results: &StudyResults<'_>, shown: &[&Record]) -> bool {
     shown[0].case.time_factors.iter().all(|time| {
         let measure = first_measure(Quantity::Settlement, Sample::Surface, own, *time);
         let errors = shown.iter().filter_map(|record| Some(measure.error(record)?.value));
-        let (low, high) = errors
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), error| (low.min(error), high.max(error)));
-        high - low < ONE_MARKER
+        // Numbers that are none differ from all.
+        let highest = |sign: f64| largest(errors.clone().map(|error| sign * error));
+        highest(1.0).zip(highest(-1.0)).is_none_or(|(high, low)| high + low < ONE_MARKER)
     })
 }
 
@@ -177,4 +178,67 @@ fn sampling_note(shown: &[&Record]) -> Option<String> {
         record.case.points_per_cell,
         error(Sample::Points)?,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{RunOptions, run_study};
+    use crate::case::planned::Tier;
+    use crate::study::check::Study;
+    use crate::study::file::StudySource;
+
+    const TIMES: [f64; 3] = [0.05, 0.1, 0.2];
+
+    #[test]
+    fn curves_coincide_where_they_do_so_at_every_output_and_for_every_method() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.1, 0.2]\n[[sweep]]\n\
+                    method = ['MPM', 'GIMP', 'GIMP-SRI']\nintegrator = ['implicit']\ncells = [10]\n\
+                    time_step = [{ growth = 0.5 }]\n";
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        let study = Study::check(&source).expect("sound");
+        let records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        // Errors of the settlement, by method and output.
+        let found = |errors: [[f64; 3]; 3]| {
+            let mut records = records.clone();
+            for (record, errors) in records.iter_mut().zip(errors) {
+                for row in record.errors.iter_mut().filter(|row| row.quantity == Quantity::Settlement) {
+                    let place = TIMES.iter().position(|time| *time == row.time_factor).expect("an output");
+                    row.value = errors[place];
+                }
+            }
+            let results = StudyResults::new(&study, &records, Tier::Full);
+            let shown = shown_records(&records, false);
+            assert_eq!(shown.len(), 3);
+            let drawn = blocks(&results).expect("theory").iter().any(|block| {
+                matches!(block, Block::Figures(all) if all.iter().any(|one| one.name.contains("consolidation")))
+            });
+            let answer = coincide(&results, &shown);
+            assert_eq!(drawn, !answer, "the figure shows the difference");
+            answer
+        };
+        // All are off alike, and more at one output than at another.
+        let alike = [[0.2, -0.3, 0.01]; 3];
+        assert!(found(alike));
+        for (method, output) in (0..3).flat_map(|method| (0..3).map(move |output| (method, output))) {
+            for (change, coincide) in
+                [(0.02, false), (-0.02, false), (0.005, true), (-0.005, true), (f64::NAN, false)]
+            {
+                let mut errors = alike;
+                errors[method][output] += change;
+                assert_eq!(found(errors), coincide, "{method} {output} {change}");
+            }
+        }
+    }
+
+    #[test]
+    fn markers_of_runs_are_thinned_and_stand_beside_each_other() {
+        let points: Vec<(f64, f64)> = (0..48).map(|place| (f64::from(place), 0.0)).collect();
+        let places = |slot: usize, runs: usize, count: usize| -> Vec<f64> {
+            thinned(&points[..count], slot, runs).into_iter().map(|point| point.0).collect()
+        };
+        assert_eq!(places(0, 1, 48), (0..12).map(|marker| f64::from(4 * marker)).collect::<Vec<_>>());
+        assert_eq!([places(0, 2, 48)[0], places(1, 2, 48)[0], places(3, 4, 48)[0]], [0.0, 2.0, 3.0]);
+        assert_eq!(places(1, 2, 5), [0.0, 1.0, 2.0, 3.0, 4.0], "few are all shown");
+    }
 }

@@ -94,22 +94,34 @@ fn a_saw_along_rows_and_one_up_columns_oscillate_alike() {
 }
 
 #[test]
-fn the_exact_field_of_a_time_is_not_that_of_another() {
+fn the_exact_field_of_a_run_is_not_that_of_another_time_lattice_or_soil() {
     let records = crate::campaign::runner::records_of(
         "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.02, 0.1, 0.3]\n[[sweep]]\n\
-         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4]\n",
+         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [2, 4]\npoints_per_cell = [2, 3]\n\
+         porosity = [0.3, 0.4]\noffset = [0.0, 0.2]\ntime_step = [{ growth = 0.5 }]\n",
     );
-    let record = &records[0];
-    let case = &record.case;
-    let own = case.scene.references()[0].of_soil(&case.material);
-    for _ in 0..2 {
-        for time in [0.1, 0.02, 0.3] {
+    assert_eq!(records.len(), 16);
+    let exact = |record: &Record, time: f64| {
+        let case = &record.case;
+        let own = case.scene.references()[0].of_soil(&case.material);
+        let reference = known_reference(case, own, &[time]).expect("a theory");
+        let points = &record.snapshot(time).expect("a state").points;
+        let load = case.column.pressure_scale();
+        let pressures = exact_samples(case, &reference, time, points).expect("inside").pressure;
+        pressures.into_iter().map(|p| p / load).collect::<Vec<f64>>()
+    };
+    let mut fields: Vec<Vec<f64>> = Vec::new();
+    for round in 0..2 {
+        for (time, record) in
+            [0.1, 0.02, 0.3].into_iter().flat_map(|time| records.iter().map(move |record| (time, record)))
+        {
             let field = PlaneField::of(record, time).expect("a theory").expect("a plane");
-            let reference = known_reference(case, own, &[time]).expect("a theory");
-            let points = &record.snapshot(time).expect("a state").points;
-            let exact = exact_samples(case, &reference, time, points).expect("inside").pressure;
-            let load = case.column.pressure_scale();
-            assert_eq!(field.exact, exact.iter().map(|p| p / load).collect::<Vec<f64>>(), "{time}");
+            assert_eq!(field.exact, exact(record, time), "{time} {}", record.case.label());
+            assert_eq!(field.columns * (field.y_edges.len() - 1), field.exact.len());
+            if round == 0 {
+                assert!(!fields.contains(&field.exact), "{time} {}", record.case.label());
+                fields.push(field.exact);
+            }
         }
     }
 }
