@@ -344,4 +344,39 @@ mod tests {
             assert_eq!(alone.check(), Ok(()));
         }
     }
+
+    #[test]
+    fn places_of_a_layer_keep_their_distance_and_errors_the_kind_of_places() {
+        let (depths, x) = ([0.1, 0.5, 0.9], [0.0, 0.2, 0.6, 1.0]);
+        let set = ["layer.length=3.0".to_owned()];
+        let found = exact("cosine-layer", &[0.1], &depths, &x, &set).expect("inside");
+        let places = depths.iter().flat_map(|depth| x.iter().map(move |x| (found_height(*depth), 3.0 * x)));
+        let (height, distance): (Vec<f64>, Vec<f64>) = places.unzip();
+        let scored = |along: &[f64], sample: &str| {
+            let samples = Samples {
+                time: &found.time,
+                height: &height,
+                distance: &distance,
+                pressure: &found.pressure,
+                effective_stress: &found.effective_stress,
+                displacement: &found.displacement,
+                horizontal_displacement: along,
+                ..Samples::default()
+            };
+            score("cosine-layer", &samples, sample, Some("cosine-layer"), &set).expect("a score").errors
+        };
+        for sample in ["points", "nodes", "centres"] {
+            let rows = scored(&found.horizontal_displacement, sample);
+            assert!(rows.iter().all(|row| row.value.abs() < 1e-9), "{rows:?}");
+            assert!(rows.iter().any(|row| row.sample.name() == sample), "{sample}: {rows:?}");
+        }
+        let off: Vec<f64> = found.horizontal_displacement.iter().map(|along| 1.5 * along).collect();
+        let largest = scored(&off, "points").into_iter().map(|row| row.value.abs()).fold(0.0, f64::max);
+        assert!(largest > 1e-2, "a displacement along the layer counts: {largest}");
+    }
+
+    /// Height over the base of a layer 1 m high.
+    fn found_height(depth: f64) -> f64 {
+        1.0 - depth
+    }
 }
