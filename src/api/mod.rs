@@ -186,6 +186,7 @@ mod tests {
 
     #[test]
     fn a_time_step_numbers_files_and_a_mapping_stands_alone_unless_a_preset_is_named() {
+        use crate::import::mapping::DeclaredBy::{Convention, Preset, User};
         let folder = tempfile::TempDir::new().expect("a folder");
         let write = |name: &str, text: &str| {
             std::fs::write(folder.path().join(name), text).expect("written");
@@ -207,7 +208,6 @@ mod tests {
         let states = read(std::slice::from_ref(&table), "kratos", None, 1.0).expect("the convention");
         assert_eq!((states[0][0].time, states[0][0].pressure[0]), (3.0, 7.0));
         let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
-        use crate::import::mapping::DeclaredBy::{Convention, Preset, User};
         for (file, preset, mapping, wanted) in [
             (&file, None, None, Preset("meshio")),
             (&file, None, Some(&own), User),

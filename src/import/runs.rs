@@ -427,17 +427,23 @@ mod tests {
     fn files_are_one_result_where_folder_name_but_for_its_numbers_and_mesh_are_alike() {
         let folder = tempfile::TempDir::new().expect("a folder");
         let write = |name: &str, levels: usize, has_cells: bool, time: f64| {
-            let mut text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n".to_owned();
-            text += &format!("POINTS {levels} double\n");
-            text.extend((0..levels).map(|at| format!("0 {} 0\n", at as f64 / (levels - 1) as f64)));
-            if has_cells {
-                let cells = levels - 1;
-                text += &format!("CELLS {cells} {}\n", 3 * cells);
-                text.extend((0..cells).map(|cell| format!("2 {cell} {}\n", cell + 1)));
-                text += &format!("CELL_TYPES {cells}\n{}", "3\n".repeat(cells));
-            }
-            text += &format!("FIELD f 1\nTIME 1 1 double\n{time}\nPOINT_DATA {levels}\n");
-            text += &format!("SCALARS p double\nLOOKUP_TABLE default\n{}", "1\n".repeat(levels));
+            let lines = |count: usize, line: &dyn Fn(usize) -> String| -> String {
+                (0..count).map(line).collect::<Vec<_>>().concat()
+            };
+            let places = lines(levels, &|at| format!("0 {} 0\n", at as f64 / (levels - 1) as f64));
+            let count = if has_cells { levels - 1 } else { 0 };
+            let cells = lines(count, &|cell| format!("2 {cell} {}\n", cell + 1));
+            let types = "3\n".repeat(count);
+            let cells = if has_cells {
+                format!("CELLS {count} {}\n{cells}CELL_TYPES {count}\n{types}", 3 * count)
+            } else {
+                String::new()
+            };
+            let text = format!(
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {levels} double\n{places}{cells}\
+                 FIELD f 1\nTIME 1 1 double\n{time}\nPOINT_DATA {levels}\nSCALARS p double\nLOOKUP_TABLE default\n{}",
+                "1\n".repeat(levels)
+            );
             let path = folder.path().join(name);
             std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
             std::fs::write(&path, text).expect("a file");

@@ -197,7 +197,7 @@ mod tests {
     fn what_is_joined_is_one_state_of_the_same_points() {
         let folder = tempfile::tempdir().expect("a folder");
         let write = |name: &str, points: usize, array: &str| {
-            let places = (0..points).map(|at| format!("0 {at} 0\n")).collect::<String>();
+            let places = (0..points).map(|at| format!("0 {at} 0\n")).collect::<Vec<_>>().concat();
             let text = format!(
                 "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS {points} double\n{places}\
                  POINT_DATA {points}\nSCALARS {array} double\nLOOKUP_TABLE default\n{}",

@@ -266,8 +266,11 @@ mod tests {
         assert!(origins(&[origin(), newer]).several_programs().is_some());
     }
 
+    /// What is another in an origin.
+    type Change = fn(&mut Provenance);
+
     /// A change of every property of an origin.
-    const CHANGES: [(&str, fn(&mut Provenance)); 7] = [
+    const CHANGES: [(&str, Change); 7] = [
         ("version", |one| one.version = "1.1.0".to_owned()),
         ("sources", |one| one.sources = "bbbb".to_owned()),
         ("commit", |one| one.commit = "c2".to_owned()),

@@ -234,7 +234,10 @@ mod tests {
         }
     }
 
-    fn record(case: &Case, seconds: f64, change: fn(&mut Record)) -> Record {
+    /// What is another in a record.
+    type Change = fn(&mut Record);
+
+    fn record(case: &Case, seconds: f64, change: Change) -> Record {
         let about = AttachedRun::default();
         let record = record_of_attached(case, &[], Status::Ok, Vec::new(), 0.1, about).expect("a record");
         let wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }];
@@ -252,7 +255,7 @@ mod tests {
         };
         let study = Study::check(&source).expect("sound");
         let case = &study.planned[0].case;
-        let changes: [(&str, bool, fn(&mut Record)); 6] = [
+        let changes: [(&str, bool, Change); 6] = [
             ("nothing", true, |_| {}),
             ("commit", true, |record| record.provenance.commit = "another".to_owned()),
             ("tree", true, |record| record.provenance.dirty ^= true),
