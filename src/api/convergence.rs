@@ -133,4 +133,54 @@ mod tests {
         let unknown = Demand { class: Some("asymptotics".to_owned()), ..Demand::default() };
         assert!(verdict(&sizes, &errors, &unknown).is_err_and(|told| told.contains("asymptotic")));
     }
+
+    #[test]
+    fn the_order_in_which_levels_are_given_changes_neither_signs_nor_verdict() {
+        // A sign that changes between the first two levels, and one that changes at the finest.
+        for errors in [[1.71e-3, -1.45e-3, -2.23e-3, -2.43e-3], [4e-2, 1e-2, 1.5e-3, -6e-4]] {
+            let levels: Vec<(f64, f64)> = [0.1, 0.05, 0.025, 0.0125].into_iter().zip(errors).collect();
+            let turned = |order: [usize; 4]| -> (Vec<f64>, Vec<f64>) {
+                order.into_iter().map(|place| levels[place]).unzip()
+            };
+            let (sizes, errors) = turned([0, 1, 2, 3]);
+            let found = convergence(&sizes, &errors, Some(2.0)).expect("a series");
+            let demand = Demand { order: Some((2.0, 0.3, 0.3)), ..Demand::default() };
+            let judged = verdict(&sizes, &errors, &demand).expect("a series");
+            for order in [[3, 2, 1, 0], [1, 0, 2, 3], [0, 1, 3, 2], [2, 3, 0, 1]] {
+                let (sizes, errors) = turned(order);
+                assert_eq!(convergence(&sizes, &errors, Some(2.0)).expect("a series"), found, "{order:?}");
+                assert_eq!(verdict(&sizes, &errors, &demand).expect("a series"), judged, "{order:?}");
+            }
+            let sizes_alone =
+                convergence(&sizes, &errors.iter().map(|one| one.abs()).collect::<Vec<_>>(), Some(2.0));
+            assert_ne!(sizes_alone.expect("a series").classification, found.classification, "signs count");
+        }
+    }
+
+    #[test]
+    fn each_demand_is_judged_at_its_level_and_on_both_sides_of_its_bound() {
+        let (sizes, errors) = ([0.1, 0.05, 0.025], [4e-2, 1e-2, 2.5e-3]);
+        let passes = |demand: Demand| verdict(&sizes, &errors, &demand).expect("a series").0;
+        for (size, error) in sizes.into_iter().zip(errors) {
+            for (share, is_met) in [(1.01, true), (0.99, false)] {
+                let demand = Demand { at: Some((size, share * error)), ..Demand::default() };
+                assert_eq!(passes(demand), is_met, "{size} {share}");
+            }
+        }
+        for (order, is_met) in [
+            ((2.05, 0.1, 0.01), true),
+            ((2.05, 0.01, 0.1), false),
+            ((1.95, 0.01, 0.1), true),
+            ((1.95, 0.1, 0.01), false),
+        ] {
+            assert_eq!(passes(Demand { order: Some(order), ..Demand::default() }), is_met, "{order:?}");
+        }
+        for (class, is_met) in [("asymptotic", true), ("floor-limited", false)] {
+            assert_eq!(
+                passes(Demand { class: Some(class.to_owned()), ..Demand::default() }),
+                is_met,
+                "{class}"
+            );
+        }
+    }
 }

@@ -175,4 +175,43 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn places_of_a_layer_have_their_cosine_and_the_middle_of_a_slab_its_largest_pressure() {
+        let set = ["layer.length=3.0", "layer.height=2.0"].map(str::to_owned);
+        let (depths, x) = ([0.3, 0.8], [0.0, 0.25, 1.0]);
+        let found = exact("cosine-layer", &[0.1], &depths, &x, &set).expect("inside");
+        let crest = exact("cosine-layer", &[0.1], &depths, &[], &set).expect("inside");
+        for (depth, at) in [(0, 0), (1, 3)] {
+            for (place, cosine) in [(0, 1.0), (1, std::f64::consts::FRAC_1_SQRT_2), (2, -1.0)] {
+                for (all, under) in [
+                    (&found.pressure, &crest.pressure),
+                    (&found.effective_stress, &crest.effective_stress),
+                    (&found.displacement, &crest.displacement),
+                ] {
+                    let (value, wanted) = (all[at + place], cosine * under[depth]);
+                    assert!(
+                        (value - wanted).abs() < 1e-9 * wanted.abs(),
+                        "{depth} {place}: {value} {wanted}"
+                    );
+                }
+            }
+            let along = &found.horizontal_displacement[at..at + 3];
+            assert!(along[1].abs() > 1e6 * along[0].abs().max(along[2].abs()), "{along:?}");
+        }
+        assert!(crest.horizontal_displacement.is_empty());
+        let slab = exact("mandel", &[0.1], &[], &[0.0, 0.5, 1.0], &[]).expect("inside").pressure;
+        assert!(slab[0] > slab[1] && slab[1] > 0.0 && slab[2].abs() < 1e-9 * slab[0], "{slab:?}");
+        for (solution, depths, x, told) in [
+            ("mandel", &[][..], &[][..], "give `x`"),
+            ("mandel", &[0.5], &[0.5], "give `x`"),
+            ("mandel", &[], &[1.5], "1.5"),
+            ("mandel", &[], &[-0.5], "-0.5"),
+            ("terzaghi", &[0.5], &[0.5], "depends on the depth alone"),
+            ("terzagi", &[0.5], &[], "no exact solution is called `terzagi`"),
+        ] {
+            let error = exact(solution, &[0.1], depths, x, &[]).expect_err(solution);
+            assert!(error.contains(told), "{error}");
+        }
+    }
 }

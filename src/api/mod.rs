@@ -35,7 +35,7 @@ pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
 }
 
 /// The dotted key of a study file for a bare name, such as `material.porosity` for `porosity`; a name with a dot stays.
-/// Geometry and load belong to the column, or to the layer in a scene of a layer.
+/// Geometry and load belong to the table that the scene has for them.
 ///
 /// # Errors
 /// When no scene, solution or input has the name: lists the names.
@@ -55,10 +55,7 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
         Some(scene) => scene,
         None => scene_of(scene)?.1,
     };
-    let body = match scene.table_of_geometry() {
-        "column" if scene.needs_two_dimensions() => "layer",
-        table => table,
-    };
+    let body = scene.table_of_geometry();
     let tables = [body, "material", "integrator", "points"];
     let found = tables.iter().find(|table| Key::named(name, table).is_some());
     found.map(|table| format!("{table}.{name}")).ok_or_else(|| {
@@ -164,5 +161,66 @@ mod tests {
         let state = &water.expect("a state")[0][0];
         assert_eq!(state.pressure[0], -2.0, "suction is positive there");
         assert!(pressure.is_err(), "there is no such array");
+    }
+
+    #[test]
+    fn a_bare_name_is_a_key_that_its_scene_takes() {
+        for (scene, name, key) in [
+            ("mandel", "load", "column.load"),
+            ("mandel", "width", "column.width"),
+            ("cosine-layer", "length", "layer.length"),
+            ("terzaghi", "height", "column.height"),
+            ("xie-leo", "porosity", "material.porosity"),
+        ] {
+            assert_eq!(dotted_key(scene, name).as_deref(), Ok(key), "{scene}");
+            let value = if name == "porosity" { "0.35" } else { "2.0" };
+            let found = exact::exact(scene, &[0.1], &[], &[0.5], &[format!("{key}={value}")]);
+            assert!(found.is_ok() || scene == "terzaghi" || scene == "xie-leo", "{scene}: {found:?}");
+        }
+        // A key of a problem of the shelf is that problem's alone.
+        assert_eq!(dotted_key("seabed", "period").as_deref(), Ok("wave.period"));
+        for problem in ["davis-raymond", "terzaghi"] {
+            assert!(dotted_key(problem, "period").is_err(), "{problem}");
+        }
+    }
+
+    #[test]
+    fn a_time_step_numbers_files_and_a_mapping_stands_alone_unless_a_preset_is_named() {
+        use crate::import::mapping::DeclaredBy::{Convention, Preset, User};
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let write = |name: &str, text: &str| {
+            std::fs::write(folder.path().join(name), text).expect("written");
+            folder.path().join(name)
+        };
+        let file = write(
+            "a_4.vtk",
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 0 1 0\nPOINT_DATA 2\n\
+             SCALARS pressure float\nLOOKUP_TABLE default\n2 1\n",
+        );
+        let table = write("a.csv", "t,y,p,u_y\n3,0.5,7,0\n");
+        let own = write("m.toml", "[columns]\ny = \"coordinates[1]\"\np = \"pressure\"\nu_y = \"\"\n");
+        let read_at = |step: Option<f64>| read(std::slice::from_ref(&file), "meshio", step, 1.0);
+        assert_eq!(read_at(Some(0.5)).expect("a state")[0][0].time, 2.0);
+        assert!(read_at(None).is_err(), "its time is given nowhere");
+        for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(read_at(Some(step)).is_err_and(|told| told.contains("is invalid")), "{step}");
+        }
+        let states = read(std::slice::from_ref(&table), "kratos", None, 1.0).expect("the convention");
+        assert_eq!((states[0][0].time, states[0][0].pressure[0]), (3.0, 7.0));
+        let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+        for (file, preset, mapping, wanted) in [
+            (&file, None, None, Preset("meshio")),
+            (&file, None, Some(&own), User),
+            (&file, Some("meshio"), Some(&own), Preset("meshio")),
+            (&table, None, None, Convention),
+        ] {
+            let meaning = Meaning {
+                preset: preset.map(str::to_owned),
+                mapping: mapping.cloned(),
+                time_step: Some(0.5),
+            };
+            let (found, _) = runs_with(std::slice::from_ref(file), &meaning, body, false).expect("a state");
+            assert_eq!(found.declared_by, wanted);
+        }
     }
 }

@@ -257,4 +257,126 @@ mod tests {
         let told = score("cosine-layer", &samples, "centres", None, &[]).expect_err("no distance");
         assert!(told.contains("give `distance`, m from the crest"), "{told}");
     }
+
+    #[test]
+    fn times_and_places_come_in_any_order_and_each_keeps_its_own_numbers() {
+        let scored = |times: &[f64], depths: &[f64]| {
+            let found = exact("terzaghi", times, depths, &[], &[]).expect("inside its range");
+            let height: Vec<f64> = depths.iter().map(|depth| 1.0 - depth).collect();
+            // Only the middle time is off, by one percent.
+            let off = |values: &[f64], row: usize| -> Vec<f64> {
+                let of = |at: usize| if times[at / row] == 0.2 { 1.01 } else { 1.0 };
+                values.iter().enumerate().map(|(at, value)| of(at) * value).collect()
+            };
+            let samples = Samples {
+                time: &found.time,
+                height: &height,
+                pressure: &off(&found.pressure, depths.len()),
+                effective_stress: &found.effective_stress,
+                displacement: &found.displacement,
+                settlement: &off(&found.settlement, 1),
+                ..Samples::default()
+            };
+            score("terzaghi", &samples, "centres", Some("terzaghi"), &[]).expect("a score")
+        };
+        let depths: Vec<f64> = (0..8).map(|place| (f64::from(place) + 0.5) / 8.0).collect();
+        let turned: Vec<f64> = depths.iter().rev().copied().collect();
+        for times in [[0.1, 0.2, 0.4], [0.4, 0.2, 0.1], [0.2, 0.4, 0.1], [0.2, 0.1, 0.4], [0.4, 0.1, 0.2]] {
+            for depths in [&depths, &turned] {
+                let found = scored(&times, depths);
+                let of_settlement = found.errors.iter().filter(|row| row.quantity == Quantity::Settlement);
+                assert_eq!(of_settlement.count(), 3, "{times:?}");
+                for row in &found.errors {
+                    let is_off = (row.time_factor - 0.2).abs() < 1e-9
+                        && [Quantity::Settlement, Quantity::Pressure].contains(&row.quantity);
+                    let wanted = if is_off { 0.01 } else { 0.0 };
+                    assert!((row.value.abs() - wanted).abs() < 1e-9, "{times:?}: {row:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_list_of_the_wrong_length_is_told_by_its_name() {
+        let (two, three, six) = ([1.0, 2.0], [0.25, 0.5, 0.75], [1.0; 6]);
+        let whole = Samples {
+            time: &two,
+            height: &three,
+            distance: &three,
+            volume: &three,
+            pressure: &six,
+            effective_stress: &six,
+            displacement: &six,
+            horizontal_displacement: &six,
+            settlement: &two,
+        };
+        assert_eq!(whole.check(), Ok(()));
+        for (samples, told) in [
+            (Samples { time: &[], ..whole }, "there is no time or no place"),
+            (Samples { height: &[], ..whole }, "there is no time or no place"),
+            (Samples { distance: &two, ..whole }, "`distance` has 2 numbers and needs 3"),
+            (Samples { volume: &two, ..whole }, "`volume` has 2 numbers and needs 3"),
+            (Samples { settlement: &three, ..whole }, "`settlement` has 3 numbers and needs 2"),
+            (Samples { pressure: &three, ..whole }, "`pressure` has 3 numbers for 2 times and 3 places"),
+            (Samples { effective_stress: &two, ..whole }, "`effective_stress` has 2 numbers for"),
+            (Samples { displacement: &two, ..whole }, "`displacement` has 2 numbers for"),
+            (
+                Samples { horizontal_displacement: &two, ..whole },
+                "`horizontal_displacement` has 2 numbers for",
+            ),
+            (Samples { time: &[1.0, f64::NAN], ..whole }, "[1]: `time` is NaN"),
+            (
+                Samples { displacement: &[1.0, 1.0, 1.0, 1.0, 1.0, f64::INFINITY], ..whole },
+                "[1][2]: `displacement` is inf",
+            ),
+            (Samples { time: &two, height: &three, ..Samples::default() }, "nothing is given to score"),
+        ] {
+            assert!(
+                samples.check().is_err_and(|error| error.contains(told)),
+                "{told}: {:?}",
+                samples.check()
+            );
+        }
+        for alone in [
+            Samples { time: &two, height: &three, settlement: &two, ..Samples::default() },
+            Samples { time: &two, height: &three, horizontal_displacement: &six, ..Samples::default() },
+        ] {
+            assert_eq!(alone.check(), Ok(()));
+        }
+    }
+
+    #[test]
+    fn places_of_a_layer_keep_their_distance_and_errors_the_kind_of_places() {
+        let (depths, x) = ([0.1, 0.5, 0.9], [0.0, 0.2, 0.6, 1.0]);
+        let set = ["layer.length=3.0".to_owned()];
+        let found = exact("cosine-layer", &[0.1], &depths, &x, &set).expect("inside");
+        let places = depths.iter().flat_map(|depth| x.iter().map(move |x| (found_height(*depth), 3.0 * x)));
+        let (height, distance): (Vec<f64>, Vec<f64>) = places.unzip();
+        let scored = |along: &[f64], sample: &str| {
+            let samples = Samples {
+                time: &found.time,
+                height: &height,
+                distance: &distance,
+                pressure: &found.pressure,
+                effective_stress: &found.effective_stress,
+                displacement: &found.displacement,
+                horizontal_displacement: along,
+                ..Samples::default()
+            };
+            score("cosine-layer", &samples, sample, Some("cosine-layer"), &set).expect("a score").errors
+        };
+        for sample in ["points", "nodes", "centres"] {
+            let rows = scored(&found.horizontal_displacement, sample);
+            assert!(rows.iter().all(|row| row.value.abs() < 1e-9), "{rows:?}");
+            assert!(rows.iter().any(|row| row.sample.name() == sample), "{sample}: {rows:?}");
+        }
+        let off: Vec<f64> = found.horizontal_displacement.iter().map(|along| 1.5 * along).collect();
+        let largest = scored(&off, "points").into_iter().map(|row| row.value.abs()).fold(0.0, f64::max);
+        assert!(largest > 1e-2, "a displacement along the layer counts: {largest}");
+    }
+
+    /// Height over the base of a layer 1 m high.
+    fn found_height(depth: f64) -> f64 {
+        1.0 - depth
+    }
 }

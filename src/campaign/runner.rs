@@ -458,4 +458,53 @@ mod tests {
             assert_eq!(alone, [jobs == 1; 4], "{jobs} jobs");
         }
     }
+
+    #[test]
+    fn shares_of_a_run_are_told_apart_from_the_first_on_and_are_all_of_it_together() {
+        use crate::campaign::shares::Parting;
+        let study = study();
+        let selected = [Selected { study: &study, store: None, is_kept: false }];
+        let all = study.cases(Tier::Full);
+        for parting in [Parting::Hash, Parting::Cost] {
+            let numbers = shares_of(&all, 3, parting);
+            for index in 1..=3 {
+                let options = RunOptions {
+                    shard: Some(Shard { index, count: 3, parting }),
+                    ..RunOptions::whole(Tier::Full, 1)
+                };
+                let found: Vec<String> =
+                    cases_of(&selected, &options)[0].iter().map(|case| case.hash()).collect();
+                let own = all.iter().zip(&numbers).filter(|(_, share)| **share == index - 1);
+                let wanted: Vec<String> = own.map(|(case, _)| case.hash()).collect();
+                assert_eq!(found, wanted, "{index} of 3 by {parting:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_longest_case_begins_first_and_records_that_stay_on_disk_are_thinned_or_left_out() {
+        let (study, longest) = (study(), Mutex::new(None));
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = RecordStore::new(folder.path(), "s");
+        let selected = [Selected { study: &study, store: Some(&store), is_kept: true }];
+        let tell = |progress: Progress| {
+            if let Progress::Planned { longest: Some(one), .. } = progress {
+                *longest.lock().expect("no thread panics") = Some(one.case);
+            }
+        };
+        let thin = |_: &Study, record: &mut Record| record.snapshots.clear();
+        let options = RunOptions::whole(Tier::Full, 1);
+        let report = run_studies_thinned(&selected, &options, &thin, &tell).remove(0);
+        assert!(report.records.len() == 4 && report.records.iter().all(|record| record.snapshots.is_empty()));
+        let most = study.cases(Tier::Full).into_iter().max_by_key(|case| estimated_work(case));
+        assert_eq!(longest.lock().expect("no thread panics").as_ref(), most);
+        let kept = store.kept(&study.planned[0].case).expect("a record");
+        assert_eq!(kept.snapshots.len(), 2, "on disk it is whole");
+        for resume in [false, true] {
+            let options = RunOptions { resume, only_on_disk: true, ..options.clone() };
+            let report = run_studies(&selected, &options, &|_| {}).remove(0);
+            let resumed = if resume { 4 } else { 0 };
+            assert_eq!((report.records.len(), report.tally.recorded, report.resumed), (0, 4, resumed));
+        }
+    }
 }

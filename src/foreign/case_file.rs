@@ -267,4 +267,31 @@ mod tests {
             assert!(found.contains(place), "the unit of {place}, which is not there");
         }
     }
+
+    #[test]
+    fn the_axes_are_those_of_the_body_and_its_numbers_stand_at_their_keys() {
+        for (scene, part) in [
+            (SceneKind::Terzaghi, "on which a load presses evenly"),
+            (SceneKind::CosineLayer, "from under the crest of the load"),
+            (SceneKind::Mandel, "from the middle of the slab"),
+        ] {
+            let file = CaseFile::of(&Case::seed(Task::Solve, scene));
+            assert!(file.axes.contains(part), "{scene:?}: {}", file.axes);
+            assert_eq!(file.column.base.is_some(), scene == SceneKind::CosineLayer, "{scene:?}");
+        }
+        let mut case = seed();
+        (case.column.height, case.column.load) = (2.0, 7e3);
+        (case.column.loading_time, case.column.initial_stress) = (3.0, 5e3);
+        case.points_per_cell = 3;
+        let file = CaseFile::of(&case);
+        let column = &file.column;
+        assert_eq!(
+            [column.height, column.load, column.loading_time, column.initial_stress],
+            [2.0, 7e3, 3.0, 5e3]
+        );
+        assert_eq!((file.cells, file.points_per_cell, column.self_weight), (20, 3, false));
+        assert_eq!((file.derived.cell_size, file.derived.unit_weight_of_water), (0.1, 9810.0));
+        assert_eq!((file.case, file.label), (case.hash(), case.label()));
+        assert_eq!(file.times[2], file.derived.seconds_per_time_factor, "T_v = 1");
+    }
 }

@@ -265,18 +265,21 @@ fn same_counts(case: &Case, states: &[SampledState]) -> Option<String> {
 }
 
 /// Largest difference of two results, over the largest value of its field; infinite where they have not the same
-/// places.
+/// places, or not the same fields.
 pub fn difference(first: &[SampledState], second: &[SampledState]) -> f64 {
-    let same_places = first.len() == second.len()
-        && first.iter().zip(second).all(|(a, b)| a.initial_height == b.initial_height);
+    let places = |states: &[SampledState]| -> Vec<[Vec<f64>; 2]> {
+        states.iter().map(|one| [one.initial_height.clone(), one.initial_distance.clone()]).collect()
+    };
+    let same_places = places(first) == places(second);
     if !same_places {
         return f64::INFINITY;
     }
-    let fields: [fn(&SampledState) -> &Vec<f64>; 4] = [
+    let fields: [fn(&SampledState) -> &[f64]; 5] = [
         |state| &state.pressure,
         |state| &state.effective_stress,
         |state| &state.displacement,
         |state| &state.horizontal_displacement,
+        |state| state.surface_displacement.as_slice(),
     ];
     fields.into_iter().map(|field| difference_of_field(first, second, field)).fold(0.0, f64::max)
 }
@@ -284,8 +287,12 @@ pub fn difference(first: &[SampledState], second: &[SampledState]) -> f64 {
 fn difference_of_field(
     first: &[SampledState],
     second: &[SampledState],
-    field: fn(&SampledState) -> &Vec<f64>,
+    field: fn(&SampledState) -> &[f64],
 ) -> f64 {
+    let counts = |states: &[SampledState]| states.iter().map(|state| field(state).len()).collect::<Vec<_>>();
+    if counts(first) != counts(second) {
+        return f64::INFINITY;
+    }
     let (a, b) = (first.iter().flat_map(field), second.iter().flat_map(field));
     let largest = a.clone().fold(0.0_f64, |most, value| most.max(value.abs()));
     let off = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -396,6 +403,8 @@ mod tests {
         let elsewhere = SampledState { initial_height: vec![0.0, 0.5], ..state(1.0) };
         assert_eq!(difference(&[state(1.0)], &[elsewhere]), f64::INFINITY);
         assert_eq!(difference(&[state(1.0)], &[]), f64::INFINITY);
+        let along = SampledState { initial_distance: vec![0.0, 0.5], ..state(1.0) };
+        assert_eq!(difference(&[state(1.0)], &[along]), f64::INFINITY, "at other distances");
     }
 
     #[test]
@@ -410,5 +419,118 @@ mod tests {
             let places = [0.05, 0.1, 0.1 + gap, 0.2 + gap];
             assert_eq!(bare(&places, 0.25 + gap, 0.1, true), is_bare.then_some([0.1, 0.1 + gap]), "{gap}");
         }
+    }
+
+    #[test]
+    fn repeats_differ_by_the_field_that_differs_most_in_whichever_state_and_by_one_that_only_one_has() {
+        let state = || SampledState {
+            initial_height: vec![0.0, 1.0],
+            pressure: vec![8.0, 4.0],
+            effective_stress: vec![-8.0, 4.0],
+            displacement: vec![-8e-3, 0.0],
+            horizontal_displacement: vec![8e-6, 0.0],
+            surface_displacement: Some(-8.0),
+            ..SampledState::default()
+        };
+        let fields: [fn(&mut SampledState) -> &mut [f64]; 5] = [
+            |state| &mut state.pressure,
+            |state| &mut state.effective_stress,
+            |state| &mut state.displacement,
+            |state| &mut state.horizontal_displacement,
+            |state| state.surface_displacement.as_mut_slice(),
+        ];
+        let all = || [state(), state(), state()];
+        assert_eq!(difference(&all(), &all()), 0.0);
+        for (number, field) in fields.into_iter().enumerate() {
+            for place in 0..3 {
+                let mut others = all();
+                field(&mut others[place])[0] *= 0.75;
+                let found = difference(&all(), &others);
+                assert!((found - 0.25).abs() < 1e-12, "field {number} of state {place}: {found}");
+            }
+        }
+        let lacking: [fn(&mut SampledState); 5] = [
+            |state| state.pressure.clear(),
+            |state| state.effective_stress.clear(),
+            |state| state.displacement.clear(),
+            |state| state.horizontal_displacement.clear(),
+            |state| state.surface_displacement = None,
+        ];
+        for (number, lack) in lacking.into_iter().enumerate() {
+            let mut others = all();
+            lack(&mut others[1]);
+            for (one, other) in [(&all(), &others), (&others, &all())] {
+                assert_eq!(difference(one, other), f64::INFINITY, "field {number}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_output_has_the_state_nearest_to_it_in_whatever_order_they_come() {
+        let heights = lattice(11, 0.0, 0.1);
+        let unit = case().seconds_per_time_factor();
+        let state = |factor: f64, mark: f64| SampledState {
+            time: factor * unit,
+            pressure: vec![mark; heights.len()],
+            initial_height: heights.clone(),
+            ..SampledState::default()
+        };
+        let mut all = vec![
+            state(0.050_04, 1.0),
+            state(0.050_01, 2.0),
+            state(0.049_96, 3.0),
+            state(0.07, 4.0),
+            state(0.100_09, 5.0),
+            state(0.099_95, 6.0),
+        ];
+        for _ in 0..all.len() {
+            let found = states_at_outputs(&case(), &all).expect("both outputs");
+            let marks: Vec<f64> = found.iter().map(|state| state.pressure[0]).collect();
+            assert_eq!(marks, [2.0, 6.0]);
+            all.rotate_left(1);
+        }
+        // The first of the two is missing as well as the last, and both are named.
+        let early = said(&[state(0.1, 1.0)]);
+        assert!(early.contains("no state at T_v = 0.05 (") && early.contains("it has 0.1"), "{early}");
+        assert!(said(&[state(0.07, 1.0)]).contains("no state at T_v = 0.05, 0.1 ("));
+        assert!(said(&[]).ends_with("it has none"));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_ended_on_purpose() {
+        use crate::foreign::started_processes::{Found, Seen};
+        use std::os::unix::process::ExitStatusExt;
+        let seen = |id: i32| Seen { id, name: format!("p{id}") };
+        let run = |ending: Ending, seen_alive: &[i32], lives_on: &[i32]| Finished {
+            ending,
+            seconds: 1.0,
+            cpu_seconds: None,
+            peak_memory: None,
+            output: "out\n".to_owned(),
+            errors: String::new(),
+            found: Found {
+                seen: seen_alive.iter().copied().map(seen).collect(),
+                lives_on: lives_on.iter().copied().map(seen).collect(),
+            },
+        };
+        let ended = || Ending::Ended(ExitStatus::from_raw(0));
+        for (ending, seen_alive, lives_on, told) in [
+            (ended(), &[][..], &[][..], None),
+            (ended(), &[4, 5], &[], Some("it left processes behind, which were ended: 4 (p4), 5 (p5)")),
+            (ended(), &[4, 5], &[5], Some("processes of it could not be ended: 5 (p5)")),
+            (Ending::TimedOut, &[4], &[], None),
+            (Ending::TimedOut, &[4, 5], &[4], Some("processes of it could not be ended: 4 (p4)")),
+            (Ending::Stopped, &[4], &[], None),
+        ] {
+            let found = of_processes(&run(ending, seen_alive, lives_on));
+            assert_eq!(found.as_deref(), told);
+        }
+        // The errors of a run are repeated, and its output only where there are none.
+        let plain = run(ended(), &[], &[]);
+        assert_eq!(kept_words(&plain), ["out"]);
+        let wrong = Finished { errors: "1\n2\n3\n4\n5\n".to_owned(), ..plain };
+        assert_eq!(kept_words(&wrong), ["1", "2", "3", "4", "5"]);
+        assert_eq!(last_words(&wrong), ". The last it said: 2 / 3 / 4 / 5");
     }
 }

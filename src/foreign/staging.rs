@@ -328,6 +328,7 @@ mod tests {
         );
         assert_eq!(words(&["./toy", "{case}"])[0], beside("./toy"));
         assert_eq!(words(&["./missing"])[0], beside("./missing"));
+        assert_eq!(words(&["{study}/toy", "{study}/adapter.py"]), [beside("toy"), beside("adapter.py")]);
     }
 
     #[test]
@@ -355,6 +356,8 @@ mod tests {
             assert_ne!(digest(), before, "{used}");
             before = digest();
         }
+        let by_folder = solver(folder.path(), &["sh", "{study}/adapter.py", "{case}"]);
+        assert_eq!(program_digest(&by_folder), Some(before.clone()), "the same file by another name");
         let other_shell = solver(folder.path(), &["cat", "adapter.py", "{case}"]);
         assert_ne!(program_digest(&other_shell), Some(before), "another program of the system");
     }

@@ -275,4 +275,34 @@ mod tests {
         let after = BTreeMap::from([("c", of(["1", "1", "2"])), ("d", of(["1", "9", "9"]))]);
         assert_eq!(nearest(&before, &after), BTreeMap::from([("a", "c"), ("b", "d")]));
     }
+
+    #[test]
+    fn an_input_that_is_given_on_one_side_only_is_told_from_either() {
+        let plain = inputs("", "[4, 8]");
+        let jittered = inputs("points.jitter = 0.1", "[4, 8]");
+        let forth = told(&plain, &jittered);
+        let back = told(&jittered, &plain);
+        assert!(forth.iter().any(|one| one.contains("jitter")), "{forth:?}");
+        assert_eq!(forth.len(), back.len());
+        let of = |all: [(&'static str, &'static str); 2]| BTreeMap::from(all);
+        let (one, other) = (of([("k", "1"), ("l", "2")]), of([("k", "1"), ("m", "2")]));
+        for (one, other) in [(&one, &other), (&other, &one)] {
+            assert_eq!(unlike(one, other).collect::<Vec<_>>(), ["l", "m"]);
+        }
+        // What a side does not know is `not given` there.
+        let with = |key: Option<&str>| CaseInputs {
+            shared: [("scene", "terzaghi")]
+                .into_iter()
+                .chain(key.map(|key| (key, "7")))
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+            own: BTreeMap::from(["a", "b"].map(|label| (label.to_owned(), Inputs::new()))),
+        };
+        assert_eq!(told(&with(None), &with(Some("new"))), ["new not given → 7 in 2 cases"]);
+        assert_eq!(told(&with(Some("old")), &with(None)), ["old 7 → not given in 2 cases"]);
+        assert_eq!(
+            told(&with(Some("old")), &with(Some("new"))),
+            ["new not given → 7 in 2 cases", "old 7 → not given in 2 cases"]
+        );
+    }
 }

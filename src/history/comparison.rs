@@ -478,4 +478,40 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert!(found.values().all(|one| one.class == "oscillatory" && one.order.is_none()), "{found:?}");
     }
+
+    #[test]
+    fn every_axis_of_a_label_is_refined_towards_more_cells_and_smaller_steps() {
+        for (finer, coarser) in [
+            ("cells=8", "cells=4"),
+            ("growth=0.05", "growth=0.1"),
+            ("seconds=1e-3", "seconds=2e-3"),
+            ("courant=0.25", "courant=0.5"),
+            ("stable=0.25", "stable=0.5"),
+            ("tolerance=1e-5", "tolerance=1e-4"),
+        ] {
+            let [(fine, axis), (coarse, other)] = [finer, coarser].map(|word| level(word).expect("an axis"));
+            assert!(fine < coarse && axis == other, "{finer} {fine}, {coarser} {coarse}");
+        }
+        for word in ["points=2", "GIMP", "cells=many"] {
+            assert_eq!(level(word), None, "{word}");
+        }
+    }
+
+    #[test]
+    fn an_order_is_told_from_a_twentieth_on_and_one_that_is_lost_or_won() {
+        let values = |order: f64| -> BTreeMap<String, f64> {
+            let level = |cells: u32| (f64::from(cells) / 4.0).powf(-order);
+            [4, 8, 16].map(|cells| (format!("MPM cells={cells} | pressure T_v=0.1"), level(cells))).into()
+        };
+        let told = |before: f64, after: f64| {
+            let (before, after) = (values(before), values(after));
+            let golden = GoldenFile { values: before.clone(), ..GoldenFile::of("s", &[], "-") };
+            order_changes(&before, &after, &compare(&golden, &after)).len()
+        };
+        for (before, after, count) in
+            [(2.0, 2.04, 0), (2.0, 2.06, 1), (2.0, 1.96, 0), (2.0, 1.94, 1), (2.0, -1.0, 1), (-1.0, 2.0, 1)]
+        {
+            assert_eq!(told(before, after), count, "{before} {after}");
+        }
+    }
 }

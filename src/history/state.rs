@@ -270,4 +270,44 @@ mod tests {
         assert_eq!(state.seconds.get(&records[0].case.label()), Some(&vec![3.0, 7.0]));
         assert_eq!(state.seconds.len(), 1, "what was not timed has none");
     }
+
+    #[test]
+    fn a_command_stands_for_the_one_solver_of_a_study_once_a_round_and_for_its_cases_alone() {
+        let study = |solvers: &[&str]| {
+            let solver = |name: &&str| {
+                format!(
+                    "[[solver]]\nname = \"{name}\"\ncommand = [\"old\"]\nresult = \"{{out}}/a.csv\"\nrepeats = 3\n\
+                     version = [\"old\", \"--version\"]\n"
+                )
+            };
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\n{}[[sweep]]\nmethod = ['MPM', '{}']\nintegrator = ['implicit']\n\
+                 cells = [4]\n",
+                solvers.iter().map(solver).collect::<String>(),
+                solvers.first().unwrap_or(&"GIMP")
+            );
+            Study::check(&StudySource { name: "s.toml".to_owned(), text }).expect("sound")
+        };
+        let found = with_command(&study(&["toy"]), " new  {case} {out} ").expect("one solver");
+        let solver = &found.solvers[0];
+        assert_eq!(solver.command, ["new", "{case}", "{out}"]);
+        assert_eq!(
+            (solver.repeats, solver.warm_up, solver.version.len(), solver.is_given()),
+            (1, false, 0, false)
+        );
+        assert!(found.planned.len() == 1 && found.planned[0].case.is_attached());
+        for (solvers, command, told) in [
+            (&["toy"][..], " ", "the command is empty"),
+            (&["toy", "other"], "new", "attaches 2 solvers"),
+            (&[], "new", "attaches 0 solvers"),
+        ] {
+            assert!(
+                with_command(&study(solvers), command).is_err_and(|error| error.contains(told)),
+                "{told}"
+            );
+        }
+        for (path, name) in [("golden/a.csv", Some("a")), ("golden/b/a.csv", None), ("other/a.csv", None)] {
+            assert_eq!(golden_name(path, "golden"), name, "{path}");
+        }
+    }
 }

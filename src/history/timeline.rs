@@ -187,4 +187,36 @@ mod tests {
         assert_eq!((next.moved, next.unpaired, next.largest_change), (0, 0, 0.0));
         assert_eq!((next.error_index, next.work_index), (step.error_index, step.work_index));
     }
+
+    #[test]
+    fn where_errors_and_work_went_are_told_apart_and_the_indices_go_on_from_the_last_step() {
+        let golden = |error: f64, steps: f64| {
+            let values = [("a | pressure points l2 terzaghi T_v=0.1", error), ("a | steps", steps)];
+            GoldenFile {
+                values: values.map(|(name, value)| (name.to_owned(), value)).into(),
+                ..GoldenFile::of("study", &[], "test")
+            }
+        };
+        let commit = Commit { hash: "0".repeat(40), date: "2026-11-25".to_owned(), subject: "s".to_owned() };
+        let before = golden(1e-2, 40.0);
+        let first = Step::of(&commit, None, None, &before);
+        for (error, steps, accuracy, cost) in [
+            (2e-2, 40.0, Trend::Regressed, Trend::Same),
+            (5e-3, 40.0, Trend::Improved, Trend::Same),
+            (1e-2, 80.0, Trend::Same, Trend::Regressed),
+            (1e-2, 20.0, Trend::Same, Trend::Improved),
+            (2e-2, 20.0, Trend::Regressed, Trend::Improved),
+        ] {
+            let step = Step::of(&commit, Some(&first), Some(&before), &golden(error, steps));
+            assert_eq!((step.accuracy, step.cost), (accuracy, cost), "{error} {steps}");
+            let last = Step { error_index: 3.0, work_index: 5.0, ..first.clone() };
+            let step = Step::of(&commit, Some(&last), Some(&before), &golden(error, steps));
+            assert!((step.error_index - 3.0 * error / 1e-2).abs() < 1e-12, "{}", step.error_index);
+            assert!((step.work_index - 5.0 * steps / 40.0).abs() < 1e-12, "{}", step.work_index);
+        }
+        assert_eq!(json_name("golden/a.json", "golden"), Some("a"));
+        for other in ["golden/b/a.json", "other/a.json", "golden/a.csv", "goldena.json"] {
+            assert_eq!(json_name(other, "golden"), None, "{other}");
+        }
+    }
 }

@@ -422,4 +422,134 @@ mod tests {
         let near = |(found, wanted): (&&Vec<f64>, f64)| (found[0] - wanted).abs() < 1e-15;
         assert!(found.iter().zip([0.3, 0.5, 0.02, -0.01]).all(near), "{found:?}");
     }
+
+    #[test]
+    fn files_are_one_result_where_folder_name_but_for_its_numbers_and_mesh_are_alike() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let write = |name: &str, levels: usize, has_cells: bool, time: f64| {
+            let lines = |count: usize, line: &dyn Fn(usize) -> String| -> String {
+                (0..count).map(line).collect::<Vec<_>>().concat()
+            };
+            let places = lines(levels, &|at| format!("0 {} 0\n", at as f64 / (levels - 1) as f64));
+            let count = if has_cells { levels - 1 } else { 0 };
+            let cells = lines(count, &|cell| format!("2 {cell} {}\n", cell + 1));
+            let types = "3\n".repeat(count);
+            let cells = if has_cells {
+                format!("CELLS {count} {}\n{cells}CELL_TYPES {count}\n{types}", 3 * count)
+            } else {
+                String::new()
+            };
+            let text = format!(
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {levels} double\n{places}{cells}\
+                 FIELD f 1\nTIME 1 1 double\n{time}\nPOINT_DATA {levels}\nSCALARS p double\nLOOKUP_TABLE default\n{}",
+                "1\n".repeat(levels)
+            );
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+            std::fs::write(&path, text).expect("a file");
+            path
+        };
+        let text = "columns = { y = \"coordinates[1]\", p = \"p\", u_y = \"\" }".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+        let first = ("a/col-10.vtk", 5, true);
+        for (other, cells) in [
+            // Only the number in the name differs.
+            (("a/col-20.vtk", 5, true), &[Some(4)][..]),
+            // The mesh, the folder, the name.
+            (("a/col-20.vtk", 9, true), &[Some(4), Some(8)]),
+            (("b/col-10.vtk", 5, true), &[Some(4), Some(4)]),
+            (("a/row-10.vtk", 5, true), &[Some(4), Some(4)]),
+            (("a/col-20.vtk", 5, false), &[Some(4), None]),
+        ] {
+            for is_turned in [false, true] {
+                let mut given = [(first, 1.0), (other, 2.0)];
+                let mut wanted = cells.to_vec();
+                if is_turned {
+                    given.reverse();
+                    wanted.reverse();
+                }
+                let files: Vec<Vec<PathBuf>> = given
+                    .map(|((name, levels, has_cells), time)| vec![write(name, levels, has_cells, time)])
+                    .into();
+                let runs = runs_of(&files, &mapping, BODY).expect("two states");
+                let found: Vec<Option<usize>> = runs.iter().map(|run| run.cells).collect();
+                assert_eq!(found, wanted, "{other:?}");
+                assert_eq!(runs.iter().map(|run| run.states.len()).sum::<usize>(), 2, "{other:?}");
+            }
+        }
+        // Of places without cells their number tells one result from another.
+        let places = |levels: [usize; 2]| {
+            let files =
+                levels.map(|levels| write(&format!("c/p-{levels}.vtk"), levels, false, levels as f64));
+            runs_of(&[files.to_vec()], &mapping, BODY).expect("two states").len()
+        };
+        assert_eq!(places([5, 6]), 2);
+        std::fs::copy(folder.path().join("c/p-5.vtk"), folder.path().join("c/p-7.vtk")).expect("a file");
+        let again = ["c/p-5.vtk", "c/p-7.vtk"].map(|name| vec![folder.path().join(name)]);
+        assert_eq!(runs_of(&again, &mapping, BODY).expect("one state, twice").len(), 1);
+    }
+
+    #[test]
+    fn states_of_one_file_belong_together_by_its_whole_name() {
+        let key = |name: &str, is_one_of_many| {
+            let file = PathBuf::from(name);
+            let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
+            key_of(&step, is_one_of_many, &Frame::default(), Some(4))
+        };
+        assert_eq!(key("run-10.xdmf", false), key("run-20.xdmf", false));
+        assert_ne!(key("run-10.xdmf", true), key("run-20.xdmf", true), "each of them is a series");
+        assert_eq!(key("run-10.xdmf", true), key("run-10.xdmf", true));
+    }
+
+    /// A mapping declares a time; then that of an array that it names counts, then that of a collection, which a user may
+    /// have written for files of another clock, and last the file's own. All but steps have the mapping's unit.
+    #[test]
+    fn a_time_is_that_of_the_mapping_then_of_its_array_then_of_the_collection_then_of_the_file() {
+        let file = PathBuf::from("a_7.vtu");
+        let array = |name: &str, on, value| Array {
+            name: name.to_owned(),
+            on,
+            components: 1,
+            tuples: 1,
+            values: vec![value],
+        };
+        for (declared, of_array, of_step, of_file, wanted) in [
+            ("list = [2.0]", Some(3.0), Some(5.0), Some(11.0), Some((120.0, "mapping"))),
+            ("files = { \"a_7.vtu\" = 2.0 }", Some(3.0), Some(5.0), Some(11.0), Some((120.0, "mapping"))),
+            ("step = 2.0", Some(3.0), Some(5.0), Some(11.0), Some((14.0, "mapping"))),
+            ("", Some(3.0), Some(5.0), Some(11.0), Some((180.0, "an array"))),
+            ("", Some(3.0), None, None, Some((180.0, "an array"))),
+            ("", None, Some(5.0), Some(11.0), Some((300.0, "all.pvd"))),
+            ("", None, Some(5.0), None, Some((300.0, "all.pvd"))),
+            ("", None, None, Some(11.0), Some((660.0, "the file"))),
+            ("", None, Some(f64::NAN), Some(11.0), None),
+            ("", None, None, None, None),
+        ] {
+            let name = of_array.map_or(String::new(), |_| ", t = \"TIME\"".to_owned());
+            let text = format!(
+                "columns = {{ y = \"coordinates[1]\", p = \"p\", u_y = \"\"{name} }}\nunits.time = \"min\"\n\
+                 [time]\n{declared}\n"
+            );
+            let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+            let step = Step {
+                named: "all.pvd".into(),
+                file: file.clone(),
+                kind: Kind::Vtu,
+                place: 0,
+                time: of_step,
+            };
+            let mut arrays = vec![array("p", Association::Points, 1.0)];
+            arrays.extend(of_array.map(|time| array("TIME", Association::Whole, time)));
+            let frame = Frame { time: of_file, coordinates: vec![[0.0; 3]], arrays, ..Frame::default() };
+            let columns = FrameRows::find(&frame, &file, &mapping, BODY).expect("its columns");
+            let found = reading().time_of(&step, &frame, &columns, &mapping, BODY);
+            match wanted {
+                None => assert!(found.is_err(), "{declared}: {found:?}"),
+                Some((seconds, from)) => {
+                    let found = found.expect("a time");
+                    assert!(found.0 == seconds && found.1.contains(from), "{declared}: {found:?}");
+                }
+            }
+        }
+    }
 }

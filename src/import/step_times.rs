@@ -135,4 +135,99 @@ mod tests {
         assert_eq!(members(&at("b_MPVector_010.vtk"), &join), [at("b_MPVector_010.vtk")]);
         assert_eq!(members(&at("a.b*.vtk"), &join), [at("a.b*.vtk")]);
     }
+
+    /// The seconds that a mapping declares for a file, or what is said of it.
+    fn declared(time: &str, unit: &str, name: &str, place: usize) -> Result<Option<f64>, String> {
+        let text = format!("[units]\ntime = \"{unit}\"\n[time]\n{time}\n");
+        let source = crate::study::file::StudySource { name: "m.toml".to_owned(), text };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 250.0 };
+        declared_time(Path::new("folder").join(name).as_path(), place, &mapping, body)
+    }
+
+    #[test]
+    fn a_declared_time_is_that_of_its_file_in_the_unit_of_the_mapping_and_steps_are_in_seconds() {
+        let list = "list = [2.0, 3.0, 5.0]";
+        let files = "files = { \"a_1.vtu\" = 7.0, \"a_2.vtu\" = 11.0 }";
+        let step = "step = 0.5\npattern = \"a_{step}*.vtu\"";
+        for (time, unit, name, place, wanted) in [
+            ("", "min", "a_1.vtu", 0, None),
+            (list, "s", "a_1.vtu", 0, Some(2.0)),
+            (list, "min", "a_1.vtu", 0, Some(120.0)),
+            (list, "min", "a_1.vtu", 1, Some(180.0)),
+            (list, "h", "a_1.vtu", 2, Some(18_000.0)),
+            (list, "d", "a_1.vtu", 1, Some(259_200.0)),
+            (list, "time-factor", "a_1.vtu", 2, Some(1250.0)),
+            (files, "s", "a_1.vtu", 5, Some(7.0)),
+            (files, "min", "a_1.vtu", 0, Some(420.0)),
+            (files, "min", "a_2.vtu", 0, Some(660.0)),
+            (files, "time-factor", "a_2.vtu", 0, Some(2750.0)),
+            (files, "min", "a_3.vtu", 0, None),
+            (step, "s", "a_12.vtu", 0, Some(6.0)),
+            (step, "min", "a_12.vtu", 3, Some(6.0)),
+            (step, "time-factor", "a_12_of_90.vtu", 0, Some(6.0)),
+            ("step = 0.5", "d", "a_12_of_90.vtu", 0, Some(45.0)),
+            // Of several the one that says most of the file.
+            (&format!("{list}\n{files}\n{step}"), "min", "a_2.vtu", 1, Some(660.0)),
+            (&format!("{list}\n{files}\n{step}"), "min", "a_3.vtu", 1, Some(180.0)),
+            (&format!("{files}\n{step}"), "min", "a_3.vtu", 1, Some(1.5)),
+        ] {
+            assert_eq!(declared(time, unit, name, place), Ok(wanted), "{time} {unit} {name} {place}");
+        }
+    }
+
+    #[test]
+    fn a_file_beyond_the_list_or_without_a_number_of_its_step_is_told() {
+        for (time, name, place, told) in [
+            ("list = [2.0, 3.0]", "a_1.vtu", 2, "it is file 3 of its run, and [time] list has 2 times"),
+            ("step = 1.0", "column.vtu", 0, "its name has no number of a step"),
+            (
+                "step = 1.0\npattern = \"b_{step}.vtu\"",
+                "a_1.vtu",
+                0,
+                "does not match the pattern `b_{step}.vtu`",
+            ),
+        ] {
+            let error = declared(time, "s", name, place).expect_err(name);
+            assert!(error.contains(told), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_joined_is_one_state_of_the_same_points() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |name: &str, points: usize, array: &str| {
+            let places = (0..points).map(|at| format!("0 {at} 0\n")).collect::<Vec<_>>().concat();
+            let text = format!(
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS {points} double\n{places}\
+                 POINT_DATA {points}\nSCALARS {array} double\nLOOKUP_TABLE default\n{}",
+                "4\n".repeat(points)
+            );
+            std::fs::write(folder.path().join(name), text).expect("a file");
+            folder.path().join(name)
+        };
+        let names = ["p", "u"].map(str::to_owned).into();
+        let patterns = ["p_*.vtk", "u_*.vtk"].map(str::to_owned);
+        let joined = |number: &str| {
+            let file = folder.path().join(format!("p_{number}.vtk"));
+            let steps = steps_of(&file, &mut Vec::new()).expect("a state");
+            let mut found = None;
+            read_states(&steps, Wanted(&names), &mut |step, mut frame| {
+                found = Some(join(step, &patterns, Wanted(&names), &mut frame).map(|()| frame));
+                Ok(())
+            })
+            .expect("a state");
+            found.expect("a state").map_err(|error| error.to_string())
+        };
+        for (number, points) in [("1", 2), ("2", 3), ("3", 2)] {
+            write(&format!("p_{number}.vtk"), 2, "p");
+            if number != "3" {
+                write(&format!("u_{number}.vtk"), points, "u");
+            }
+        }
+        let names_of = |frame: Frame| frame.arrays.into_iter().map(|one| one.name).collect::<Vec<_>>();
+        assert_eq!(joined("1").map(names_of), Ok(vec!["p".to_owned(), "u".to_owned()]));
+        assert!(joined("2").is_err_and(|told| told.contains("u_2.vtk")), "it has other points");
+        assert_eq!(joined("3").map(names_of), Ok(vec!["p".to_owned()]), "there is nothing to join");
+    }
 }

@@ -265,4 +265,73 @@ mod tests {
         let newer = Provenance { version: "1.1.0".to_owned(), ..origin() };
         assert!(origins(&[origin(), newer]).several_programs().is_some());
     }
+
+    /// What is another in an origin.
+    type Change = fn(&mut Provenance);
+
+    /// A change of every property of an origin.
+    const CHANGES: [(&str, Change); 7] = [
+        ("version", |one| one.version = "1.1.0".to_owned()),
+        ("sources", |one| one.sources = "bbbb".to_owned()),
+        ("commit", |one| one.commit = "c2".to_owned()),
+        ("dirty", |one| one.dirty = true),
+        ("compiler", |one| one.compiler = "rustc 1.90.0".to_owned()),
+        ("target", |one| one.target = "aarch64-apple-darwin".to_owned()),
+        ("profile", |one| one.profile = "quick".to_owned()),
+    ];
+
+    #[test]
+    fn every_property_is_of_the_program_or_of_the_build_and_those_that_cost_time_are_of_one_build() {
+        for (name, change) in CHANGES {
+            let (one, mut other) = (origin(), origin());
+            change(&mut other);
+            let is_of_program = ["version", "sources"].contains(&name);
+            assert_eq!(one.is_of_one_program_with(&other), !is_of_program, "{name}");
+            assert_eq!(one.program_tag() == other.program_tag(), !is_of_program, "{name}");
+            // A tag of what is told of a build: two records with equal tags are told as of one.
+            assert_eq!(one.build_tag() == other.build_tag(), is_of_program, "{name}");
+            let is_of_times = ["compiler", "target", "profile"].contains(&name);
+            for (one, other) in [(&one, &other), (&other, &one)] {
+                assert_eq!(one.is_of_one_build_with(other), !is_of_times, "{name}");
+            }
+        }
+        let (one, other) = (origin(), origin());
+        assert_eq!((one.build_tag(), one.program_tag()), (other.build_tag(), other.program_tag()));
+    }
+
+    #[test]
+    fn what_is_told_of_builds_and_programs_counts_all_their_records() {
+        let of = |changes: &[&str]| {
+            let mut origin = origin();
+            CHANGES
+                .iter()
+                .filter(|(name, _)| changes.contains(name))
+                .for_each(|(_, change)| change(&mut origin));
+            origin
+        };
+        let counted = |all: &[(&[&str], usize)]| {
+            let mut origins = Origins::default();
+            for (changes, records) in all {
+                let mut more = Origins::default();
+                more.add_many(&of(changes), *records);
+                origins.join(&more);
+            }
+            origins
+        };
+        // Builds that differ in their commit alone are alike in their profile, in any order.
+        for all in [
+            [(&["profile"][..], 3), (&["profile", "commit"][..], 40), (&[][..], 100)],
+            [(&["profile", "commit"], 40), (&[], 100), (&["profile"], 3)],
+            [(&[], 60), (&["profile"], 43), (&[], 40)],
+        ] {
+            let origins = counted(&all);
+            assert_eq!(origins.main(), Some(&origin()), "100 of 143");
+            let told = origins.differences_from(&origin());
+            assert_eq!(told.as_deref(), Some("profile `quick` in 43 instead of `release`"), "{all:?}");
+        }
+        let programs =
+            counted(&[(&["sources"], 2), (&[], 5), (&["sources", "commit"], 30), (&["target"], 10)]);
+        let told = "32 of version 1.0.0 and sources bbbb, 15 of version 1.0.0 and sources aaaa";
+        assert_eq!(programs.several_programs().as_deref(), Some(told));
+    }
 }

@@ -364,4 +364,65 @@ mod tests {
         assert_eq!(step_rule("seconds=2 min").unwrap_or_default(), "{ seconds = \"2 min\" }");
         assert!(step_rule("seconds").is_err() && numbers("--zeta", "0.1,x").is_err());
     }
+
+    #[test]
+    fn what_is_compared_is_for_the_equations_that_the_assignments_choose() {
+        use oedometer_exact::large_strain::diffusion::{LargeStrainModel, Water};
+        use oedometer_exact::manufactured::motion::{ManufacturedModel, Motion};
+        use oedometer_soil::continuity::Continuity;
+        use oedometer_soil::law::Law;
+        let set =
+            |typed: &[&str]| Assignments { assignments: typed.iter().map(|one| (*one).to_owned()).collect() };
+        let large = |law, continuity| {
+            ReferenceKind::LargeStrain(LargeStrainModel { law, continuity, water: Water::Compressible })
+        };
+        let swirl = |law| {
+            ReferenceKind::Manufactured(ManufacturedModel { law, ..ManufacturedModel::of(Motion::Vortex) })
+        };
+        let [dropped, other_law] =
+            ["material.continuity=constant-porosity-gradient", "material.law=porosity-dependent"];
+        for (kind, typed, wanted) in [
+            (LargeStrainModel::XIE_LEO, &[][..], large(Law::LogLinear, Continuity::Conservative)),
+            (
+                LargeStrainModel::XIE_LEO,
+                &[other_law],
+                large(Law::PorosityDependent, Continuity::Conservative),
+            ),
+            (
+                LargeStrainModel::XIE_LEO,
+                &[dropped],
+                large(Law::LogLinear, Continuity::ConstantPorosityGradient),
+            ),
+        ]
+        .map(|(model, typed, wanted)| (ReferenceKind::LargeStrain(model), typed, wanted))
+        .into_iter()
+        .chain(
+            [
+                (swirl(Law::Linear), &["material.law=neo-hookean"], swirl(Law::NeoHookean)),
+                (ReferenceKind::Terzaghi, &["material.porosity=0.4"], ReferenceKind::Terzaghi),
+            ]
+            .map(|(kind, typed, wanted)| (kind, &typed[..], wanted)),
+        ) {
+            let asked = Asked::of_solution(kind, &set(typed)).expect("a column");
+            assert_eq!(asked.references, [wanted], "{typed:?}");
+        }
+        let outputs = |typed: &[&str], time_factor: Option<&str>| Outputs {
+            set: set(typed),
+            time_factor: time_factor.map(str::to_owned),
+            ..Outputs::default()
+        };
+        for (typed, law) in [(&[][..], Law::LogLinear), (&[other_law], Law::PorosityDependent)] {
+            let asked = Asked::of_scene("xie-leo", &outputs(typed, None)).expect("a scene");
+            assert!(
+                asked.references.contains(&large(law, Continuity::Conservative)),
+                "{:?}",
+                asked.references
+            );
+            assert_eq!((asked.case().material.law, asked.requested.len()), (law, 0), "no time is asked for");
+        }
+        let asked = Asked::of_scene("terzaghi", &outputs(&["column.load=5 kPa"], Some("0.3,0.2")));
+        let asked = asked.expect("a scene");
+        assert_eq!((asked.parameters.load, asked.references[0]), (5e3, ReferenceKind::Terzaghi));
+        assert_eq!(asked.requested.len(), 2, "{:?}", asked.requested);
+    }
 }

@@ -111,8 +111,10 @@ impl ExternalSolver {
     }
 }
 
-/// The file of a folder that a word names; `None` for a word without a letter or one that begins like an option.
+/// The file of a folder that a word names, as it stands or behind `{study}/`, which is that folder; `None` for a word
+/// without a letter or one that begins like an option.
 pub fn file_beside(folder: &std::path::Path, word: &str) -> Option<PathBuf> {
+    let word = word.strip_prefix("{study}/").unwrap_or(word);
     let is_name = word.contains(|letter: char| letter.is_alphabetic()) && !word.starts_with('-');
     Some(folder.join(word)).filter(|path| is_name && path.is_file())
 }

@@ -191,6 +191,9 @@ fn add_wall(wall: &mut Vec<WallSample>, others: Vec<WallSample>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::record::record_of_attached;
+    use crate::record::{AttachedRun, Status};
+    use crate::study::file::StudySource;
 
     fn times(wall: &[WallSample]) -> Vec<f64> {
         let mut seconds: Vec<f64> = wall.iter().map(|sample| sample.seconds).collect();
@@ -229,5 +232,79 @@ mod tests {
             add_wall(&mut again, first.clone());
             assert_eq!(times(&again), times(&first), "the same store once more adds nothing");
         }
+    }
+
+    /// What is another in a record.
+    type Change = fn(&mut Record);
+
+    fn record(case: &Case, seconds: f64, change: Change) -> Record {
+        let about = AttachedRun::default();
+        let record = record_of_attached(case, &[], Status::Ok, Vec::new(), 0.1, about).expect("a record");
+        let wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }];
+        let mut record = Record { wall, ..record };
+        change(&mut record);
+        record
+    }
+
+    #[test]
+    fn wall_times_of_one_build_come_together_and_those_of_another_stay_out() {
+        let source = StudySource {
+            name: "s.toml".to_owned(),
+            text: "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n"
+                .to_owned(),
+        };
+        let study = Study::check(&source).expect("sound");
+        let case = &study.planned[0].case;
+        let changes: [(&str, bool, Change); 6] = [
+            ("nothing", true, |_| {}),
+            ("commit", true, |record| record.provenance.commit = "another".to_owned()),
+            ("tree", true, |record| record.provenance.dirty ^= true),
+            ("compiler", false, |record| record.provenance.compiler = "rustc 0.0.0".to_owned()),
+            ("target", false, |record| record.provenance.target = "elsewhere".to_owned()),
+            ("profile", false, |record| record.provenance.profile = "another".to_owned()),
+        ];
+        for (name, is_one_build, change) in changes {
+            // The record of the other build stands first, in the middle, last.
+            for place in 0..3 {
+                let folder = tempfile::TempDir::new().expect("a folder");
+                let store = |name: &str| RecordStore::new(&folder.path().join(name), "s");
+                let (target, others) = (store("target"), ["a", "b", "c"].map(store));
+                for (at, store) in others.iter().enumerate() {
+                    let change = if at == place { change } else { |_: &mut Record| {} };
+                    store.write(&record(case, (at + 1) as f64, change)).expect("written");
+                }
+                assert!(bring(&study, case, &target, &others).expect("alike"), "{name}");
+                let own = [1.0, 2.0, 3.0];
+                let wanted: Vec<f64> = match (is_one_build, place) {
+                    (true, _) => own.to_vec(),
+                    // The first record is the one that the others join.
+                    (false, 0) => own[..1].to_vec(),
+                    (false, _) => own.into_iter().filter(|seconds| *seconds != own[place]).collect(),
+                };
+                let kept = target.kept(case).expect("a record");
+                assert_eq!(times(&kept.wall), wanted, "{name} at {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn records_with_unlike_values_are_no_merge_and_a_case_without_a_record_is_a_hole() {
+        let source = StudySource {
+            name: "s.toml".to_owned(),
+            text: "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n"
+                .to_owned(),
+        };
+        let study = Study::check(&source).expect("sound");
+        let case = &study.planned[0].case;
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = |name: &str| RecordStore::new(&folder.path().join(name), "s");
+        let stores = ["a", "b"].map(store);
+        assert!(!bring(&study, case, &store("target"), &stores).expect("nothing"), "a hole");
+        stores[1].write(&record(case, 1.0, |_| {})).expect("written");
+        assert!(bring(&study, case, &store("target"), &stores).expect("one record"));
+        assert!(bring(&study, case, &store("target"), &[]).expect("the target's own"));
+        stores[0].write(&record(case, 1.0, |record| record.counters.steps += 1)).expect("written");
+        let told = bring(&study, case, &store("target"), &stores).expect_err("unlike");
+        assert!(told.to_string().contains("have different results of"), "{told}");
     }
 }

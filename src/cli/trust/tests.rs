@@ -38,6 +38,40 @@ fn what_is_remembered_follows_commands_environment_and_files_and_no_sweep() {
     assert_ne!(digest(at, "", "\"toy\""), own, "the adapter is another one");
 }
 
+/// What is asked about is what would be started then: a study may have been read before a file of it was changed, and the
+/// program that tells the version is no part of a case's identity.
+#[test]
+fn a_yes_ends_with_a_change_of_any_file_that_is_started() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = folder.path();
+    for name in ["adapter.sh", "version.sh", "other.sh", "template.prj"] {
+        fs::write(at.join(name), "true").expect("a file");
+    }
+    let more = "version = [\"sh\", \"version.sh\"]\nfiles = [\"template.prj\"]\n";
+    let again = |command: &str| {
+        let mut study = study(at, more, "\"toy\"");
+        study.solvers[0].command[1] = command.to_owned();
+        study
+    };
+    for command in ["adapter.sh", "./adapter.sh", "{study}/adapter.sh"] {
+        let read_before = again(command);
+        for (name, is_started) in [("adapter.sh", true), ("version.sh", true), ("other.sh", false)] {
+            let digest = |study: &Study| digest_of(study, &starting(study));
+            let before = digest(&read_before);
+            fs::write(at.join(name), "rm -r elsewhere").expect("a file");
+            assert_eq!(digest(&read_before) != before, is_started, "{command}: {name}");
+            assert_eq!(digest(&again(command)) != before, is_started, "{command}: {name}, read anew");
+            fs::write(at.join(name), "true").expect("a file");
+            assert_eq!(digest(&again(command)), before, "{name} is as it was");
+        }
+        let before = digest_of(&read_before, &starting(&read_before));
+        fs::write(at.join("template.prj"), "another").expect("a file");
+        let study = again(command);
+        assert_ne!(digest_of(&study, &starting(&study)), before, "a file that `files` names");
+        fs::write(at.join("template.prj"), "true").expect("a file");
+    }
+}
+
 #[test]
 fn a_study_starts_nothing_until_somebody_allows_it() {
     let folder = tempfile::TempDir::new().expect("a folder");

@@ -23,6 +23,82 @@ pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
     }
 }
 
+/// A state with samples at heights and distances from the crest, and their displacements.
+fn state(places: &[[f64; 2]], displacement: &[f64], curve: Option<f64>) -> SampledState {
+    SampledState {
+        initial_height: places.iter().map(|place| place[0]).collect(),
+        initial_distance: places.iter().map(|place| place[1]).collect(),
+        displacement: displacement.to_vec(),
+        surface_displacement: curve,
+        ..SampledState::default()
+    }
+}
+
+#[test]
+fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_crest() {
+    use crate::case::Task;
+    use oedometer_mpm::scene::SceneKind::{CosineLayer, Mandel, Terzaghi};
+    let settled = |scene, state: SampledState| {
+        let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, state).settlement;
+        (!settlement.is_nan()).then_some(settlement)
+    };
+    let mut samples = [([0.0, 0.0], 0.0), ([1.0, 0.0], -3.0), ([0.5, 0.0], -1.0)];
+    for _ in 0..3 {
+        let (places, up): (Vec<[f64; 2]>, Vec<f64>) = samples.into_iter().unzip();
+        for scene in [Terzaghi, CosineLayer] {
+            assert_eq!(settled(scene, state(&places, &up, None)), Some(3.0), "{scene:?} {places:?}");
+            assert_eq!(settled(scene, state(&places, &up, Some(-7.0))), Some(7.0));
+            assert_eq!(settled(scene, state(&places, &[], None)), None, "without displacements");
+        }
+        assert_eq!(settled(Mandel, state(&places, &up, None)), None, "a slab's plate presses across");
+        assert_eq!(settled(Mandel, state(&places, &up, Some(-7.0))), Some(7.0));
+        samples.rotate_left(1);
+    }
+    // Up to the round-off of single precision, and no further; in a column wherever it stands across.
+    for (place, of_column, of_layer) in [
+        ([1.0 - 0.9 * RIM, 0.0], Some(3.0), Some(3.0)),
+        ([1.0 - 1.1 * RIM, 0.0], None, None),
+        ([1.0, 0.9 * RIM], Some(3.0), Some(3.0)),
+        ([1.0, 0.5], Some(3.0), None),
+    ] {
+        assert_eq!(settled(Terzaghi, state(&[place], &[-3.0], None)), of_column, "{place:?}");
+        assert_eq!(settled(CosineLayer, state(&[place], &[-3.0], None)), of_layer, "{place:?}");
+    }
+}
+
+#[test]
+fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
+    use crate::case::Task;
+    use oedometer_mpm::scene::SceneKind;
+    let given = SampledState {
+        time: 8.0,
+        volume: vec![2.0],
+        pressure: vec![3.0],
+        effective_stress: vec![5.0],
+        horizontal_displacement: vec![7.0],
+        ..state(&[[0.25, 0.75]], &[11.0], None)
+    };
+    for (sample, wanted) in
+        [(Sample::Points, [1, 0, 0]), (Sample::Centres, [0, 1, 0]), (Sample::Nodes, [0, 0, 1])]
+    {
+        let column = snapshot_of(&Case::seed(Task::Solve, SceneKind::Terzaghi), sample, given.clone());
+        let layer = snapshot_of(&Case::seed(Task::Solve, SceneKind::CosineLayer), sample, given.clone());
+        for (found, is_plane) in [(column, false), (layer, true)] {
+            let all = [&found.points, &found.centres, &found.nodes];
+            assert_eq!(all.map(|samples| samples.initial_height.len()), wanted, "{sample:?}");
+            let place = wanted.iter().position(|count| *count == 1).expect("one");
+            let Samples { initial_height, volume, pressure, effective_stress, displacement, plane, .. } =
+                all[place];
+            let fields =
+                [initial_height, volume, pressure, effective_stress, displacement].map(|field| field[0]);
+            assert_eq!((found.time, fields), (8.0, [0.25, 2.0, 3.0, 5.0, 11.0]));
+            let along =
+                plane.as_ref().map(|plane| [plane.initial_distance[0], plane.horizontal_displacement[0]]);
+            assert_eq!(along, is_plane.then_some([0.75, 7.0]));
+        }
+    }
+}
+
 #[cfg(unix)]
 mod runs {
     use super::*;
@@ -220,5 +296,44 @@ mod runs {
             }
         });
         assert_eq!(most.load(Ordering::SeqCst), 2);
+    }
+
+    #[test]
+    fn a_record_is_what_a_solver_would_give_while_program_and_version_are_the_same() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        std::fs::write(folder.path().join("adapter.sh"), "1").expect("a file");
+        let plain = solver(folder.path(), &["sh", "adapter.sh"]);
+        let asked = ExternalSolver { version: ["echo", "7"].map(str::to_owned).to_vec(), ..plain.clone() };
+        let given = ExternalSolver { files: vec!["a.csv".to_owned()], ..plain.clone() };
+        let unnamed = solver(folder.path(), &["sh", "-c", "true"]);
+        let own = program_digest(&plain);
+        let other = Some("0123456789abcdef".to_owned());
+        let version = |told: &str| Some(told.to_owned());
+        let record = run("exit 1", |_| {});
+        for (number, (solver, digest, version, may_start, wanted)) in [
+            (&plain, &own, None, true, true),
+            (&plain, &own, None, false, true),
+            (&plain, &other, None, true, false),
+            (&plain, &None, None, true, false),
+            (&asked, &own, version("7"), true, true),
+            (&asked, &own, version("8"), true, false),
+            (&asked, &own, None, true, false),
+            (&asked, &other, version("7"), true, false),
+            // What nobody allowed to start is not asked.
+            (&asked, &own, version("7"), false, false),
+            // What is there already is read again, and what nobody can tell is run again.
+            (&given, &own, None, true, false),
+            (&unnamed, &None, None, true, false),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let about = AttachedRun { program_digest: digest.clone(), version, ..AttachedRun::default() };
+            let record = Record { attached: Some(about), ..record.clone() };
+            let found = Attachment::new(solver, false).would_make(&record, may_start);
+            assert_eq!(found, wanted, "row {number}");
+        }
+        let of_this_program = Record { attached: None, ..record };
+        assert!(!Attachment::new(&plain, false).would_make(&of_this_program, true));
     }
 }

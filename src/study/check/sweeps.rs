@@ -439,4 +439,47 @@ mod tests {
         assert_eq!(uneven.uneven_path(), Some(("cells".to_owned(), 3, 2)), "the longer list second");
         assert_eq!(sweep(&["cells", "time_step"]).uneven_path(), None);
     }
+
+    /// Integrators of the cases of a sweep, and what is warned of.
+    fn integrators(sweep: &str, tables: &str) -> (Vec<IntegratorKind>, String) {
+        let text = format!(
+            "title = \"t\"\nscene = \"terzaghi\"\n{tables}\n[[sweep]]\nmethod = [\"MPM\"]\n{sweep}\n"
+        );
+        let source = crate::study::file::StudySource { name: "t.toml".to_owned(), text };
+        let study = crate::study::check::Study::check(&source).expect("sound");
+        let all = study.planned.iter().map(|planned| planned.case.integrator).collect();
+        (all, study.warnings.join("\n"))
+    }
+
+    #[test]
+    fn one_case_that_would_take_minutes_makes_its_whole_sweep_implicit_wherever_it_stands() {
+        use IntegratorKind::{Explicit, Implicit};
+        let told = |warnings: &str| warnings.contains("the sweep names no integrator");
+        for list in ["[640, 5, 10]", "[5, 640, 10]", "[5, 10, 640]"] {
+            let (found, warnings) = integrators(&format!("cells = {list}"), "");
+            assert_eq!(found, [Implicit; 3], "{list}");
+            assert!(told(&warnings), "{warnings}");
+        }
+        let (found, warnings) = integrators("cells = [5, 10, 20]", "");
+        assert_eq!(found, [Explicit; 3]);
+        assert!(!told(&warnings), "{warnings}");
+        // By another axis than the cells, and from either end of its list.
+        for list in ["[1e-9, 1e-3]", "[1e-3, 1e-9]"] {
+            let (found, warnings) =
+                integrators(&format!("cells = [40]\nhydraulic_conductivity = {list}"), "");
+            assert_eq!((found.len(), told(&warnings)), (2, true), "{list}: {warnings}");
+            assert!(found.iter().all(|kind| *kind == Implicit), "{list}: {found:?}");
+        }
+        // Who says how steps are taken has chosen.
+        for (sweep, tables) in [
+            ("integrator = [\"explicit\"]", ""),
+            ("time_step = [{ stable = 0.5 }]", ""),
+            ("drag = [\"explicit\"]", ""),
+            ("", "integrator.flip = 0.9"),
+        ] {
+            let (found, warnings) = integrators(&format!("cells = [5, 640]\n{sweep}"), tables);
+            assert_eq!(found, [Explicit; 2], "{sweep}{tables}");
+            assert!(!told(&warnings), "{sweep}{tables}: {warnings}");
+        }
+    }
 }

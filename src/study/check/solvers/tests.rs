@@ -79,8 +79,11 @@ fn the_identity_follows_the_adapter_and_the_command_and_no_path_or_time() {
     let first = hash(here.path(), &with_file);
     fs::write(here.path().join("template.prj"), "2").expect("a file");
     assert!(first != own && hash(here.path(), &with_file) != first);
+    let by_folder = SOLVER.replace("adapter.sh", "{study}/adapter.sh");
+    let named = hash(here.path(), &by_folder);
     fs::write(here.path().join("adapter.sh"), "two").expect("a file");
     assert_ne!(hash(here.path(), SOLVER), own, "another adapter is another case");
+    assert_ne!(hash(here.path(), &by_folder), named, "wherever its name begins");
 }
 
 #[test]
