@@ -1,6 +1,7 @@
 //! The critical time step, from the spectral radius of the method's own step operator.
 
 use crate::assembled::step::AssembledStep;
+use crate::direct_solver::dense::subtract_product;
 use crate::explicit::ExplicitSettings;
 use nalgebra::DMatrix;
 use oedometer_soil::elementary;
@@ -59,7 +60,10 @@ impl Powers {
         self.log_scale += self.share * elementary::ln(norm);
         self.share *= 0.5;
         let scale = 1.0 / norm;
-        self.squared.gemm(scale * scale, &self.power, &self.power, 0.0);
+        self.squared.fill(0.0);
+        let (squared, power) = (&mut self.squared.as_view_mut(), self.power.as_view());
+        subtract_product(squared, power, power);
+        self.squared *= -scale * scale;
         std::mem::swap(&mut self.power, &mut self.squared);
         true
     }

@@ -1,6 +1,14 @@
-//! LU factorisation of dense blocks in place, by halves (Toledo 1997): nearly all of the work is products of matrices.
+//! LU factorisation of dense blocks in place, by halves (Toledo 1997): nearly all of the work is products of matrices, and
+//! those have the same bits on every processor, without fused operations.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what `wide!` compiles for wider registers must be inlined into it"
+)]
+
+use crate::wide::wide;
 use nalgebra::{DMatrixView, DMatrixViewMut};
+use std::array;
 
 /// Columns that are eliminated one by one: products of narrower matrices are slower.
 const NARROW: usize = 16;
@@ -21,7 +29,7 @@ pub(crate) fn factor_columns(mut matrix: DMatrixViewMut<'_, f64>, pivot_rows: us
     swap_rows(&mut right, first);
     let (mut above, mut below) = right.rows_range_pair_mut(..half, half..);
     solve_unit_lower(left.rows_range(..half), above.as_view_mut());
-    below.gemm(-1.0, &left.rows_range(half..), &above, 1.0);
+    subtract_product(&mut below, left.rows_range(half..), above.as_view());
     factor_columns(below, pivot_rows - half, second);
     swap_rows(&mut left.rows_range_mut(half..), second);
 }
@@ -64,13 +72,81 @@ pub(crate) fn solve_unit_lower(lower: DMatrixView<'_, f64>, mut right: DMatrixVi
     let (upper_rows, lower_rows) = lower.rows_range_pair(..half, half..);
     solve_unit_lower(upper_rows.columns_range(..half), above.as_view_mut());
     let (left, corner) = lower_rows.columns_range_pair(..half, half..);
-    below.gemm(-1.0, &left, &above, 1.0);
+    subtract_product(&mut below, left, above.as_view());
     solve_unit_lower(corner, below);
+}
+
+/// Columns of a product that are summed together, and terms of each sum: what the registers hold.
+const BLOCK: usize = 4;
+
+/// `C ← C − A B`.
+pub(crate) fn subtract_product(
+    c: &mut DMatrixViewMut<'_, f64>,
+    a: DMatrixView<'_, f64>,
+    b: DMatrixView<'_, f64>,
+) {
+    wide!({
+        let mut first = 0;
+        while first + BLOCK <= c.ncols() {
+            subtract_in_columns::<BLOCK>(&mut c.columns_mut(first, BLOCK), &a, &b, first);
+            first += BLOCK;
+        }
+        for first in first..c.ncols() {
+            subtract_in_columns::<1>(&mut c.columns_mut(first, 1), &a, &b, first);
+        }
+    });
+}
+
+/// The product in `N` columns, which are those of `B` from `first` on.
+#[inline(always)]
+fn subtract_in_columns<const N: usize>(
+    c: &mut DMatrixViewMut<'_, f64>,
+    a: &DMatrixView<'_, f64>,
+    b: &DMatrixView<'_, f64>,
+    first: usize,
+) {
+    let mut columns = c.column_iter_mut();
+    let mut columns: [_; N] = array::from_fn(|_| columns.next());
+    let mut columns =
+        columns.each_mut().map(|column| column.as_mut().map_or(&mut [][..], |one| one.as_mut_slice()));
+    let mut term = 0;
+    while term + BLOCK <= a.ncols() {
+        subtract_terms::<N, BLOCK>(&mut columns, a, b, [first, term]);
+        term += BLOCK;
+    }
+    for term in term..a.ncols() {
+        subtract_terms::<N, 1>(&mut columns, a, b, [first, term]);
+    }
+}
+
+/// `K` terms of the sums in `N` columns.
+#[inline(always)]
+fn subtract_terms<const N: usize, const K: usize>(
+    c: &mut [&mut [f64]; N],
+    a: &DMatrixView<'_, f64>,
+    b: &DMatrixView<'_, f64>,
+    [first, term]: [usize; 2],
+) {
+    let rows = a.nrows();
+    let factors: [[f64; K]; N] = array::from_fn(|n| array::from_fn(|k| b[(term + k, first + n)]));
+    let columns: [_; K] = array::from_fn(|k| a.column(term + k));
+    let a: [&[f64]; K] = array::from_fn(|k| &columns[k].as_slice()[..rows]);
+    let c = c.each_mut().map(|column| &mut column[..rows]);
+    for row in 0..rows {
+        for n in 0..N {
+            let mut sum = a[0][row] * factors[n][0];
+            for k in 1..K {
+                sum += a[k][row] * factors[n][k];
+            }
+            c[n][row] -= sum;
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wide::in_narrow_registers;
     use nalgebra::DMatrix;
     use proptest::prelude::*;
 
@@ -99,6 +175,24 @@ mod tests {
             let mut right = swapped.clone();
             solve_unit_lower(lower.rows(0, columns), right.rows_mut(0, columns));
             prop_assert!((lower.rows(0, columns) * right.rows(0, columns) - swapped.rows(0, columns)).amax() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn products_are_those_of_nalgebra_at_every_remainder_of_their_blocks() {
+        for (rows, terms, columns) in
+            [(1, 1, 1), (3, 4, 5), (9, 7, 4), (16, 8, 11), (5, 0, 3), (0, 3, 2), (2, 6, 0)]
+        {
+            let number =
+                |seed: usize| move |row: usize, column: usize| 1.0 / (1 + seed + 3 * row + 7 * column) as f64;
+            let [a, b, c] = [(rows, terms), (terms, columns), (rows, columns)]
+                .map(|(rows, columns)| DMatrix::from_fn(rows, columns, number(rows + 2 * columns)));
+            let mut found = c.clone();
+            subtract_product(&mut found.as_view_mut(), a.as_view(), b.as_view());
+            assert!((&found + &a * &b - &c).amax() < 1e-14, "{rows} x {terms} x {columns}");
+            let mut narrow = c;
+            in_narrow_registers(|| subtract_product(&mut narrow.as_view_mut(), a.as_view(), b.as_view()));
+            assert_eq!(narrow, found, "the same bits on every processor");
         }
     }
 

@@ -7,7 +7,7 @@
 //! to the front above. The order of all sums is fixed: any number of threads gives the same bits.
 
 use crate::direct_solver::Singular;
-use crate::direct_solver::dense::{factor_columns, solve_unit_lower, swap_rows};
+use crate::direct_solver::dense::{factor_columns, solve_unit_lower, subtract_product, swap_rows};
 use crate::direct_solver::sparse_matrix::SparseMatrix;
 use crate::time_limit::TimeLimit;
 use nalgebra::{DMatrix, DVectorViewMut};
@@ -269,7 +269,7 @@ impl Front {
         swap_rows(&mut self.right.as_view_mut(), &self.pivots);
         let (own, below) = self.left.rows_range_pair(..count, count..);
         solve_unit_lower(own, self.right.as_view_mut());
-        rest.gemm(-1.0, &below, &self.right, 1.0);
+        subtract_product(&mut rest.as_view_mut(), below, self.right.as_view());
         Ok(())
     }
 

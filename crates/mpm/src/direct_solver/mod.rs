@@ -5,7 +5,7 @@
 //! [`system`] chooses between the two and adds the row and column of a rigid plate.
 
 mod banded;
-mod dense;
+pub(crate) mod dense;
 mod frontal;
 mod sparse_matrix;
 pub mod system;
