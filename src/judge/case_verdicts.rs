@@ -203,7 +203,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::measure::record_checks;
-    use crate::record::{CriticalStep, Probe};
+    use crate::record::{CriticalStep, ErrorRow, Probe};
     use crate::study::expectation::Measure;
     use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
@@ -266,6 +266,32 @@ time_step = [{ growth = 0.05 }]
         let found = verdicts(&records);
         assert!(!found[0].0 && found[0].1.contains("one point set itself"), "{found:?}");
         assert!(found[1].0 && found[1].1.contains("are those of one point set"), "{found:?}");
+        // A run that ended early has fewer errors, on either side; and no errors agree with nothing.
+        let all = records[0].errors.len();
+        for (one, two) in [(all, all - 1), (all - 1, all), (all, 1), (1, all), (all, 0), (0, all), (0, 0)] {
+            let mut cut = records.clone();
+            cut[0].errors.truncate(one);
+            cut[1].errors.truncate(two);
+            let found = verdicts(&cut);
+            let told = format!("{two} errors with two point sets and {one} with one");
+            assert!(!found[1].0 && found[1].1.contains(&told), "{found:?}");
+        }
+        // As large an error of something else is no such error, and one that is off is found wherever it stands.
+        for place in [0, all / 2, all - 1] {
+            let changes: [fn(&mut ErrorRow); 4] = [
+                |row| row.time_factor *= 2.0,
+                |row| row.reference = "another".to_owned(),
+                |row| row.value += 2e-9,
+                |row| row.value -= 2e-9,
+            ];
+            for (number, change) in changes.into_iter().enumerate() {
+                for side in 0..2 {
+                    let mut other = records.clone();
+                    change(&mut other[side].errors[place]);
+                    assert!(!verdicts(&other)[1].0, "change {number} of error {place} on side {side}");
+                }
+            }
+        }
         records[1].errors[3].value += 2e-9;
         let found = verdicts(&records);
         assert!(!found[1].0 && found[1].1.contains("1e-9 allowed"), "{found:?}");

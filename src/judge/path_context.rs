@@ -374,4 +374,52 @@ mod tests {
             assert_eq!(format!("{found:?}"), by(order), "{formal:?} {promised:?}");
         }
     }
+
+    #[test]
+    fn a_value_is_that_at_its_depth_over_the_scale_of_its_quantity() {
+        let mut record = records_of(
+            "title = 't'\nscene = 'terzaghi'\ncolumn.height = 2.0\noutput.time_factors = [0.2]\n[[sweep]]\n\
+             method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4]\n",
+        )
+        .remove(0);
+        let (load, soil) = (record.case.column.load, &record.case.material);
+        let nu = soil.poissons_ratio;
+        let oedometric = soil.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        let settlement = load * 2.0 / oedometric;
+        let snapshot = &mut record.snapshots[0];
+        snapshot.settlement = 0.75 * settlement;
+        // Once, twice and three times the share of the height.
+        let shares: Vec<f64> = snapshot.centres.initial_height.iter().map(|y| y / 2.0).collect();
+        assert_eq!(shares, [0.125, 0.375, 0.625, 0.875]);
+        let field = |scale: f64| shares.iter().map(|share| scale * share).collect();
+        snapshot.centres.pressure = field(load);
+        snapshot.centres.effective_stress = field(2.0 * load);
+        snapshot.centres.displacement = field(3.0 * settlement);
+        let value = |quantity: Quantity, zeta: Option<f64>| {
+            let measure = first_measure(quantity, Sample::Centres, NO_REFERENCE, 0.2);
+            value_of(&record, &Measure { probe: zeta, ..measure })
+        };
+        let fields = [Quantity::Pressure, Quantity::EffectiveStress, Quantity::Displacement];
+        for (zeta, share) in [
+            (0.2, Some(0.8)),
+            (0.8, Some(0.2)),
+            (0.5, Some(0.5)),
+            (0.125, Some(0.875)),
+            (0.875, Some(0.125)),
+            (0.1, None),
+            (0.9, None),
+        ] {
+            for (quantity, times) in fields.into_iter().zip([1.0, 2.0, 3.0]) {
+                let found = value(quantity, Some(zeta));
+                let is_near = match (found, share) {
+                    (Some(found), Some(share)) => (found / (times * share) - 1.0).abs() < 1e-12,
+                    (found, share) => found.is_none() && share.is_none(),
+                };
+                assert!(is_near, "{quantity:?} at {zeta}: {found:?}");
+            }
+        }
+        assert!(fields.iter().all(|quantity| value(*quantity, None).is_none()), "a field needs a place");
+        let settled = value(Quantity::Settlement, None).expect("a settlement");
+        assert!((settled - 0.75).abs() < 1e-12, "{settled}");
+    }
 }

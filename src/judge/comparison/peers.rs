@@ -141,6 +141,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::judge::comparison::work_precision::WorkPrecision;
+    use crate::measure::statistics::spread;
     use crate::record::{Record, WallSample};
     use oedometer_convergence::Class;
 
@@ -206,5 +207,51 @@ mod tests {
         let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");
         let precision = WorkPrecision::of(&squeezed, "large-strain").expect("timed runs");
         assert!(!solve_their_column(&precision.runs));
+    }
+
+    #[test]
+    fn a_run_is_ahead_where_it_has_the_error_at_every_time_and_none_is_larger() {
+        let record = runs_of("terzaghi", "").remove(0);
+        let with = |errors: [Option<f64>; 3]| {
+            let mut run = record.clone();
+            run.errors.retain_mut(|row| {
+                let is_asked = (row.quantity, row.sample, row.reference.as_str())
+                    == (Quantity::Pressure, Sample::Points, "terzaghi");
+                let place = TIME_FACTORS.iter().position(|time| *time == row.time_factor);
+                let given = errors[place.expect("an output")];
+                row.value = given.filter(|_| is_asked).unwrap_or(row.value);
+                !is_asked || given.is_some()
+            });
+            run
+        };
+        let wall = spread(&[1.0, 1.0]).expect("two samples");
+        let is_ahead = |errors: [Option<f64>; 3]| {
+            let run = with(errors);
+            let runs = [TimedRun { record: &run, error: 0.0, wall, on_front: false }];
+            compare(&runs)[0].ahead.is_some()
+        };
+        let theirs = PEERS[0].errors();
+        let equal = theirs.map(Some);
+        assert!(is_ahead(equal), "as good is nowhere worse");
+        assert!(!is_ahead([None; 3]), "a run without errors");
+        for place in 0..3 {
+            for (own, ahead) in [
+                (Some(0.5 * theirs[place]), true),
+                (Some(1.001 * theirs[place]), false),
+                (Some(f64::NAN), false),
+                (None, false),
+            ] {
+                let mut errors = equal;
+                errors[place] = own;
+                assert_eq!(is_ahead(errors), ahead, "{own:?} at {place}");
+            }
+        }
+        // The first that is nowhere worse, with its own errors.
+        let [worse, better] = [2.0, 0.5].map(|factor| theirs.map(|error| Some(factor * error)));
+        let runs = [worse, better, equal].map(with);
+        let timed = |record| TimedRun { record, error: 0.0, wall, on_front: false };
+        let runs: Vec<TimedRun<'_>> = runs.iter().map(timed).collect();
+        let first = compare(&runs)[0].ahead.expect("two are");
+        assert!(std::ptr::eq(first.0, &raw const runs[1]) && first.1 == better, "{:?}", first.1);
     }
 }

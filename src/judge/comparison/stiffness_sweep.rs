@@ -155,3 +155,76 @@ fn found(record: &Record, time_factor: f64, reference: &str) -> Result<[Option<f
         PlaneField::of(record, time_factor)?.map(|field| field.oscillation_index()),
     ])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::study::file::StudySource;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    #[test]
+    fn a_sweep_is_of_the_finest_mesh_of_the_runs_with_the_least_compressible_soil() {
+        for (stiffness, key, values) in [
+            (SweptStiffness::Skeleton, "poissons_ratio", [0.1, 0.2, 0.3]),
+            (SweptStiffness::Water, "water_bulk_modulus", [1e8, 1e9, 1e10]),
+        ] {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
+                 integrator = ['implicit']\ncells = [4, 16, 8]\n{key} = {values:?}\n"
+            );
+            let study = Study::check(&StudySource { name: "s.toml".to_owned(), text: text.clone() });
+            let study = study.expect("a sound study");
+            let mut records = records_of(&text);
+            // An error by which a run is known: its cells, and the place of its value.
+            let mark = |cells: usize, place: usize| cells as f64 + 0.1 * place as f64;
+            let value_of = |record: &Record| match stiffness {
+                SweptStiffness::Skeleton => record.case.material.poissons_ratio,
+                SweptStiffness::Water => record.case.material.water_bulk_modulus,
+            };
+            let place_of = |record: &Record| {
+                values.iter().position(|value| *value == value_of(record)).expect("a value of the sweep")
+            };
+            for record in &mut records {
+                let error = mark(record.case.cells, place_of(record));
+                record.errors.iter_mut().for_each(|row| row.value = error);
+            }
+            let sweep = |records: &[Record]| {
+                StiffnessSweep::of(&study, records, stiffness).expect("references take the cases")
+            };
+            let cells = |records: &[Record]| sweep(records).map(|found| found.cells);
+            for _ in 0..2 {
+                let found = sweep(&records).expect("three values");
+                assert_eq!(found.cells, 16, "{key}");
+                let modulus = records[0].case.material.youngs_modulus;
+                let scale = if stiffness == SweptStiffness::Water { modulus } else { 1.0 };
+                assert_eq!(found.values, values.map(|value| value / scale));
+                let row = found.at(0.1).next().expect("a row");
+                let expected = [0, 1, 2].map(|place| [Some(mark(16, place)); 2]);
+                let errors: Vec<[Option<f64>; 2]> = row.found.iter().map(|one| [one[0], one[1]]).collect();
+                assert_eq!(errors, expected, "{key}");
+                records.reverse();
+            }
+            // Without the run of the finest mesh in the least compressible soil, the next one is shown.
+            let without = |skip: &dyn Fn(usize, usize) -> bool| -> Vec<Record> {
+                let kept = |record: &&Record| !skip(record.case.cells, place_of(record));
+                records.iter().filter(kept).cloned().collect()
+            };
+            assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 2)), Some(8));
+            assert_eq!(cells(&without(&|cells, place| cells > 4 && place == 2)), Some(4));
+            assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 0)), None, "two values");
+            let mut failed = records.clone();
+            for record in failed.iter_mut().filter(|one| one.case.cells == 16 && place_of(one) == 2) {
+                let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
+                record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+            }
+            assert_eq!(cells(&failed), Some(8), "{key}");
+            // A soil that differs in the other stiffness too belongs to no sweep.
+            for record in &mut records {
+                record.case.material.poissons_ratio += 0.01;
+                record.case.material.water_bulk_modulus *= 1.5;
+            }
+            assert!(sweep(&records).is_none(), "{key}");
+        }
+    }
+}

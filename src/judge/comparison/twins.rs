@@ -197,6 +197,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
+    use oedometer_mpm::scene::SceneKind;
 
     #[test]
     fn twins_differ_in_one_input_alone() {
@@ -285,5 +286,66 @@ mod tests {
         let key = Key::named("points_per_cell", "sweep").expect("a key");
         let pairs = twins(&records, key, (Value::Count(2), Value::Count(4)));
         assert_eq!(by_situation(&pairs)[0].cost, Some(2.5));
+    }
+
+    #[test]
+    fn a_situation_changes_at_its_bounds() {
+        type Input = fn(&mut Record, f64);
+        use Situation::{
+            BodyForces, Extreme, GrowingLoad, LoadAtOnce, MuchOfTheHeight, OutOfPlace, Usual, Waves,
+        };
+        let record = |scene: &str| {
+            records_of(&format!(
+                "title = 't'\nscene = '{scene}'\n[output]\ntime_factors = [1e-3]\n[[sweep]]\n\
+                 method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4]\n"
+            ))
+            .remove(0)
+        };
+        // A strain of 40 % of the height is one of −ln 0.6 = 0.511 by the load over the modulus.
+        let mut large = record("xie-leo");
+        for (strain, loading_time, expected) in [
+            (0.1, 0.0, LoadAtOnce),
+            (0.1, 1.0, GrowingLoad),
+            (0.399, 0.0, LoadAtOnce),
+            (0.41, 0.0, LoadAtOnce),
+            (0.41, 1.0, GrowingLoad),
+            (0.51, 0.0, LoadAtOnce),
+            (0.512, 0.0, MuchOfTheHeight),
+            (0.512, 1.0, MuchOfTheHeight),
+        ] {
+            large.groups.finite_strain = strain;
+            large.case.column.loading_time = loading_time;
+            assert_eq!(Situation::of(&large), expected, "{strain} {loading_time}");
+        }
+        large.case.scene = SceneKind::ManufacturedBox;
+        assert_eq!(Situation::of(&large), BodyForces);
+        // Every range of a usual soil, just inside and just outside of both ends.
+        let usual = record("terzaghi");
+        assert_eq!(Situation::of(&usual), Usual);
+        let inputs: [(Input, &[f64], &[f64]); 5] = [
+            (|one, value| one.case.column.height = value, &[0.051, 499.0], &[0.049, 501.0]),
+            (|one, value| one.case.material.porosity = value, &[0.11, 0.79], &[0.09, 0.81]),
+            (|one, value| one.groups.storage = value, &[1.1e-6, 0.09], &[0.9e-6, 0.11]),
+            (|one, value| one.groups.inertia = value, &[1.1e-9, 1.0], &[0.9e-9]),
+            (|one, value| one.case.time_factors = vec![value].into(), &[1e-3, 2.0], &[0.9e-3]),
+        ];
+        for (number, (set, inside, outside)) in inputs.into_iter().enumerate() {
+            for (values, expected) in [(inside, Usual), (outside, Extreme)] {
+                for value in values {
+                    let mut one = usual.clone();
+                    set(&mut one, *value);
+                    assert_eq!(Situation::of(&one), expected, "{value} of input {number}");
+                    // Waves and places come before the soil.
+                    one.case.points_per_cell = 1;
+                    assert_eq!(Situation::of(&one), OutOfPlace, "{value} of input {number}");
+                    one.case.scene = SceneKind::DynamicColumn;
+                    assert_eq!(Situation::of(&one), Waves, "{value} of input {number}");
+                }
+            }
+        }
+        // Of several outputs the last one counts.
+        let mut early = usual;
+        early.case.time_factors = vec![1e-4, 0.1].into();
+        assert_eq!(Situation::of(&early), Usual);
     }
 }

@@ -324,4 +324,32 @@ time_step = [{ growth = 0.005 }]
             assert_eq!(found, [1, 0], "{place}");
         }
     }
+
+    #[test]
+    fn cost_is_the_median_on_the_front_and_within_a_tolerance() {
+        let mut records = records_of(&STUDY.replace("[5, 10, 20, 40, 80]", "[5, 10]"));
+        records.truncate(3);
+        // By the shortest times the first would be on the front, by the longest the second would cost most.
+        let given = [([1.0, 10.0, 10.0], 2e-2), ([4.0, 5.0, 60.0], 8e-3), ([6.0, 6.0, 6.0], 8e-4)];
+        for (record, (times, error)) in records.iter_mut().zip(given) {
+            record.errors.iter_mut().for_each(|row| row.value = error);
+            let sample = |seconds: f64, alone: bool| WallSample { seconds, alone, ..WallSample::default() };
+            record.wall = times.map(|seconds| sample(seconds, true)).to_vec();
+            record.wall.extend(vec![sample(0.1, false); 9]);
+        }
+        let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
+        let found: Vec<_> =
+            precision.runs.iter().map(|run| (run.wall.median, run.error, run.on_front)).collect();
+        assert_eq!(found, [(5.0, 8e-3, true), (6.0, 8e-4, true), (10.0, 2e-2, false)]);
+        let cheapest = precision
+            .cheapest
+            .iter()
+            .map(|one| (one.tolerance, one.run.as_ref().map(|run| (run.wall.median, run.on_front))));
+        let expected = [(1e-2, Some((5.0, true))), (1e-3, Some((6.0, true))), (1e-4, None)];
+        assert_eq!(cheapest.collect::<Vec<_>>(), expected);
+        for record in &mut records[1..] {
+            record.wall.retain(|sample| !sample.alone);
+        }
+        assert!(WorkPrecision::of(&records, "terzaghi").is_none(), "one run was timed alone");
+    }
 }

@@ -317,6 +317,8 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
+    use crate::study::file::StudySource;
+    use oedometer_mpm::run::TimeStepRule;
 
     fn records(integrator: &str) -> Vec<Record> {
         records_of(&format!(
@@ -377,5 +379,48 @@ mod tests {
         record.snapshots[1].points.pressure =
             (0..heights).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         assert!(oscillation_of(&record).is_some_and(|index| index > 0.5), "{:?}", oscillation_of(&record));
+    }
+
+    #[test]
+    fn of_two_steps_on_a_mesh_the_longer_one_is_the_race_s_in_any_order() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP', 'MPM']\n\
+                    integrator = ['implicit']\ncells = [8, 2, 4]\ntime_step = [{ growth = 0.1 }, { growth = 0.05 }]\n";
+        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+        let mut study = Study::check(&source).expect("a sound study");
+        let contender = CONTENDERS.iter().find(|one| one.name == "GIMP").expect("a contender");
+        let mut all = records_of(text);
+        for record in &mut all {
+            // The longer step with twice the error of the shorter one.
+            let times = if record.case.time_step == TimeStepRule::Growth(0.1) { 2.0 } else { 1.0 };
+            record.step_sizes.target = times;
+            record.errors.iter_mut().for_each(|row| row.value = 0.1 * times / record.case.cells as f64);
+        }
+        for (twice, shorter) in [(2, None), (4, None), (8, None), (8, Some(2)), (0, None)] {
+            for _ in 0..2 {
+                // Both steps on one mesh; on another one the shorter step alone; on the others the longer one alone.
+                let is_kept = |record: &&Record| {
+                    let is_long = record.step_sizes.target == 2.0;
+                    record.case.cells == twice || is_long != (shorter == Some(record.case.cells))
+                };
+                let records: Vec<Record> = all.iter().filter(is_kept).cloned().collect();
+                let runs = Runs::of(&study, contender, &records);
+                let found: Vec<(usize, f64)> =
+                    runs.path.iter().map(|one| (one.case.cells, one.step_sizes.target)).collect();
+                let step = |cells: usize| if shorter == Some(cells) { 1.0 } else { 2.0 };
+                assert_eq!(found, [2, 4, 8].map(|cells| (cells, step(cells))), "{twice} {shorter:?}");
+                assert!(runs.path.iter().all(|one| one.case.method.to_string() == "GIMP"));
+                let two = runs.two_steps.map(|pair| {
+                    <[&Record; 2]>::from(pair).map(|one| (one.case.cells, one.step_sizes.target))
+                });
+                assert_eq!(two, (twice > 0).then_some([(twice, 2.0), (twice, 1.0)]));
+                // Of the race's run half is lost: the other way round it would be as much again.
+                let scatter = runs.two_steps.and_then(|(one, other)| scatter_of(one, other));
+                assert_eq!(scatter, (twice > 0).then_some(0.5));
+                all.reverse();
+            }
+        }
+        study.not_applicable.push(("GIMP", "a test".to_owned()));
+        let runs = Runs::of(&study, contender, &all);
+        assert!(runs.path.is_empty() && runs.two_steps.is_none(), "what is refused has no runs");
     }
 }

@@ -70,3 +70,65 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> String {
          The figure shows the time that an error costs."
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::Solver;
+    use crate::measure::statistics::spread;
+    use crate::record::Record;
+    use oedometer_mpm::method::Method;
+    use oedometer_mpm::run::integrator::IntegratorKind;
+
+    const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.2, 1.0]\n[[sweep]]\n\
+        method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n";
+
+    fn precision<'a>(records: &'a [Record], errors: &[f64]) -> WorkPrecision<'a> {
+        let wall = spread(&[1.0, 1.0]).expect("two samples");
+        let run =
+            |(record, error): (&'a Record, &f64)| TimedRun { record, error: *error, wall, on_front: false };
+        let runs = records.iter().zip(errors).map(run).collect();
+        WorkPrecision { runs, cheapest: Vec::new(), noise_floor: None }
+    }
+
+    #[test]
+    fn other_programs_stand_beside_the_best_implicit_run_of_the_paper_s_method_on_as_many_cells() {
+        let seed = records_of(STUDY).remove(0);
+        let with = |change: &dyn Fn(&mut Record), error: f64| {
+            let mut record = seed.clone();
+            change(&mut record);
+            record.errors.iter_mut().for_each(|row| row.value = error);
+            record
+        };
+        let mpm = Solver::Own(Method::named("MPM").expect("a method"));
+        // The smaller the error, the less it may be taken.
+        let others = [
+            with(&|one| one.case.integrator = IntegratorKind::Explicit, 1e-5),
+            with(&|one| one.case.method = mpm, 1e-6),
+            with(&|one| one.case.cells = 20, 1e-7),
+        ];
+        let own = [with(&|_| (), 0.03), with(&|_| (), 0.02), with(&|_| (), 0.04)];
+        let records = [others.clone(), own].concat();
+        let errors = [1e-5, 1e-6, 1e-7, 0.03, 0.02, 0.04];
+        let found = precision(&records, &errors);
+        assert_eq!(on_cells(&found, 10), Some([Some(0.02); 3]));
+        assert_eq!(on_cells(&found, 20), Some([Some(1e-7); 3]));
+        assert_eq!(on_cells(&found, 40), None);
+        assert_eq!(on_cells(&precision(&others, &errors), 10), None, "none of the others is comparable");
+        // Where ours is worse, the programs that step alike are named with both errors, and no others.
+        let told = equal_cells(&found);
+        let like = peers::PEERS.iter().find(|peer| peer.time_scheme.starts_with("SDIRK") && peer.cells == 10);
+        let like = like.expect("such a program");
+        let both =
+            format!("{} against {} at T_v = 0.05", number::error(like.errors()[0]), number::error(0.02));
+        assert!(told.starts_with("**On equal cells") && told.contains(&both), "{told}");
+        assert!(
+            told.contains(&like.name) && !told.contains("Kratos") && !told.contains("on 20 cells"),
+            "{told}"
+        );
+        let good = [with(&|_| (), 1e-9)];
+        let told = equal_cells(&precision(&good, &errors));
+        assert_eq!(told, "On equal cells no other program has a smaller pressure error than `GC-SRI-patch`.");
+    }
+}

@@ -127,6 +127,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::case::planned::Tier;
+    use crate::judge::comparison::twins::Situation;
     use crate::study::check::Study;
     use crate::study::file::StudySource;
 
@@ -148,5 +149,46 @@ mod tests {
         assert!(sentence.contains(end), "{sentence}");
         let dimensions = Key::named("dimensions", "column").expect("a key");
         assert!(compare(&results, dimensions).is_none());
+    }
+
+    #[test]
+    fn the_sentence_tells_the_ends_of_all_ratios_and_counts_each_side() {
+        let row = |ratios: Option<[f64; 3]>, failed: [usize; 2], cost: Option<f64>| TwinsOfSituation {
+            situation: Situation::Usual,
+            method: None,
+            pairs: 3,
+            ratios,
+            failed,
+            cost,
+        };
+        let [wide, narrow, none] =
+            [Some([0.5, 1.0, 10.0]), Some([0.8, 0.9, 1.1]), None].map(|ratios| row(ratios, [0, 0], None));
+        let times = |errors: &str| {
+            format!(
+                "pairs of runs that differ in the point sets alone{errors}. All of them reached their last output; no \
+                 double-point run had a pressure burst."
+            )
+        };
+        let range = ": double-point MPM has 0.50 to 10.00 times the error";
+        for told in [[&wide, &narrow, &none], [&none, &wide, &narrow], [&narrow, &none, &wide]] {
+            assert_eq!(sentence(&told.map(Clone::clone), 0), format!("9 {}", times(range)));
+        }
+        // The least in one row and the largest in another.
+        let low = row(Some([0.25, 1.0, 1.0]), [0, 0], None);
+        let high = row(Some([1.0, 1.0, 4.0]), [0, 0], None);
+        let apart = ": double-point MPM has 0.25 to 4.00 times the error";
+        assert_eq!(sentence(&[low.clone(), high.clone()], 0), format!("6 {}", times(apart)));
+        assert_eq!(sentence(&[high, low], 0), format!("6 {}", times(apart)));
+        let same = row(Some([1.0; 3]), [0, 0], None);
+        let equal = ": double-point MPM has 1.00 times the error";
+        assert_eq!(sentence(&[same], 0), format!("3 {}", times(equal)));
+        assert_eq!(sentence(&[none], 0), format!("3 {}", times("")));
+        let failed = [row(None, [1, 0], Some(2.0)), row(None, [0, 2], None), row(None, [0, 1], Some(3.5))];
+        assert_eq!(
+            sentence(&failed, 2),
+            "9 pairs of runs that differ in the point sets alone. 1 single-point run and 3 double-point runs of them \
+             ended before their last output; 2 double-point runs had a pressure burst. A double-point run takes 2.00 to \
+             3.50 times as long."
+        );
     }
 }

@@ -150,3 +150,87 @@ fn table(keys: &[Varied<'_>], reference: &str) -> Table {
          numbers are the least and the largest over the runs that are alike in everything else"
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    fn records(sweep: &str) -> Vec<Record> {
+        records_of(&format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.1, 0.2]\n[[sweep]]\n\
+             method = ['GC-SRI-patch', 'MPM']\nintegrator = ['implicit']\ncells = [4]\n{sweep}\n"
+        ))
+    }
+
+    fn told(records: &[Record]) -> Vec<String> {
+        varied(records).iter().filter_map(|varied| sentence(varied, "terzaghi")).collect()
+    }
+
+    #[test]
+    fn a_soil_multiplies_the_error_at_the_last_output_from_its_smallest_value_to_its_largest() {
+        let mut records = records("hydraulic_conductivity = [1e-4, 1e-5, 1e-3]");
+        for record in &mut records {
+            let is_first = record.case.method.to_string() == "MPM";
+            // At the last output three and four times the error, at the others something else.
+            let last = match record.case.material.hydraulic_conductivity {
+                1e-5 => 0.01,
+                1e-4 => 0.5,
+                _ if is_first => 0.04,
+                _ => 0.03,
+            };
+            for row in &mut record.errors {
+                row.value = match row.time_factor {
+                    0.05 => last * last,
+                    0.1 => 1.0 / last,
+                    _ => last,
+                };
+            }
+        }
+        let ends = "`hydraulic_conductivity` multiplies the error of the pressure by 3 … 4, the time of consolidation by 0.01";
+        assert_eq!(told(&records), [ends]);
+        let keys = varied(&records);
+        let rows = table(&keys, "terzaghi").rows;
+        assert_eq!(rows.len(), 2, "a row of each method");
+        for row in &rows {
+            let error = if row[1] == Cell::Code("MPM".to_owned()) { "4" } else { "3" };
+            assert_eq!(row[3..], [error, "1", "0.01"].map(Cell::from), "{row:?}");
+        }
+        records.reverse();
+        assert_eq!(told(&records), [ends], "in any order");
+        // A run that failed is no end.
+        for record in records.iter_mut().filter(|one| one.case.material.hydraulic_conductivity == 1e-3) {
+            let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
+            record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+        }
+        let middle = "`hydraulic_conductivity` multiplies the error of the pressure by 50, the time of consolidation by 0.1";
+        assert_eq!(told(&records), [middle]);
+        records.retain(|record| record.status != Status::Ok);
+        assert_eq!(told(&records), [""; 0]);
+    }
+
+    #[test]
+    fn a_stiffness_changes_settlement_and_time_and_a_change_below_a_percent_is_none() {
+        let with = |sweep: &str, factor: f64| {
+            let mut records = records(sweep);
+            let least = records[0].case.clone();
+            for record in &mut records {
+                let error = if record.case.material == least.material { 0.01 } else { 0.01 * factor };
+                record.errors.iter_mut().for_each(|row| row.value = error);
+            }
+            told(&records)
+        };
+        let ends = "the settlement in the end by 0.1, the time of consolidation by 0.1";
+        let sweep = "youngs_modulus = [1e6, 1e7]";
+        for factor in [1.0, 1.009, 0.991] {
+            assert_eq!(with(sweep, factor), [format!("`youngs_modulus` multiplies {ends}")], "{factor}");
+        }
+        for (factor, word) in [(1.02, "1.02"), (0.98, "0.98")] {
+            let error = format!("`youngs_modulus` multiplies the error of the pressure by {word}, {ends}");
+            assert_eq!(with(sweep, factor), [error]);
+        }
+        let nothing = "`grain_density` changes nothing by more than 1 %";
+        assert_eq!(with("grain_density = [2600.0, 2700.0]", 1.0), [nothing]);
+    }
+}

@@ -105,6 +105,7 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
 mod tests {
     use super::*;
     use crate::case::quantity::Sample;
+    use oedometer_convergence::{Class, Classification, ErrorSeries};
 
     #[test]
     fn the_worst_place_of_an_error_stands_beside_it() {
@@ -140,5 +141,40 @@ mod tests {
             Cell::Error(13.0),
         ];
         assert_eq!(table.rows, [expected.to_vec()]);
+    }
+
+    #[test]
+    fn the_largest_difference_of_times_is_told_wherever_it_stands() {
+        let told = |differences: [f64; 3]| {
+            let series = differences.map(|time_difference| ScoredSeries {
+                group: 0,
+                measure: ErrorRow {
+                    time_factor: 0.2,
+                    quantity: Quantity::Pressure,
+                    sample: Sample::Points,
+                    norm: Norm::L2,
+                    reference: "theirs".to_owned(),
+                    value: 0.1,
+                    absolute: 0.5,
+                },
+                time_difference,
+                series: ErrorSeries::of(&[(0.5, 0.1), (0.25, 0.025)]),
+                classification: Classification::new(Class::NotEvaluable, "two meshes"),
+            });
+            series_table(&series, &[2, 4]).notes
+        };
+        let differ = "times differ between the meshes by up to 2.0e-3 of the T_v shown";
+        for place in 0..3 {
+            for others in [0.0, 1e-3] {
+                let mut differences = [others; 3];
+                differences[place] = 2e-3;
+                let notes = told(differences);
+                assert!(notes.len() == 2 && notes[1].starts_with(differ), "{differences:?}: {notes:?}");
+            }
+        }
+        // What the written digits lose is no difference.
+        for differences in [[0.0; 3], [9e-10; 3]] {
+            assert_eq!(told(differences), ["the order is that of the finest three meshes"]);
+        }
     }
 }

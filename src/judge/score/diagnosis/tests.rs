@@ -401,3 +401,42 @@ fn a_slab_without_a_plate_is_named() {
     });
     assert_eq!(with, [""; 0]);
 }
+
+#[test]
+fn a_wrong_unit_is_named_beside_the_one_that_was_declared_for_that_quantity() {
+    // Units of lengths and displacements as declared, what that makes of a value in another unit, and what is said of it.
+    for (length, displacement, written, words) in [
+        ("m", Some("mm"), 1e-3, "is 0.001 × the exact one: is it in m where mm is declared?"),
+        ("mm", Some("m"), 1e3, "is 1000 × the exact one: is it in mm where m is declared?"),
+        ("m", Some("cm"), 10.0, "is 10 × the exact one: is it in mm where cm is declared?"),
+        ("m", Some("mm"), 0.1, "is 0.1 × the exact one: is it in cm where mm is declared?"),
+        ("mm", Some("cm"), 1e-2, "is 0.01 × the exact one: is it in m where cm is declared?"),
+        ("cm", Some("m"), 100.0, "is 100 × the exact one: is it in cm where m is declared?"),
+        ("mm", None, 1e-3, "is 0.001 × the exact one: is it in m where mm is declared?"),
+        ("cm", None, 10.0, "is 10 × the exact one: is it in mm where cm is declared?"),
+        ("m", None, 1e3, "is 1000 × the exact one: is it in mm where m is declared?"),
+    ] {
+        let displacement = displacement.map_or(String::new(), |unit| format!("displacement = \"{unit}\""));
+        let text = CONVENTION
+            .replace("displacement = \"m\"", &displacement)
+            .replace("length = \"m\"", &format!("length = \"{length}\""));
+        for off in [0.0, 0.05] {
+            let states = changed(off, |state| scale(&mut state.displacement, written));
+            assert_eq!(told_by(&states, &text), [format!("your u_y {words}")], "{length} {displacement}");
+        }
+    }
+    for (declared, written, words) in [
+        ("stress = \"kPa\"", 1e3, "is 1000 × the exact one: is it in Pa where kPa is declared?"),
+        ("stress = \"Pa\"", 1e-3, "is 0.001 × the exact one: is it in kPa where Pa is declared?"),
+        ("", 1e-6, "is 1e−6 × the exact one: is it in MPa where Pa is declared?"),
+        ("stress = \"MPa\"", 1e3, "is 1000 × the exact one: is it in kPa where MPa is declared?"),
+    ] {
+        let text = CONVENTION.replace("stress = \"Pa\"", declared);
+        let states = changed(0.0, |state| {
+            scale(&mut state.pressure, written);
+            scale(&mut state.effective_stress, written);
+        });
+        let expected = format!("each of your p and effective_stress {words}");
+        assert_eq!(told_by(&states, &text), [expected], "{declared}");
+    }
+}
