@@ -137,4 +137,36 @@ mod tests {
         assert_eq!(of("CE-SRI-patch-cells", SceneKind::Terzaghi), of("CE-SRI-patch", SceneKind::Terzaghi));
         assert_ne!(of("CE-SRI-patch-cells", SceneKind::XieLeo), of("CE-SRI-patch", SceneKind::XieLeo));
     }
+
+    #[test]
+    fn a_case_is_run_for_the_contenders_of_its_method_and_choices_only() {
+        use SceneKind::{Terzaghi, XieLeo};
+        let (plain, slopes) = (["GIMP-SRI-patch"], ["GIMP-SRI-patch-slopes"]);
+        let all = ["GIMP-SRI-patch", "TL-GIMP-SRI-patch", "GIMP-SRI-patch-slopes"];
+        for (scene, method, affine, stress_slopes, wanted) in [
+            (XieLeo, "GIMP-SRI-patch", false, false, &plain[..]),
+            (XieLeo, "GIMP-SRI-patch", true, true, &slopes),
+            (XieLeo, "GIMP-SRI-patch", true, false, &[]),
+            (XieLeo, "GIMP-SRI-patch", false, true, &[]),
+            (XieLeo, "GC-SRI-patch", false, false, &["GC-SRI-patch"]),
+            (XieLeo, "GC-SRI-patch", true, true, &[]),
+            (XieLeo, "GC-SRI-patch", true, false, &[]),
+            (XieLeo, "TL-GC-SRI-patch", false, false, &["TL-GC-SRI-patch"]),
+            (XieLeo, "PPP-step", false, false, &[]),
+            // Where nothing moves nobody has slopes, and a total method is the plain one.
+            (Terzaghi, "GIMP-SRI-patch", false, false, &all),
+            (Terzaghi, "GIMP-SRI-patch", true, true, &[]),
+            (Terzaghi, "GIMP-SRI-patch", true, false, &[]),
+            (Terzaghi, "GIMP-SRI-patch", false, true, &[]),
+            (Terzaghi, "GC-SRI-patch", false, false, &["GC-SRI-patch", "TL-GC-SRI-patch"]),
+        ] {
+            let mut case = Case::seed(crate::case::Task::Solve, scene);
+            case.method = Method::named(method).expect("a method").into();
+            (case.settings.affine, case.settings.stress_slopes) = (affine, stress_slopes);
+            // What no contender has of its own is free.
+            (case.settings.flip, case.cells) = (0.5, 7);
+            let found: Vec<_> = CONTENDERS.iter().filter(|one| one.runs(&case)).map(|one| one.name).collect();
+            assert_eq!(found, wanted, "{scene:?} {method} {affine} {stress_slopes}");
+        }
+    }
 }

@@ -217,3 +217,52 @@ impl Case {
         .flatten()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oedometer_mpm::method::Method;
+
+    #[test]
+    fn choices_of_moving_points_are_refused_wherever_nothing_heeds_them() {
+        use IntegratorKind::{Explicit, Implicit, SemiImplicit};
+        use SceneKind::{Terzaghi, XieLeo};
+        // Scene, method, integrator, point sets; then whether APIC and stress slopes are taken there.
+        for (scene, method, integrator, sets, takes_affine, takes_slopes) in [
+            (XieLeo, "GIMP", Explicit, 1, true, true),
+            (XieLeo, "GC-SRI-patch", Explicit, 1, true, true),
+            (XieLeo, "uGIMP", Explicit, 1, true, false),
+            (XieLeo, "MPM", Explicit, 1, true, false),
+            (XieLeo, "CPDI-SRI-patch", Explicit, 1, true, false),
+            (XieLeo, "GIMP", Explicit, 2, false, false),
+            (XieLeo, "GIMP", Implicit, 1, false, false),
+            (XieLeo, "GIMP", SemiImplicit, 1, false, false),
+            (Terzaghi, "GIMP", Explicit, 1, false, false),
+            (Terzaghi, "GIMP", Explicit, 2, false, false),
+        ] {
+            let of = |affine, stress_slopes, time_step| {
+                let mut case = Case::seed(Task::Solve, scene);
+                case.method = Method::named(method).expect("a method").into();
+                (case.integrator, case.formulation) = (integrator, integrator.default_formulation());
+                case.time_step = time_step;
+                case.column.points.sets = sets;
+                (case.settings.affine, case.settings.stress_slopes) = (affine, stress_slopes);
+                let told = |refusal: Refusal| (refusal.key, refusal.help == NAME_THE_STEP);
+                case.refusals().map(told).collect::<Vec<_>>()
+            };
+            let place = format!("{scene:?} {method} {integrator:?} {sets}");
+            let (by_hand, by_limit) = (TimeStepRule::Seconds(1.0), TimeStepRule::Stable(0.5));
+            let wanted = |key, is_taken: bool, is_by_limit: bool| {
+                (!is_taken || is_by_limit).then_some((key, is_taken)).into_iter().collect::<Vec<_>>()
+            };
+            for (rule, is_by_limit) in [(by_hand, false), (by_limit, true)] {
+                assert_eq!(of(false, false, rule), [], "{place}");
+                let affine = wanted("affine", takes_affine, is_by_limit);
+                let slopes = wanted("stress_slopes", takes_slopes, is_by_limit);
+                assert_eq!(of(true, false, rule), affine, "{place}");
+                assert_eq!(of(false, true, rule), slopes, "{place}");
+                assert_eq!(of(true, true, rule), [affine, slopes].concat(), "{place}");
+            }
+        }
+    }
+}

@@ -185,3 +185,45 @@ pub fn chosen_as<'a>(study: &str, chosen: &'a [PathBuf]) -> Option<&'a Path> {
 pub fn is_shipped(study: &str, chosen: &[PathBuf]) -> bool {
     chosen_as(study, chosen).is_some_and(|path| !path.is_file() && shipped_study(study).is_some())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn golden_values_are_those_of_the_nearest_folder_up_to_the_root_and_else_those_here() {
+        // The folder of the tests has golden values.
+        let here = Path::new(GOLDEN);
+        assert!(here.is_dir());
+        // Folder of the study, what marks a root, folders with golden values, that which is taken.
+        for (own, mark, with_golden, wanted) in [
+            ("p/a/b", "p/.git", &["", "p", "p/a", "p/a/b"][..], Some("p/a/b")),
+            ("p/a/b", "p/.git", &["", "p", "p/a"], Some("p/a")),
+            ("p/a/b", "p/.git", &["", "p"], Some("p")),
+            ("p/a/b", "p/.git", &[""], None),
+            ("p/a/b", "p/a/oedometer.toml", &["", "p", "p/a"], Some("p/a")),
+            ("p/a/b", "p/a/oedometer.toml", &["", "p"], None),
+            ("p/a/b", "p/a/b/.git", &["p", "p/a"], None),
+            // Without a root that of the study alone, and beside its `studies/`.
+            ("p/a/b", "", &["p/a", "p/a/b"], Some("p/a/b")),
+            ("p/a/b", "", &["p", "p/a"], None),
+            ("p/a/studies", "", &["p", "p/a", "p/a/studies"], Some("p/a/studies")),
+            ("p/a/studies", "", &["p", "p/a"], Some("p/a")),
+            ("p/a/studies", "", &["p"], None),
+        ] {
+            let folder = tempfile::TempDir::new().expect("a folder");
+            let at = |name: &str| folder.path().join(name);
+            std::fs::create_dir_all(at(own)).expect("a folder");
+            if !mark.is_empty() {
+                std::fs::write(at(mark), "").expect("a file");
+            }
+            for place in with_golden {
+                std::fs::create_dir_all(at(place).join(GOLDEN)).expect("a folder");
+            }
+            let found = folder_of_golden(Some(&at(own).join("s.toml")));
+            let wanted = wanted.map_or(here.to_owned(), |wanted| at(wanted).join(GOLDEN));
+            assert_eq!(found, wanted, "{own} with {mark:?} and {with_golden:?}");
+        }
+        assert_eq!(folder_of_golden(None), here, "of a study from inside the program");
+    }
+}

@@ -115,11 +115,8 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     if let Some(why) = unfit(case, sample, &run) {
         return Err(Unread::Unreadable(why));
     }
-    if let Some(cells) = run.cells.filter(|cells| *cells != case.cells) {
-        return Err(Unread::Unreadable(format!(
-            "the mesh of the result has {cells} cells over the height, and the case asks for {}",
-            case.cells
-        )));
+    if let Some(why) = other_cells(case, run.cells) {
+        return Err(Unread::Unreadable(why));
     }
     Ok(ReadResult { states: run.states, sample, notes: run.notes, digest })
 }
@@ -158,6 +155,15 @@ fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<Strin
             sample.name()
         )
     })
+}
+
+/// Whether the files show a number of cells that is not that of the case.
+fn other_cells(case: &Case, shown: Option<usize>) -> Option<String> {
+    let cells = shown.filter(|cells| *cells != case.cells)?;
+    Some(format!(
+        "the mesh of the result has {cells} cells over the height, and the case asks for {}",
+        case.cells
+    ))
 }
 
 /// How many places differ.
@@ -283,5 +289,14 @@ mod tests {
             assert_eq!(found, [false, false, true], "{sample:?}");
         }
         assert!(!is_other(Sample::Points, 40), "a cell may have many points");
+        assert!(!is_other(Sample::Surface, 40), "nor has the surface heights");
+        // Both a coarser and a finer mesh are another case's.
+        for (shown, told) in [(1, true), (3, true), (4, false), (5, true), (40, true)] {
+            let found = other_cells(&case, Some(shown));
+            assert_eq!(found.is_some(), told, "{found:?}");
+            let sentence = format!("has {shown} cells over the height, and the case asks for 4");
+            assert!(found.is_none_or(|found| found.ends_with(&sentence)), "{sentence}");
+        }
+        assert_eq!(other_cells(&case, None), None, "a table shows no cells");
     }
 }

@@ -339,4 +339,28 @@ mod tests {
             sizes.rotate_left(1);
         }
     }
+
+    #[test]
+    fn a_spread_is_kept_where_ten_times_it_are_more_than_the_absolute_tolerance() {
+        for (by_hand, change, is_kept, tolerance) in [
+            (1e-12, 0.9e-13, false, 1e-12),
+            (1e-12, 1.1e-13, true, 1.1e-12),
+            (1e-12, 0.9e-12, true, 9e-12),
+            (1e-12, 1.1e-12, true, 1.1e-11),
+            // What is narrower than the floor is the floor.
+            (0.0, 0.9e-13, false, 1e-12),
+            (0.0, 5e-13, true, 5e-12),
+            (1e-10, 0.9e-11, false, 1e-10),
+            (1e-10, 1.1e-11, true, 1.1e-10),
+        ] {
+            let file = GoldenFile { absolute_tolerance: by_hand, ..GoldenFile::of("s", &[], "test") };
+            let other = "MPM cells=8 | pressure T_v=0.1";
+            let file =
+                file.widened_by([(GROUP, change), (other, 1e-9)].map(|(n, s)| (n.to_owned(), s)).into());
+            assert_eq!(file.spread.contains_key(GROUP), is_kept, "{change:e} at {by_hand:e}");
+            assert_eq!(file.spread.get(other), Some(&1e-9), "each for itself");
+            let allowed = file.tolerance(VALUE, 0.0);
+            assert!((allowed / tolerance - 1.0).abs() < 1e-9, "{allowed:e} for {change:e} at {by_hand:e}");
+        }
+    }
 }

@@ -116,6 +116,16 @@ mod tests {
             ("run_12_of_90.vtk", Some("run_*_of_{step}.vtk"), Some(90.0)),
             ("run_12.vtu", Some("run_{step}.vtk"), None),
             ("a_MPScalar_001000013.vtk", Some("*_???{step}.vtk"), Some(13.0)),
+            // Of several numbers that fit, the last.
+            ("mesh-10-step-0200.vtu", None, Some(200.0)),
+            ("mesh-10-step-0200.vtu", Some("*-{step}*.vtu"), Some(200.0)),
+            ("mesh-10-step-0200.vtu", Some("*-{step}-*.vtu"), Some(10.0)),
+            ("a-1-b-2-c-3.vtu", Some("*-{step}*.vtu"), Some(3.0)),
+            ("a-1-b-2-c-3.vtu", Some("*-{step}-*"), Some(2.0)),
+            ("a-1-b-2-c-3.vtu", Some("?-{step}*"), Some(1.0)),
+            ("a-1-b-2-c-3.vtu", Some("*-{step}"), None),
+            // A whole number goes before a part of a later one.
+            ("a-1-x23.vtu", Some("*[-2]{step}*"), Some(1.0)),
         ] {
             assert_eq!(step_of(name, pattern), step, "{name} {pattern:?}");
         }

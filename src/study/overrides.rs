@@ -425,4 +425,77 @@ mod tests {
         assert_eq!((asked.parameters.load, asked.references[0]), (5e3, ReferenceKind::Terzaghi));
         assert_eq!(asked.requested.len(), 2, "{:?}", asked.requested);
     }
+
+    #[test]
+    fn what_is_set_of_a_problem_of_the_shelf_is_what_it_is_scored_against_and_printed_with() {
+        let usual = ShelfParameters::default();
+        let drain = |drain_radius| ShelfParameters { drain_radius, ..usual };
+        let wave = |wave_period| ShelfParameters { wave_period, ..usual };
+        let grains = |modulus| ShelfParameters { grain_bulk_modulus: Some(modulus), ..usual };
+        let start = |stress| ShelfParameters { initial_stress: Some(stress), ..usual };
+        for (problem, typed, wanted) in [
+            ("barron", "column.load=1", usual),
+            ("barron", "drain.radius=0.125", drain(0.125)),
+            ("barron", "drain.radius=\"10 cm\"", drain(0.1)),
+            ("barron-free-strain", "drain.radius=0.125", drain(0.125)),
+            ("seabed", "wave.period=2 min", wave(120.0)),
+            (
+                "cryer",
+                "material.biot_coefficient=0.75",
+                ShelfParameters { biot_coefficient: Some(0.75), ..usual },
+            ),
+            ("cryer", "material.grain_bulk_modulus=3 GPa", grains(3e9)),
+            ("injection", "material.grain_bulk_modulus=3e9", grains(3e9)),
+            ("davis-raymond", "column.initial_stress=5 kPa", start(5e3)),
+        ] {
+            let kind: ReferenceKind = problem.parse().expect("a problem");
+            let set = Assignments {
+                assignments: vec![typed.to_owned(), "material.hydraulic_conductivity=0.002".to_owned()],
+            };
+            let outputs = Outputs { set: set.clone(), ..Outputs::default() };
+            for asked in [Asked::of_scene(problem, &outputs), Asked::of_solution(kind, &set)] {
+                let asked = asked.expect(problem);
+                assert_eq!(asked.parameters.shelf, wanted, "{problem} {typed}");
+                assert_eq!(asked.references, [kind], "{problem} {typed}");
+                assert_eq!(asked.case().material.hydraulic_conductivity, 0.002, "{problem} {typed}");
+            }
+        }
+        // A column has nothing of them, whatever it is set to.
+        let outputs = Outputs::default();
+        assert_eq!(Asked::of_scene("terzaghi", &outputs).expect("a scene").parameters.shelf, usual);
+    }
+
+    #[test]
+    fn a_problem_of_the_shelf_refuses_what_it_does_not_heed_and_takes_what_it_does() {
+        const WEIGHT: &str = "column.self_weight=true";
+        const WATER: &str = "material.water_bulk_modulus=1e9";
+        const LAW: &str = "material.law=linear";
+        for (problem, typed, told) in [
+            ("barron", WEIGHT, Some("it has no weight")),
+            ("cryer", WEIGHT, Some("it has no weight")),
+            ("cryer", LAW, Some("the problem has its own law")),
+            ("cryer", "column.loading_time=1", Some("its load acts at once")),
+            ("barron", WATER, Some("its water is incompressible")),
+            ("davis-raymond", WATER, Some("its water is incompressible")),
+            ("cryer", WATER, None),
+            ("seabed", WATER, None),
+            ("cryer", "drain.radius=0.1", Some("it is for `barron`, `barron-free-strain`")),
+            ("barron", "wave.period=1", Some("it is for `seabed`")),
+            ("barron", "drain.radius=wide", Some("`drain.radius`: ")),
+            ("barron", "drain.radius=1 s", Some("`drain.radius`: ")),
+            ("cryer", "material.biot_coefficient=1 m", Some("must be a number")),
+        ] {
+            let set = Assignments { assignments: vec![typed.to_owned()] };
+            let of = set.of_shelf(problem.parse().expect("a problem")).map_err(|error| error.to_string());
+            let Some(told) = told else {
+                assert_eq!(of.map(|(others, _)| others.assignments), Ok(set.assignments), "{typed}");
+                continue;
+            };
+            assert!(of.as_ref().is_err_and(|error| error.contains(told)), "{typed}: {of:?}");
+        }
+        for (reference, is_taken) in [("barron", true), ("barron-free-strain", false), ("terzaghi", false)] {
+            let outputs = Outputs { reference: Some(reference.to_owned()), ..Outputs::default() };
+            assert_eq!(Asked::of_scene("barron", &outputs).is_ok(), is_taken, "{reference}");
+        }
+    }
 }

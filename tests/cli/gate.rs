@@ -156,12 +156,20 @@ fn a_result_that_is_not_there_or_lacks_a_time_fails_its_case_and_says_what_to_do
     );
     // A mesh that is none of the study's.
     let other = self::folder(0.0);
-    fs::rename(other.path().join("run-10"), other.path().join("run-20")).expect("moved");
-    fs::write(other.path().join("kratos.toml"), STUDY.replace("cells = [10]", "cells = [20]"))
-        .expect("a file");
-    let told = check(other.path(), "kratos.toml", &[]);
-    assert!(told.words().contains("10 cells over the height, and the case asks for 20"), "{}", told.out);
-    assert!(!told.words().contains(&*other.path().to_string_lossy()), "no absolute path: {}", told.out);
+    let mut from = "run-10".to_owned();
+    for (cells, wanted) in [
+        (20, "10 cells over the height, and the case asks for 20"),
+        (5, "the nodes of the result stand at 11 heights, and 5 cells have 6"),
+    ] {
+        let to = format!("run-{cells}");
+        fs::rename(other.path().join(&from), other.path().join(&to)).expect("moved");
+        from = to;
+        let study = STUDY.replace("cells = [10]", &format!("cells = [{cells}]"));
+        fs::write(other.path().join("kratos.toml"), study).expect("a file");
+        let told = check(other.path(), "kratos.toml", &[]);
+        assert!(told.code == 1 && told.words().contains(wanted), "{}", told.out);
+        assert!(!told.words().contains(&*other.path().to_string_lossy()), "no absolute path: {}", told.out);
+    }
 }
 
 #[test]

@@ -111,6 +111,9 @@ fn packed_records_are_taken_up_and_what_is_missing_runs() {
     let told = call(at, &["plan", "short.toml", "--missing", "out"]);
     let missing = told.out.lines().count() - 1;
     assert!((20..28).contains(&missing), "{missing} of {CASES}");
+    assert!(told.err.starts_with(&format!("{missing} cases: about ")), "of these alone: {}", told.err);
+    let told = call(at, &["plan", "short.toml"]);
+    assert!(told.err.starts_with(&format!("{CASES} cases: about ")), "{}", told.err);
     let told = call(at, &["records", "out/short"]);
     assert!(told.err.contains("is cut at byte"), "{}", told.err);
     let told = run(at, &["--resume"]);
@@ -238,7 +241,9 @@ fn a_late_case_of_many_is_run_again_and_a_failed_one_is_not_hidden() {
     failed(4, FailureKind::Unstable);
     failed(5, FailureKind::Unstable);
     drop(store);
-    assert_eq!(call(at, &["plan", "short.toml", "--missing", "out"]).out.lines().count(), 2);
+    let told = call(at, &["plan", "short.toml", "--missing", "out"]);
+    assert_eq!(told.out.lines().count(), 2);
+    assert!(told.err.starts_with("1 case: about "), "{}", told.err);
     let told = run(at, &["--resume"]);
     assert_eq!(told.code, 3, "{}", told.err);
     assert!(told.err.contains("72 cases (71 from disk, 2 failed)"), "{}", told.err);
@@ -271,6 +276,7 @@ fn shares_by_cost_part_the_cases_exactly_and_merge_to_the_table_of_one_machine()
     let told = call(at, &["plan", "short.toml", "--missing", "merged", "--tasks", "3", "--balance"]);
     let command = "oedometer run short.toml --out merged --shard 2/3 --balance --resume\n";
     assert_eq!((told.code, told.out.as_str()), (0, command), "the share that is missing, as it was");
+    assert!(told.err.contains("24 cases: about "), "{}", told.err);
     assert_eq!(call(at, &["merge", "short.toml", "p1", "p2", "p3", "--out", "merged"]).code, 0);
     assert_eq!(table(at, "merged"), expected);
     let told = call(at, &["plan", "short.toml", "--missing", "merged"]);

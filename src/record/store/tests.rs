@@ -367,3 +367,89 @@ fn single_files_keep_what_a_list_keeps_and_go_on_in_packs_when_the_study_grows()
         }
     }
 }
+
+/// What is made another of a record; a case that is not its own is there to take from.
+type Change = fn(&mut Record, &Case);
+
+#[test]
+fn a_record_is_taken_up_only_where_layout_case_and_program_are_these() {
+    let (own, other) = (case(1), case(2));
+    let wall = [0.5];
+    // What is changed of a sound record, then whether it is kept, read by its hash and known by its origin, and what
+    // is taken up: nothing, of another program, without or with its wall times.
+    let rows: [(&str, Change, [bool; 3], &str); 12] = [
+        ("nothing", |_, _| (), [true; 3], "with times"),
+        ("a later layout", |record, _| record.schema = SCHEMA + 1, [false; 3], "nothing"),
+        ("an earlier layout", |record, _| record.schema = SCHEMA - 1, [false; 3], "nothing"),
+        ("the case", |record, other| record.case = other.clone(), [false, false, true], "nothing"),
+        ("the version", |record, _| record.provenance.version.push('1'), [true; 3], "another program's"),
+        ("the sources", |record, _| record.provenance.sources.push('1'), [true; 3], "another program's"),
+        ("the commit", |record, _| record.provenance.commit.push('1'), [true; 3], "with times"),
+        ("the compiler", |record, _| record.provenance.compiler.push('1'), [true; 3], "without times"),
+        ("the target", |record, _| record.provenance.target.push('1'), [true; 3], "without times"),
+        ("the profile", |record, _| record.provenance.profile.push('1'), [true; 3], "without times"),
+        (
+            "its end",
+            |record, other| record.status = self::record(other, 1, &[], CaseEnd::Late).status,
+            [true; 3],
+            "nothing",
+        ),
+        (
+            "a failure",
+            |record, other| record.status = self::record(other, 1, &[], CaseEnd::Failed).status,
+            [true; 3],
+            "with times",
+        ),
+    ];
+    for (what, change, wanted, taken_up) in rows {
+        for count in [1, MOST_SINGLE_CASES + 1] {
+            let folder = tempfile::TempDir::new().expect("a folder");
+            let store = RecordStore::for_cases(folder.path(), "s", count);
+            let mut record = record(&own, 1, &wall, CaseEnd::Ok);
+            change(&mut record, &other);
+            store.write(&record).expect("written");
+            // As it was written, and as the next program opens it.
+            for store in [store, RecordStore::for_cases(folder.path(), "s", count)] {
+                let what = format!("{what} of {count}");
+                let found = [
+                    store.kept(&own).is_some(),
+                    store.read(&own.hash()).is_some(),
+                    store.origin(&own).is_some(),
+                ];
+                assert_eq!(found, wanted, "{what}");
+                assert!(store.has(&own) && !store.has(&other), "{what}");
+                let found = match store.found(&own) {
+                    Found::Nothing => "nothing",
+                    Found::OfAnotherProgram => "another program's",
+                    Found::Finished(record) if record.wall.is_empty() => "without times",
+                    Found::Finished(_) => "with times",
+                };
+                assert_eq!(found, taken_up, "{what}");
+                assert_eq!(store.finished(&own).is_some(), taken_up.contains("times"), "{what}");
+                assert_eq!(store.found(&other), Found::Nothing, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn damage_is_told_by_its_first_byte_and_its_length() {
+    for (from, to, is_cut, wanted) in [
+        (
+            3_000_000,
+            3_000_200,
+            false,
+            "p.gz is damaged from byte 3000000 on: 200 bytes are not part of a record",
+        ),
+        (0, 7, false, "p.gz is damaged from byte 0 on: 7 bytes are not part of a record"),
+        (
+            3_000_000,
+            3_000_200,
+            true,
+            "p.gz is cut at byte 3000000: 200 bytes of a record that was not finished",
+        ),
+        (0, 7, true, "p.gz is cut at byte 0: 7 bytes of a record that was not finished"),
+    ] {
+        assert_eq!(Damage { pack: "p.gz".into(), from, to, is_cut }.to_string(), wanted);
+    }
+}
