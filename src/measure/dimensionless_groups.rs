@@ -213,6 +213,15 @@ mod tests {
             assert_eq!(inertia_rules(&late, ReferenceKind::Layered), None);
             assert!((groups(&late, 0.5).inertia / groups(&equal, 0.5).inertia - 1e3).abs() < 1e-6);
         }
+        // A layer counts by what it takes of the settlement, not by its thickness.
+        let stiffness = equal.material.youngs_modulus;
+        for (ratio, expected) in [(4.0, 4.0 * 3.0 / 7.0), (0.25, 0.25 * 12.0 / 13.0)] {
+            let other = format!("{{thickness = 0.75, youngs_modulus = {:e}}}", ratio * stiffness);
+            for layers in [format!("{tight}, {other}"), format!("{other}, {tight}")] {
+                let found = skeleton_inertia(&case(&layers, 1e-9)) / (alone / 0.75);
+                assert!((found / expected - 1.0).abs() < 1e-3, "{found:e} for {expected:e}: {layers}");
+            }
+        }
     }
 
     #[test]

@@ -115,4 +115,33 @@ mod tests {
         assert_eq!((layers.misses(1.0), layers.misses(1.5)), (None, Some(1.0)));
         assert!(SoilLayers::of(&[layer(0.1); 9]).is_none());
     }
+
+    #[test]
+    fn a_layer_has_each_value_of_its_own_and_all_others_of_the_column() {
+        let column = Material::default();
+        let values = |soil: &Material| {
+            [
+                soil.youngs_modulus,
+                soil.poissons_ratio,
+                soil.porosity,
+                soil.water_bulk_modulus,
+                soil.hydraulic_conductivity,
+            ]
+        };
+        let own = [7e6, 0.21, 0.37, 5e7, 3e-6];
+        // Bit `i` of the number says whether the layer has the value `i`.
+        for number in 0..32_usize {
+            let has = |place: usize| (number >> place & 1 == 1).then_some(own[place]);
+            let layer = SoilLayer {
+                thickness: 0.5,
+                youngs_modulus: has(0),
+                poissons_ratio: has(1),
+                porosity: has(2),
+                water_bulk_modulus: has(3),
+                hydraulic_conductivity: has(4),
+            };
+            let wanted: [f64; 5] = std::array::from_fn(|place| has(place).unwrap_or(values(&column)[place]));
+            assert_eq!(values(&layer.soil(&column)), wanted, "{layer:?}");
+        }
+    }
 }

@@ -287,3 +287,34 @@ impl Cursor<'_> {
         Ok(numbers)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_array_of_the_whole_gives_the_time_of_a_state() {
+        let field = |name: &str, tuples: usize| {
+            format!("FIELD f 1\n{name} 1 {tuples} double\n{}\n", "7 ".repeat(tuples))
+        };
+        let scalars = "SCALARS Time double\nLOOKUP_TABLE default\n8 9\n";
+        let [on_points, on_cells] = ["POINT_DATA 2\n", "CELL_DATA 2\n"];
+        for (whole, behind, wanted) in [
+            ("FIELD f 1\nTIME 1 1 double\n2.5\n", String::new(), Some(2.5)),
+            ("FIELD f 1\nTimeValue 1 2 double\n2.5 3.5\n", String::new(), Some(2.5)),
+            ("FIELD f 1\ncycle 1 1 int\n4\n", String::new(), None),
+            ("", format!("{on_points}{}", field("Time", 2)), None),
+            ("", format!("{on_cells}{}", field("time", 2)), None),
+            ("", format!("{on_points}{scalars}"), None),
+            ("FIELD f 1\nTIME 1 1 double\n2.5\n", format!("{on_points}{scalars}"), Some(2.5)),
+            ("FIELD f 1\nTIME 1 1 double\n2.5\n", format!("{on_cells}{}", field("TIME", 2)), Some(2.5)),
+        ] {
+            let text = format!(
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n{whole}POINTS 2 double\n0 0 0\n0 1 0\n\
+                 VERTICES 2 4\n1 0\n1 1\n{behind}"
+            );
+            let frame = read(text.as_bytes(), Wanted(&["Time".to_owned()].into())).expect("a state");
+            assert_eq!(frame.time, wanted, "{text}");
+        }
+    }
+}

@@ -343,3 +343,35 @@ fn blocks(
     whole.notes.extend(notes);
     Ok(whole)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_has_the_time_of_the_innermost_collection_that_gives_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
+        for name in ["a", "b", "c", "d"] {
+            write(name, "x\n0\n");
+        }
+        let collection = |name: &str, sets: &str| {
+            write(name, &format!("<VTKFile type=\"Collection\"><Collection>{sets}</Collection></VTKFile>"));
+        };
+        let set = |file: &str, time: &str| format!("<DataSet timestep=\"{time}\" file=\"{file}\"/>");
+        let series = "{\"files\": [{\"name\": \"d\", \"time\": 4}]}";
+        write("series", series);
+        collection("inner", &[set("a", "1"), set("b", "2"), set("c", "")].concat());
+        for (outer, wanted) in [
+            ([("inner", "9"), ("series", "8")], [Some(1.0), Some(2.0), Some(9.0), Some(4.0)]),
+            ([("inner", ""), ("series", "")], [Some(1.0), Some(2.0), None, Some(4.0)]),
+            ([("inner", "0"), ("d", "7")], [Some(1.0), Some(2.0), Some(0.0), Some(7.0)]),
+            ([("inner", ""), ("d", "")], [Some(1.0), Some(2.0), None, None]),
+        ] {
+            collection("outer", &outer.map(|(file, time)| set(file, time)).concat());
+            let steps = steps_of(&folder.path().join("outer"), &mut Vec::new()).expect("states");
+            let times: Vec<_> = steps.iter().map(|step| step.time).collect();
+            assert_eq!(times, wanted, "{outer:?}");
+        }
+    }
+}
