@@ -141,7 +141,7 @@ mod tests {
         let told = equal_cells(&precision(&good, &errors));
         assert!(told.is_some_and(|told| told.contains("no other program has a smaller pressure error")));
         assert_eq!(
-            equal_cells(&precision(&others, &errors)),
+            equal_cells(&precision(&others[..2], &errors)),
             None,
             "nothing is said of what was not compared"
         );
