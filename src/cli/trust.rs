@@ -111,7 +111,7 @@ fn digest_of(study: &Study, starting: &[&ExternalSolver]) -> String {
     for solver in starting {
         take(&solver.folder.to_string_lossy());
         take(&format!("{:?}", (solver.attached, &solver.command, &solver.version, &solver.environment)));
-        for word in solver.command.iter().chain(&solver.version) {
+        for word in solver.words().chain(&solver.version) {
             if let Some(path) = solver.file(word) {
                 take(&digest_of_file(&path));
             }

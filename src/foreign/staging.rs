@@ -211,11 +211,11 @@ const MOST_BYTES: u64 = 100_000_000;
 /// Digits of the digest.
 const DIGITS: usize = 16;
 
-/// Digest of the program that the command of a solver starts, and of the files in the folders of the files that it names:
-/// an adapter imports what lies beside it. TOML files count where they are named, for the others are studies. `None`
+/// Digest of the program that the command of a solver starts, and of the files in the folders of the files that it or its
+/// environment names: an adapter imports what lies beside it. TOML files count where they are named, for the others are studies. `None`
 /// where nothing beside the study is named, or where there is too much to read.
 pub fn program_digest(solver: &ExternalSolver) -> Option<String> {
-    let named: BTreeSet<PathBuf> = solver.command.iter().filter_map(|word| solver.file(word)).collect();
+    let named: BTreeSet<PathBuf> = solver.words().filter_map(|word| solver.file(word)).collect();
     let folders: BTreeSet<&Path> = named.iter().filter_map(|file| file.parent()).collect();
     let mut files = named.clone();
     for folder in folders {
@@ -360,6 +360,11 @@ mod tests {
         assert_eq!(program_digest(&by_folder), Some(before.clone()), "the same file by another name");
         let other_shell = solver(folder.path(), &["cat", "adapter.py", "{case}"]);
         assert_ne!(program_digest(&other_shell), Some(before), "another program of the system");
+        let mut by_variable = solver(folder.path(), &["sh", "-c", "solve $INPUT"]);
+        by_variable.environment = vec![("INPUT".to_owned(), "{study}/adapter.py".to_owned())];
+        let before = program_digest(&by_variable).expect("a variable names a file");
+        write("adapter.py", "3");
+        assert_ne!(program_digest(&by_variable), Some(before), "a file that a variable names");
     }
 
     #[test]

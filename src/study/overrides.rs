@@ -98,7 +98,7 @@ pub struct Outputs {
     /// Compare the result with this reference only
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,
-    /// Time factors of the outputs, comma-separated; other times of a scored result are left out
+    /// Time factors at which the result is compared, comma-separated
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub time_factor: Option<String>,
     #[command(flatten)]

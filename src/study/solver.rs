@@ -105,6 +105,11 @@ impl ExternalSolver {
         self.attached.name()
     }
 
+    /// The words of its command and the values of its environment.
+    pub fn words(&self) -> impl Iterator<Item = &String> {
+        self.command.iter().chain(self.environment.iter().map(|(_, value)| value))
+    }
+
     /// The file that a word names, where one of that name is in the study's folder.
     pub fn file(&self, word: &str) -> Option<PathBuf> {
         file_beside(&self.folder, word)

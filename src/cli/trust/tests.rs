@@ -44,10 +44,11 @@ fn what_is_remembered_follows_commands_environment_and_files_and_no_sweep() {
 fn a_yes_ends_with_a_change_of_any_file_that_is_started() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let at = folder.path();
-    for name in ["adapter.sh", "version.sh", "other.sh", "template.prj"] {
+    for name in ["adapter.sh", "version.sh", "other.sh", "template.prj", "by-variable.txt"] {
         fs::write(at.join(name), "true").expect("a file");
     }
-    let more = "version = [\"sh\", \"version.sh\"]\nfiles = [\"template.prj\"]\n";
+    let more = "version = [\"sh\", \"version.sh\"]\nfiles = [\"template.prj\"]\n\
+                env = { INPUT = \"{study}/by-variable.txt\" }\n";
     let again = |command: &str| {
         let mut study = study(at, more, "\"toy\"");
         study.solvers[0].command[1] = command.to_owned();
@@ -55,7 +56,7 @@ fn a_yes_ends_with_a_change_of_any_file_that_is_started() {
     };
     for command in ["adapter.sh", "./adapter.sh", "{study}/adapter.sh"] {
         let read_before = again(command);
-        for (name, is_started) in [("adapter.sh", true), ("version.sh", true), ("other.sh", false)] {
+        for (name, is_started) in [("adapter.sh", true), ("version.sh", true), ("by-variable.txt", true), ("other.sh", false)] {
             let digest = |study: &Study| digest_of(study, &starting(study));
             let before = digest(&read_before);
             fs::write(at.join(name), "rm -r elsewhere").expect("a file");

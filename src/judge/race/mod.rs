@@ -188,7 +188,11 @@ impl<'a> Runs<'a> {
         let (mut path, mut two_steps) = (Vec::<&Record>::new(), None);
         for record in own {
             match path.last() {
-                Some(last) if last.case.cells == record.case.cells => two_steps = Some((*last, record)),
+                // Of several shorter steps the longest.
+                Some(last) if last.case.cells == record.case.cells => {
+                    let is_known = |pair: &(&Record, &Record)| std::ptr::eq(pair.0, *last);
+                    two_steps = two_steps.filter(is_known).or(Some((*last, record)));
+                }
                 _ => path.push(record),
             }
         }
@@ -419,6 +423,14 @@ mod tests {
                 all.reverse();
             }
         }
+        let mut three: Vec<Record> = all.iter().filter(|record| record.case.cells == 8).cloned().collect();
+        let mut shortest = three.clone();
+        shortest.iter_mut().for_each(|record| record.step_sizes.target *= 0.25);
+        three.splice(0..0, shortest.into_iter().filter(|record| record.step_sizes.target < 0.5));
+        let steps = Runs::of(&study, contender, &three)
+            .two_steps
+            .map(|pair| <[&Record; 2]>::from(pair).map(|one| one.step_sizes.target));
+        assert_eq!(steps, Some([2.0, 1.0]), "of three steps the next shorter one");
         study.not_applicable.push(("GIMP", "a test".to_owned()));
         let runs = Runs::of(&study, contender, &all);
         assert!(runs.path.is_empty() && runs.two_steps.is_none(), "what is refused has no runs");

@@ -58,10 +58,11 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
     let largest = sweep.values.last().copied().unwrap_or_default();
     let kept = rows.iter().filter(|row| lost_from(row).is_none()).count();
     let mut text = format!(
-        "Of {} on {} cells, at T_v = {}, {kept} keep displacement and pressure within {} % up to ν = {}",
+        "Of {} on {} cells, at T_v = {}, {kept} {} displacement and pressure within {} % up to ν = {}",
         count_of(rows.len(), "method", "methods"),
         sweep.cells,
         typed(time),
+        if kept == 1 { "keeps" } else { "keep" },
         short(100.0 * KEPT),
         typed(largest)
     );

@@ -335,8 +335,9 @@ fn digest_of_solver(table: &SolverTable, folder: &Path) -> String {
         digest.take("preset", preset);
     }
     let files = table.files.iter().flat_map(|list| &***list);
-    for word in table.command.iter().chain(files).chain(&table.mapping) {
-        if let Some(path) = file_beside(folder, word) {
+    let words = table.command.iter().chain(files).chain(&table.mapping).map(|word| word.to_string());
+    for word in words.chain(pairs_of(table).map(|(_, value)| value)) {
+        if let Some(path) = file_beside(folder, &word) {
             digest.take("file", &digest_of_file(&path));
         }
     }
