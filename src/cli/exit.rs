@@ -8,7 +8,8 @@ use oedometer_formats::ImportError;
 
 /// The exit codes, for `--help`.
 pub const HELP: &str = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed \
-                        out, 4 nothing selected, 5 golden missing or stale, 6 incomplete merge";
+                        out, 4 nothing selected, 5 golden missing or stale, 6 cases missing (an \
+                        incomplete merge, an interrupted run, solvers that may not start)";
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +27,7 @@ pub enum Exit {
     NothingSelected = 4,
     /// A golden value is missing or stale.
     Golden = 5,
-    /// A merge is incomplete.
+    /// Cases are missing: an incomplete merge, an interrupted run, or solvers that may not start.
     IncompleteMerge = 6,
 }
 

@@ -83,9 +83,9 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
     text + "."
 }
 
-/// An error in percent, or of more than the exact value in multiples of it.
+/// An error in percent, or from twice the exact value on in multiples of it.
 fn off_in_words(error: f64) -> String {
-    if error < 1.0 {
+    if error < 1.5 {
         number::percent(error)
     } else {
         format!("{} times the exact value", number::number(error.round()))
@@ -158,6 +158,12 @@ mod tests {
             assert_eq!(numbers.len(), 4, "{row:?}");
             assert!(numbers.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 1e-12), "{row:?}");
         }
+    }
+
+    #[test]
+    fn an_error_is_a_share_until_it_is_twice_the_exact_value() {
+        let told = [0.529, 1.04, 1.49, 1.5, 288.6].map(off_in_words);
+        assert_eq!(told, ["52.9 %", "104 %", "149 %", "2 times the exact value", "289 times the exact value"]);
     }
 
     #[test]

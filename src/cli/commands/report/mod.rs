@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 }
 
 /// The cases that a report runs of a study. Of the race only those of the CI tier where no study is named: the whole of
-/// it takes minutes, and `report race` runs it.
+/// it takes as long as everything else, and `report race` runs it.
 fn selected(study: &Study, is_named: bool) -> Study {
     let mut selected = study.clone();
     if study.is_race && !is_named {
