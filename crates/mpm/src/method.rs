@@ -259,8 +259,8 @@ fn is_whole(thousandths: &u32) -> bool {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 20] = {
-    use Basis::{Cpdi, Cpgimp, Hat};
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 25] = {
+    use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
     use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp, PppMonotone, PppStep};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
@@ -272,6 +272,7 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 20] 
         ("GIMP-SRI-patch", Cpgimp, Standard, Sri, Patch),
         ("GIMP-SRI-patch-soils", Cpgimp, Standard, Sri, PatchSoils),
         ("GC-SRI-patch", Cpgimp, Cmpm, Sri, Patch),
+        ("CPDI", Cpdi, Standard, Points, Constant),
         ("CPDI-SRI-patch", Cpdi, Standard, Sri, Patch),
         ("CE-SRI-patch", Cpdi, CmpmEnds, Sri, Patch),
         ("GIMP-null-space", Cpgimp, Standard, Points, NullSpace),
@@ -285,6 +286,10 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 20] 
         ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
         ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
         ("GC-Bbar-patch", Cpgimp, CmpmBbar, Sri, Patch),
+        ("B2", Bspline2, Standard, Points, Constant),
+        ("B2-SRI-patch", Bspline2, Standard, Sri, Patch),
+        ("B2-Bbar-patch", Bspline2, Bbar, Sri, Patch),
+        ("B3-SRI-patch", Bspline3, Standard, Sri, Patch),
     ]
 };
 

@@ -56,7 +56,9 @@ fn a_yes_ends_with_a_change_of_any_file_that_is_started() {
     };
     for command in ["adapter.sh", "./adapter.sh", "{study}/adapter.sh"] {
         let read_before = again(command);
-        for (name, is_started) in [("adapter.sh", true), ("version.sh", true), ("by-variable.txt", true), ("other.sh", false)] {
+        for (name, is_started) in
+            [("adapter.sh", true), ("version.sh", true), ("by-variable.txt", true), ("other.sh", false)]
+        {
             let digest = |study: &Study| digest_of(study, &starting(study));
             let before = digest(&read_before);
             fs::write(at.join(name), "rm -r elsewhere").expect("a file");

@@ -163,7 +163,10 @@ mod tests {
     #[test]
     fn an_error_is_a_share_until_it_is_twice_the_exact_value() {
         let told = [0.529, 1.04, 1.49, 1.5, 288.6].map(off_in_words);
-        assert_eq!(told, ["52.9 %", "104 %", "149 %", "2 times the exact value", "289 times the exact value"]);
+        assert_eq!(
+            told,
+            ["52.9 %", "104 %", "149 %", "2 times the exact value", "289 times the exact value"]
+        );
     }
 
     #[test]

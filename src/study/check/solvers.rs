@@ -335,9 +335,8 @@ fn digest_of_solver(table: &SolverTable, folder: &Path) -> String {
         digest.take("preset", preset);
     }
     let files = table.files.iter().flat_map(|list| &***list);
-    let words = table.command.iter().chain(files).chain(&table.mapping).map(|word| word.to_string());
-    for word in words.chain(pairs_of(table).map(|(_, value)| value)) {
-        if let Some(path) = file_beside(folder, &word) {
+    for word in table.command.iter().chain(files).chain(&table.mapping).chain(table.env.values()) {
+        if let Some(path) = file_beside(folder, word) {
             digest.take("file", &digest_of_file(&path));
         }
     }
