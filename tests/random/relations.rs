@@ -87,7 +87,8 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             "GIMP".clone_into(&mut base.method);
             "GIMP-SRI".clone_into(&mut other.method);
             // In a cell that an interface cuts, points of several soils differ.
-            is_small && is_line && is_lattice && base.value("column.soils").is_none()
+            let is_one_soil = base.value("column.soils").is_none();
+            is_small && is_line && is_lattice && is_one_soil && (has_same_steps || base.scene != "yield-front")
         }
         Relation::Dimensions => {
             let height: f64 = base.number("column.height").unwrap_or(1.0);
@@ -102,9 +103,11 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             // B-bar shares a volume out among the directions that there are, cells that remember fit their parabolas
             // over them: other methods in each dimension.
             let is_same = !(deforms && (base.method.contains("Bbar") || base.method.ends_with("-cells")));
-            // Off the lattice, where points move too, a cell of the plane beside another feels slopes of its pressures
-            // along the height, by forces across it: one of a line does not, and filters them.
-            let is_same = is_same && ((is_lattice && is_small) || !base.method.ends_with("null-space"));
+            // Off the lattice, where points move too, and in a cell that an interface cuts, a cell of the plane beside
+            // another feels slopes of its pressures along the height, by forces across it: one of a line does not, and
+            // filters them.
+            let has_slopes = !(is_lattice && is_small) || base.value("column.soils").is_some();
+            let is_same = is_same && !(has_slopes && base.method.ends_with("null-space"));
             // The chord mean gives way to the node's own mobility where round-off hides its slope.
             let is_same = is_same && !(deforms && base.value("material.conductivity_mean") == Some("chord"));
             // One point integrates no shear of a plane's cell: without it nodes go to and fro beside each other, and where
