@@ -405,4 +405,62 @@ mod tests {
             KEYS.iter().filter(|key| !key.tables.contains(&"sweep")).map(|key| key.name).collect();
         assert_eq!(stays, ["dimensions", "loading_time", "self_weight"]);
     }
+
+    #[test]
+    fn values_read_as_tables_have_them_and_keys_with_their_units() {
+        let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("plain");
+        let values =
+            [Value::Method(ogs), Value::TimeStep(TimeStepRule::Tolerance(0.5)), Value::Word("explicit")];
+        assert_eq!(values.map(|value| value.to_string()), ["ogs", "tolerance=5e-1", "explicit"]);
+        let values = [Value::Flag(true), Value::Count(3), Value::Number(0.25), Value::Absent];
+        assert_eq!(values.map(|value| value.to_string()), ["true", "3", "0.25", ""]);
+        let named = |name: &str, table: &str| Key::named(name, table).expect("a key");
+        assert_eq!(named("load", "layer").description(), "Load q on the surface, Pa.");
+        assert_eq!(named("cells", "sweep").description(), "Cells over the height.");
+        assert!(Key::named("dimensions", "sweep").is_none() && Key::named("load", "points").is_none());
+        let within = |name: &str| match named(name, "sweep").kind {
+            Kind::Number(Range::Within(low, high, said, right)) => (low, high, said, right),
+            _ => panic!("{name} has other values"),
+        };
+        let half = "half a spacing up or down, 0.5 or -0.5, is as far as they go";
+        let filled = "it is the share of the top cell that is filled: more than 0, at most 1";
+        let fold = "from 1 on it folds the body: it lies between -0.99 and 0.99";
+        for (name, low, high, said, right) in [
+            ("offset", -0.5, 0.5, "points shifted by {} spacings", half),
+            ("jitter", -0.5, 0.5, "points shifted by {} spacings", half),
+            ("flip", 0.0, 1.0, "a FLIP share of {}", "it lies between 0 (PIC) and 1 (FLIP)"),
+            ("filling", f64::MIN_POSITIVE, 1.0, "`points.filling` is {}", filled),
+            ("amplitude_x", -0.99, 0.99, "a prescribed stretch of {}", fold),
+            ("amplitude_y", -0.99, 0.99, "a prescribed stretch of {}", fold),
+        ] {
+            assert_eq!(within(name), (low, high, said, right), "{name}");
+        }
+    }
+
+    #[test]
+    fn an_input_brings_what_follows_from_it_and_counts_for_those_who_heed_it() {
+        let mut case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let set = |case: &mut Case, name: &str, value: Value| {
+            Key::named(name, "sweep").expect("a key").set(case, value);
+        };
+        (case.column.points.sets, case.column.points.water_per_cell) = (2, 3);
+        set(&mut case, "jitter", Value::Number(-0.25));
+        set(&mut case, "sets", Value::Count(1));
+        assert_eq!((case.column.points.jitter, case.column.points.water_per_cell), (0.25, 0));
+        let before = case.clone();
+        set(&mut case, "cells", Value::Number(4.0));
+        set(&mut case, "length", Value::Number(4.0));
+        assert_eq!(case, before, "a value of another kind, or of another body, changes nothing");
+        // What only this program's integrators take says nothing to an attached solver.
+        let idle = |case: &Case| -> Vec<&str> {
+            KEYS.iter().filter(|key| !key.counts_for(case)).map(|key| key.name).collect()
+        };
+        assert_eq!(idle(&case), [""; 0]);
+        case.method =
+            crate::case::Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("plain");
+        let own = ["drag", "flip", "mapping_back", "affine", "stress_slopes", "formulation", "scheme"];
+        assert_eq!(idle(&case), [&["integrator", "time_step"], &own[..]].concat());
+        case.time_step = TimeStepRule::Seconds(1.0);
+        assert_eq!(idle(&case), [&["integrator"], &own[..]].concat());
+    }
 }

@@ -119,11 +119,56 @@ impl Case {
             format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
         };
         let variant = self.variant();
+        label.truncate(label.trim_end().len());
         if !variant.is_empty() {
-            label = format!("{} ({variant})", label.trim_end());
-        } else if self.is_attached() {
-            label.truncate(label.trim_end().len());
+            label = format!("{label} ({variant})");
         }
         label
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Attached, Solver};
+    use oedometer_mpm::scene::SceneKind;
+
+    #[test]
+    fn a_label_names_what_is_unusual_and_its_step_where_that_is_no_question() {
+        type Change = fn(&mut Case);
+        let other_soil: Change = |case| {
+            case.task = Task::Stability;
+            let soil = &mut case.material;
+            (soil.hydraulic_conductivity, soil.water_bulk_modulus) = (2e-3, 3e9);
+            (soil.porosity, soil.youngs_modulus, soil.poissons_ratio) = (0.4, 5e6, 0.125);
+            (soil.grain_density, soil.water_density, soil.gravity) = (2700.0, 1025.0, 10.0);
+        };
+        let all = "k = 2e-3, K_w = 3e9, n = 4e-1, E = 5e6, ν = 1.25e-1, ρ_s = 2.7e3, ρ_w = 1.025e3, g = 1e1";
+        let swept: Change = |case| {
+            case.swept = ["drag", "porosity", "cells", "nothing"].into();
+            (case.material.porosity, case.settings.flip) = (0.3 + 1e-12, 0.25);
+        };
+        for (change, variant) in [
+            ((|_| {}) as Change, ""),
+            (other_soil, all),
+            (|case| case.material.poissons_ratio = 0.49, ""),
+            (|case| case.column.points.water_per_cell = 3, "two point sets, 3 of the water"),
+            (swept, "FLIP 0.25, drag=explicit, porosity=0.3, cells=8"),
+        ] {
+            let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+            case.time_step = TimeStepRule::Courant(0.4);
+            change(&mut case);
+            let rest = if variant.is_empty() { String::new() } else { format!(" ({variant})") };
+            let own = format!("{} explicit cells=8 points=2", case.method);
+            assert_eq!(case.label(), format!("{own} courant=0.4{rest}"));
+            assert_eq!(case.label_without_step(), own + &rest);
+        }
+        let ogs = Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("a plain name");
+        let mut case = Case { method: ogs, cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        assert_eq!(case.label(), "ogs cells=8");
+        (case.points_per_cell, case.time_step) = (1, TimeStepRule::Seconds(0.25));
+        case.column.dimensions = 2;
+        assert_eq!(case.label(), "ogs cells=8 points=1 seconds=2.5e-1 (two dimensions)");
+        assert_eq!(case.label_without_step(), "ogs cells=8 points=1 (two dimensions)");
     }
 }

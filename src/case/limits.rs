@@ -221,6 +221,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
     use oedometer_mpm::method::Method;
 
     #[test]
@@ -264,5 +265,107 @@ mod tests {
                 assert_eq!(of(true, true, rule), [affine, slopes].concat(), "{place}");
             }
         }
+    }
+
+    fn implicitly(case: &mut Case, formulation: Formulation) {
+        (case.integrator, case.formulation) = (IntegratorKind::Implicit, formulation);
+        case.time_step = TimeStepRule::Growth(0.1);
+    }
+
+    fn in_layers(case: &mut Case, mean: ConductivityMean) {
+        let layer = SoilLayer { thickness: 0.5, ..SoilLayer::default() };
+        case.column.soils = SoilLayers::of(&[layer; 2]).expect("two are few");
+        case.material.conductivity_mean = mean;
+    }
+
+    /// What is said of the cases of the table below that are refused, by their rows.
+    const TOLD: &str = r#"
+0 task: an attached solver has no critical step that could be searched: name methods of this program alone, or leave `task` out
+1 affine: the critical step with APIC is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+2 stress_slopes: the critical step with stress slopes is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+3 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
+4 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
+8 sets: the projection is of a pressure that the points of the skeleton carry: take the method "VP", or `sets = 1`
+9 sets: cell averages need points that carry both phases, and here are two point sets: take a method without the suffix -cells, or `sets = 1`
+10 sets: the chord mean is taken over points that carry both phases: take `conductivity_mean = "points"`, or `sets = 1`
+11 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
+12 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
+14 sets: the water of two point sets knows one soil: take another scene, or `sets = 1`
+15 conductivity_mean: the chord mean is taken along the compression of one soil, and the column has layers: take `conductivity_mean = "points"`
+18 drag: explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves: take `drag = "implicit"`
+21 formulation: the quasi-static formulation leaves out the waves that this scene is about: take "v-w" or "u-p", or the scene "terzaghi"
+23 alternating: cells with unequal numbers of points are those of a column in one dimension: leave `alternating` out, or take a column with `dimensions = 1`
+24 sets: double-point MPM is integrated explicitly only: take the integrator "explicit", or `sets = 1`
+24 sets: the water under a footing stays with its soil: take another scene, or `sets = 1`
+25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: take an even number
+26 plate_width: the layer ends under the footing: half of the footing lies on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
+28 method: the composite gradient between domain ends has no volume of its own: total stress needs one: take another method, or `undrained = "two-phase"`
+"#;
+
+    #[test]
+    fn a_combination_is_refused_by_its_own_key_sentence_and_help_and_what_is_near_it_is_taken() {
+        use Formulation::{QuasiStatic, UP};
+        use SceneKind::{DynamicColumn, Footing, Layered, SealedElement, Terzaghi, XieLeo};
+        type Change = fn(&mut Case);
+        let attached: Change = |case| {
+            let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").expect("a plain name");
+            (case.method, case.task) = (crate::case::Solver::Attached(ogs), Task::Stability);
+        };
+        let affine: Change =
+            |case| (case.settings.affine, case.time_step) = (true, TimeStepRule::Stable(0.5));
+        let slopes: Change =
+            |case| (case.settings.stress_slopes, case.time_step) = (true, TimeStepRule::Stable(0.5));
+        let two: Change = |case| case.column.points.sets = 2;
+        let chord: Change = |case| {
+            (case.column.points.sets, case.material.conductivity_mean) = (2, ConductivityMean::Chord);
+        };
+        let two_phase: Change = |case| case.column.footing.undrained = Undrained::TwoPhase;
+        let unequal: Change = |case| (case.column.points.alternating, case.column.dimensions) = (true, 2);
+        let table: [(SceneKind, &str, Change); 31] = [
+            (Terzaghi, "GIMP", attached),
+            (XieLeo, "GIMP", affine),
+            (XieLeo, "GIMP", slopes),
+            (XieLeo, "MPM", two),
+            (XieLeo, "uGIMP", two),
+            (XieLeo, "GIMP", two),
+            (XieLeo, "CPDI-SRI-patch", two),
+            (Terzaghi, "MPM", two),
+            (Terzaghi, "PPP", two),
+            (Terzaghi, "GIMP-SRI-patch-cells", two),
+            (Terzaghi, "GIMP", chord),
+            (Terzaghi, "GIMP", |case| (case.column.points.sets, case.column.points.offset) = (2, -0.25)),
+            (Terzaghi, "GIMP", |case| (case.column.points.sets, case.column.points.jitter) = (2, 0.25)),
+            (Terzaghi, "GIMP", |case| (case.column.points.jitter, case.column.points.offset) = (0.2, 0.2)),
+            (Layered, "GIMP", two),
+            (Layered, "GIMP", |case| in_layers(case, ConductivityMean::Chord)),
+            (Layered, "GIMP", |case| in_layers(case, ConductivityMean::Points)),
+            (XieLeo, "GIMP", |case| case.material.conductivity_mean = ConductivityMean::Chord),
+            (SealedElement, "GIMP", |case| case.settings.drag = Drag::Explicit),
+            (SealedElement, "GIMP", |case| case.settings.drag = Drag::Centred),
+            (DynamicColumn, "GIMP", |case| implicitly(case, UP)),
+            (DynamicColumn, "GIMP", |case| implicitly(case, QuasiStatic)),
+            (Terzaghi, "GIMP", |case| case.task = Task::Stability),
+            (Terzaghi, "GIMP", unequal),
+            (Footing, "GIMP-SRI", two),
+            (Footing, "GIMP-SRI", |case| case.cells = 5),
+            (Footing, "GIMP-SRI", |case| case.column.footing.width = 5.0),
+            (Footing, "GIMP-SRI", |case| case.column.footing.width = 4.999),
+            (Footing, "CE-SRI-patch", |_| {}),
+            (Footing, "CE-SRI-patch", two_phase),
+            (Footing, "GC-SRI-patch", |_| {}),
+        ];
+        let mut told = "\n".to_owned();
+        for (place, (scene, method, change)) in table.into_iter().enumerate() {
+            let mut case = Case { cells: 4, ..Case::seed(Task::Solve, scene) };
+            case.method = Method::named(method).expect("a method").into();
+            if case.is_explicit() {
+                case.time_step = TimeStepRule::Courant(0.4);
+            }
+            change(&mut case);
+            let lines =
+                case.refusals().map(|one| format!("{place} {}: {}: {}\n", one.key, one.why, one.help));
+            told.extend(lines);
+        }
+        assert_eq!(told, TOLD);
     }
 }

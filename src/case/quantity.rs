@@ -102,3 +102,17 @@ impl fmt::Display for Norm {
         formatter.pad(self.name())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_norm_has_the_formula_of_its_name() {
+        let of_l2 = "√(Σ V(x − x̂)²) / √(Σ V x̂²)";
+        let formulas = ["Σ V|x − x̂| / Σ V|x̂|", of_l2, "max|x − x̂| / max|x̂|", "|x − x̂| / |x̂|"];
+        assert_eq!(Norm::ALL.map(Norm::formula), formulas);
+        assert_eq!(Norm::ALL.map(|norm| format!("{norm:>5}")), ["   l1", "   l2", " linf", "relative"]);
+        assert_eq!(Quantity::ALL.map(Quantity::is_of_surface), [false, false, false, true, true]);
+    }
+}

@@ -158,5 +158,13 @@ mod tests {
         }
         assert_eq!(Attached::new("a", "0123"), Err(NameError::Digest));
         assert_eq!(Attached::new("a", "0123456789abcdeg"), Err(NameError::Digest));
+        assert_eq!(
+            [NameError::NotPlain, NameError::TooLong, NameError::Digest].map(|error| error.to_string()),
+            [
+                "a name has letters, digits, `-`, `_` and `.`, and begins with a letter",
+                "a name has at most 31 letters",
+                "a digest has 16 hexadecimal digits"
+            ]
+        );
     }
 }

@@ -260,4 +260,34 @@ mod tests {
             errors.rotate_left(1);
         }
     }
+
+    #[test]
+    fn the_place_of_an_attached_solver_s_error_is_told_with_both_values() {
+        let mut record = records_of(
+            "title = 't'\nscene = 'terzaghi'\ncolumn = { height = 2.0, load = 40.0 }\noutput.time_factors = [0.1]\n[[sweep]]\n\
+             method = ['GIMP']\nintegrator = ['implicit']\ncells = [4]\n",
+        )
+        .remove(0);
+        let reference = known_reference(&record.case, ReferenceKind::Terzaghi, &[0.1]).expect("a theory");
+        let exact = |height: f64| reference.fields(0.1, 1.0 - height / 2.0).expect("inside").pressure;
+        let points = &mut record.snapshots[0].points;
+        points.pressure = points.initial_height.iter().map(|height| exact(*height)).collect();
+        // Three and one of 5 Pa: nine tenths of the squares at the height of 1.375 m.
+        (points.pressure[5], points.pressure[2]) = (exact(1.375) - 15.0, exact(0.625) + 5.0);
+        let (computed, exact) = (short(exact(1.375) - 15.0), short(exact(1.375)));
+        let rows = record.errors.clone();
+        let is_meant =
+            |row: &&ErrorRow| (row.quantity, row.sample) == (Quantity::Pressure, crate::case::Sample::Points);
+        let row = rows.iter().find(is_meant).expect("an error");
+        assert_eq!(place_of_attached(&record, row), None, "a run of this program can be made again");
+        record.attached = Some(crate::record::AttachedRun::default());
+        let told = format!(
+            "most of the error of pressure at T_v = 0.1 lies at ζ = 0.3125 (height 1.375 m): {computed} for {exact}, 90 % of \
+             the squared error"
+        );
+        assert_eq!(place_of_attached(&record, row), Some(told));
+        let settlement = rows.iter().find(|row| row.quantity == Quantity::Settlement).expect("an error");
+        assert_eq!(place_of_attached(&record, settlement), None, "a settlement has a single place");
+        assert_eq!(place_of_attached(&record, &ErrorRow { time_factor: 0.2, ..row.clone() }), None);
+    }
 }

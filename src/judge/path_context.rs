@@ -213,6 +213,7 @@ fn between(heights: &[f64], field: &[f64], height: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::case::Solver;
     use crate::case::quantity::Norm;
     use crate::case::quantity::Sample;
     use crate::judge::paths::{first_measure, first_norm, paths};
@@ -421,5 +422,73 @@ mod tests {
         assert!(fields.iter().all(|quantity| value(*quantity, None).is_none()), "a field needs a place");
         let settled = value(Quantity::Settlement, None).expect("a settlement");
         assert!((settled - 0.75).abs() < 1e-12, "{settled}");
+    }
+
+    #[test]
+    fn what_may_limit_an_error_depends_on_the_axis_the_reference_and_what_moves() {
+        let study = |scene: &str, sweep: &str| {
+            records_of(&format!(
+                "title = 't'\nscene = '{scene}'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP-SRI']\n\
+                 integrator = ['implicit']\ntime_step = [{{ growth = 0.5 }}]\n{sweep}\n"
+            ))
+        };
+        let own = |scene: &str| if scene == "terzaghi" { "terzaghi" } else { "large-strain" };
+        let meshes = "cells = [2, 4]";
+        let points = "cells = [2]\npoints_per_cell = [2, 4]";
+        let step = ("`growth`", LimiterKind::Step, Some(2.0));
+        let mesh = ("the mesh", LimiterKind::Mesh, Some(2.0));
+        let of_points = ("the points per cell", LimiterKind::PointsPerCell, None);
+        for (scene, sweep, axis, reference, wanted) in [
+            ("terzaghi", meshes, Axis::Cells, own("terzaghi"), vec![step]),
+            ("terzaghi", meshes, Axis::Cells, NEXT_FINER, vec![]),
+            ("terzaghi", meshes, Axis::Cells, NO_REFERENCE, vec![step]),
+            ("xie-leo", meshes, Axis::Cells, own("xie-leo"), vec![step, of_points]),
+            ("terzaghi", points, Axis::PointsPerCell, own("terzaghi"), vec![mesh]),
+            ("terzaghi", points, Axis::PointsPerCell, NEXT_FINER, vec![]),
+            (
+                "terzaghi",
+                meshes,
+                Axis::Cells,
+                "terzaghi-incompressible",
+                vec![("the water's storage", LimiterKind::Model, None), step],
+            ),
+        ] {
+            let mut runs = study(scene, sweep);
+            let measure = first_measure(Quantity::Settlement, Sample::Surface, reference, 0.1);
+            let found = paths(&runs, axis)[0].limiters(&measure);
+            let told: Vec<_> = found.iter().map(|one| (one.name.as_str(), one.kind, one.order)).collect();
+            assert_eq!(told, wanted, "{scene} {axis:?} {reference}");
+            let known: Vec<bool> = found.iter().map(|one| one.magnitude.is_some()).collect();
+            assert_eq!(known, wanted.iter().map(|one| one.1 == LimiterKind::Model).collect::<Vec<_>>());
+            // Of an attached solver neither steps nor points are known.
+            for run in &mut runs {
+                let digest = "0123456789abcdef";
+                run.case.method =
+                    crate::case::Attached::new("ogs", digest).map(Solver::Attached).expect("plain");
+            }
+            let kinds: Vec<_> = paths(&runs, axis)[0].limiters(&measure).iter().map(|one| one.kind).collect();
+            assert!(
+                kinds.iter().all(|kind| matches!(kind, LimiterKind::Mesh | LimiterKind::Model)),
+                "{kinds:?}"
+            );
+        }
+        // What is known beside the errors: signs of single numbers, and how far a body moves.
+        let mut runs = study("terzaghi", meshes);
+        for (run, value) in runs.iter_mut().zip([-0.25, 0.125]) {
+            run.errors.iter_mut().for_each(|row| row.value = value);
+            run.references[0].tail_bound = value.abs();
+        }
+        let path = &paths(&runs, Axis::Cells)[0];
+        let of = |quantity: Quantity, sample: Sample| {
+            path.context(&first_measure(quantity, sample, "terzaghi", 0.1))
+        };
+        let settlement = of(Quantity::Settlement, Sample::Surface);
+        assert_eq!((settlement.signed, settlement.mobility), (vec![-0.25, 0.125], vec![0.75, 1.125]));
+        assert_eq!((settlement.formal_order, settlement.round_off), (Some(2.0), Some(1e-12)));
+        assert_eq!(settlement.reference_accuracy, Some(0.125), "that of the finest");
+        let displacement = of(Quantity::Displacement, Sample::Points);
+        assert_eq!((displacement.signed, displacement.mobility), (vec![], vec![0.75, 1.125]));
+        let pressure = of(Quantity::Pressure, Sample::Points);
+        assert_eq!((pressure.signed, pressure.mobility, displacement.formal_order), (vec![], vec![], None));
     }
 }

@@ -248,6 +248,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::case::Case;
+    use oedometer_mpm::scene::SceneKind;
 
     /// Whether two cases differ along an axis at most, compared input by input.
     fn alike(a: &Case, b: &Case, axis: Axis) -> bool {
@@ -309,5 +310,50 @@ mod tests {
         let found: Vec<f64> = levels.iter().filter_map(|(_, difference)| *difference).collect();
         assert_eq!(found.len(), 2);
         assert!(found.iter().all(|difference| (difference - 0.25).abs() < 1e-15), "{found:?}");
+    }
+
+    #[test]
+    fn a_path_is_told_by_what_its_runs_share_and_not_by_what_is_refined() {
+        type Change = fn(&mut Case);
+        let record = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2]\ntime_step = [{ growth = 0.5 }]\n",
+        )
+        .remove(0);
+        let attach: Change = |case| {
+            let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").expect("plain");
+            case.method = crate::case::Solver::Attached(ogs);
+            case.swept = ["cells", "porosity"].into();
+        };
+        let (step, cells, points) = ("growth=0.5", "2 cells", "2 points per cell");
+        let table: [(Axis, Change, &[&str]); 8] = [
+            (Axis::Cells, |_| {}, &["MPM", "implicit", step, points]),
+            (Axis::TimeStep, |_| {}, &["MPM", "implicit", cells, points]),
+            (Axis::PointsPerCell, |_| {}, &["MPM", "implicit", step, cells]),
+            (
+                Axis::WaterBulkModulus,
+                |case| (case.material.water_bulk_modulus, case.scene) = (1e9, SceneKind::CosineLayer),
+                &["MPM", "implicit", step, cells, points],
+            ),
+            (
+                Axis::Cells,
+                |case| case.integrator = IntegratorKind::Explicit,
+                &["MPM", points, "quasi-static"],
+            ),
+            (
+                Axis::Cells,
+                |case| (case.settings.flip, case.swept) = (0.5, ["cells", "porosity"].into()),
+                &["MPM", "implicit", step, points, "FLIP 0.5, porosity=0.3"],
+            ),
+            (Axis::Cells, attach, &["ogs", "porosity=0.3"]),
+            (Axis::PointsPerCell, attach, &["ogs", cells, "cells=2, porosity=0.3"]),
+        ];
+        for (place, (axis, change, parts)) in table.into_iter().enumerate() {
+            let mut record = record.clone();
+            change(&mut record.case);
+            let path = Path { axis, records: vec![&record] };
+            assert_eq!(path.parts(), parts, "row {place}");
+            assert_eq!(path.label(), parts.join(", "));
+        }
     }
 }

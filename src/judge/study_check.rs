@@ -268,3 +268,67 @@ fn state_of(snapshot: &Snapshot, record: &Record) -> SampledState {
         repeated: 0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oedometer_convergence::ParetoChange;
+
+    #[test]
+    fn a_run_is_slow_from_twice_the_golden_time_on() {
+        let golden = |seconds: Option<f64>| GoldenFile { seconds, ..GoldenFile::of("t", &[], "a test") };
+        let told = "the cases took 5.0 s of wall time in all, 2.5 times the 2.0 s of the golden run: the machine, its load \
+                    or the code; only work counters are judged";
+        assert_eq!(slowness(&golden(Some(2.0)), 5.0), Some(told.to_owned()));
+        assert!(slowness(&golden(Some(2.0)), 4.1).is_some());
+        for before in [Some(2.0), Some(0.0), None] {
+            assert_eq!(slowness(&golden(before), 4.0), None, "{before:?}");
+        }
+    }
+
+    #[test]
+    fn a_check_ends_by_the_worst_that_it_found() {
+        let empty =
+            || StudyCheck::of_values("t", &BTreeMap::new(), Err(GoldenError::Missing("t.csv".into())));
+        let named = |name: &str| format!("{name} | pressure points l2");
+        let difference = |case: &str, change: Change| {
+            let (golden, found) = (Some(1.0), Some(2.0));
+            Difference { name: named(case), change, golden, found, tolerance: 1e-9 }
+        };
+        let changed = |case: &str, change: ParetoChange| {
+            let case = case.to_owned();
+            CaseChange { case, change, cost_ratio: 1.0, worse: 0, better: 1, unpaired: 0 }
+        };
+        let (one, two) = (difference("a", Change::Moved), difference("b", Change::Moved));
+        let better = vec![changed("a", ParetoChange::Better)];
+        for (differences, changes, end) in [
+            (vec![], vec![], CheckEnd::Pass),
+            (vec![difference("a", Change::Extra)], vec![], CheckEnd::Golden),
+            (vec![one.clone()], vec![], CheckEnd::Failed),
+            (vec![one.clone()], better.clone(), CheckEnd::Golden),
+            (vec![one.clone()], vec![changed("a", ParetoChange::Dominated)], CheckEnd::Failed),
+            (vec![two.clone()], better.clone(), CheckEnd::Failed),
+            (vec![one, two], better, CheckEnd::Failed),
+        ] {
+            let told = format!("{differences:?} {changes:?}");
+            let check = StudyCheck { changes, golden: Ok(differences), ..empty() };
+            assert_eq!(check.end(), end, "{told}");
+            let note = || vec![CaseNote { case: "a".to_owned(), sentence: "it failed".to_owned() }];
+            let failed = StudyCheck { failed_cases: note(), ..check };
+            assert_eq!(
+                failed.end(),
+                if end == CheckEnd::Failed { end } else { CheckEnd::CaseFailed },
+                "{told}"
+            );
+            assert_eq!(StudyCheck { unsound: note(), ..failed }.end(), CheckEnd::Failed, "{told}");
+        }
+        // Values that agree are those that are in both files and no difference.
+        let values = |list: [(&str, f64); 3]| list.map(|(name, value)| (named(name), value)).into();
+        let golden: BTreeMap<String, f64> = values([("same", 1.0), ("moved", 2.0), ("gone", 1.0)]);
+        let file = GoldenFile { values: golden, ..GoldenFile::of("t", &[], "a test") };
+        let check =
+            StudyCheck::of_values("t", &values([("same", 1.0), ("moved", 9.0), ("new", 1.0)]), Ok(file));
+        assert_eq!((check.agreeing, check.differences().len(), &*check.study), (1, 3, "t"));
+        assert_eq!((empty().agreeing, empty().end()), (0, CheckEnd::Golden));
+    }
+}

@@ -108,6 +108,7 @@ pub fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::case::Task;
+    use oedometer_mpm::run::results::snapshot::{Samples, Totals, WaterSamples, WaterTotals};
     use oedometer_mpm::scene::SceneKind;
 
     /// `U = a √T_v` at seven rows from 0.01 to 0.64.
@@ -150,5 +151,83 @@ mod tests {
             let found = start_checks(&case, Some(&own), &start).expect("a seed").unbalanced_force;
             assert!((found - 0.3).abs() < 1e-12, "{scene:?}: {found}");
         }
+    }
+
+    #[test]
+    fn balances_are_those_of_now_against_the_start_by_hand() {
+        let samples = Samples {
+            initial_height: vec![0.25, 0.75],
+            pressure: vec![30.0, 10.0],
+            effective_stress: vec![-14.0, -27.0],
+            ..Samples::default()
+        };
+        let totals = |solid_mass: f64, surface_flux: f64, water_expansion: f64| Totals {
+            solid_mass,
+            surface_flux,
+            water_expansion,
+            internal_force_imbalance: 0.125,
+            unbalanced_force: 6.0,
+            largest_velocity: 5e-4,
+            double_point: Some(WaterTotals {
+                pore_volume: 0.4,
+                water_volume: 0.5,
+                water_left: 0.2,
+                water_points: 7,
+                largest_pressure: 50.0,
+            }),
+            ..Totals::default()
+        };
+        let start = Snapshot { totals: totals(4.0, 9.0, 9.0), ..Snapshot::default() };
+        let now = Snapshot {
+            settlement: 0.06,
+            points: samples,
+            totals: totals(5.0, 3e-5, 2e-5),
+            ..Snapshot::default()
+        };
+        for (scene, height, width) in [(SceneKind::Terzaghi, 2.0, 1.0), (SceneKind::CosineLayer, 2.0, 3.0)] {
+            let mut case = Case { cells: 4, ..Case::seed(Task::Solve, scene) };
+            (case.column.height, case.column.load) = (height, 40.0);
+            *case.column = case.column.with_extent(3.0);
+            let found = balance(&case, 0.3, &start, &now);
+            let near = |found: f64, wanted: f64| {
+                assert!((found - wanted).abs() < 1e-12, "{scene:?}: {found} for {wanted}");
+            };
+            assert_eq!((found.time_factor, found.internal_force_imbalance), (0.3, 0.125));
+            near(found.solid_mass_drift, 0.25);
+            // The load of 40 Pa presses 40/1.2e6 of 2 m out.
+            near(found.water_imbalance, (3e-5 - 2e-5 / width) / (40.0 / 1.2e6 * 2.0));
+            // Of the stresses −4 and 3 Pa are left; of the nodes 6 N on 40 Pa and half a metre.
+            let left = if width == 1.0 { (12.5_f64).sqrt() / 40.0 } else { 6.0 / (40.0 * 0.5) };
+            near(found.equilibrium_residual, left);
+            let layers = found.layers.expect("two point sets");
+            near(layers.pore_water, 0.25);
+            near(layers.water_left, 0.2);
+            near(layers.water_left_error, 0.2 - 0.06 / (0.3 * 2.0));
+            assert_eq!((layers.water_points, layers.largest_pressure), (7, Some(1.25)));
+            assert_eq!((found.spurious_velocity, found.settlement_curve_gap), (None, 0.0));
+        }
+        // At rest nothing is applied and what moves counts, over the conductivity of 1e-4 m/s.
+        let rest = Case { cells: 4, ..Case::seed(Task::Solve, SceneKind::AtRest) };
+        assert!((balance(&rest, 0.3, &start, &now).spurious_velocity.expect("at rest") - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_start_is_held_against_the_points_the_volume_and_the_pressures_of_its_scene() {
+        let mut case = Case { cells: 4, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        (case.column.height, case.column.load) = (2.0, 40.0);
+        case.column.points.water_per_cell = 3;
+        let undrained = 40.0 / (1.0 + 0.3 * 1.2e6 / 2.2e9);
+        let mut start = Snapshot::default();
+        start.totals.volume = 2.5;
+        start.points.pressure = vec![undrained, undrained - 10.0, undrained + 5.0];
+        let found = |start: &Snapshot| start_checks(&case, None, start).expect("the seed column");
+        assert_eq!((found(&start).points, found(&start).points_expected), (3, 8 + 12));
+        assert!((found(&start).volume_error - 0.25).abs() < 1e-12);
+        assert!((found(&start).undrained_pressure_error - 0.25).abs() < 1e-9);
+        // The water's own points are counted too, and theirs are the pressures.
+        let pressure = vec![undrained + 2.0; 5];
+        start.points.water = Some(WaterSamples { pressure, ..WaterSamples::default() });
+        assert_eq!(found(&start).points, 8);
+        assert!((found(&start).undrained_pressure_error - 0.05).abs() < 1e-9);
     }
 }

@@ -234,4 +234,15 @@ mod tests {
             times.rotate_left(1);
         }
     }
+
+    #[test]
+    fn a_search_that_is_stopped_is_a_failed_record_without_steps() {
+        let scene = oedometer_mpm::scene::SceneKind::Terzaghi;
+        let case = Case { cells: 4, ..Case::seed(crate::case::Task::Stability, scene) };
+        let stopped = record_of_stopped_search(&case);
+        let failure = stopped.status.failure().expect("it was stopped");
+        assert_eq!((failure.kind, &*failure.reason), (FailureKind::Stopped, "stopped from outside"));
+        assert_eq!((stopped.counters.points, stopped.counters.steps, stopped.stability), (8, 0, None));
+        assert_eq!((stopped.hash, stopped.groups.step_over_limit), (case.hash(), 1.0));
+    }
 }

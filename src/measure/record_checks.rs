@@ -359,6 +359,8 @@ pub fn complaints(record: &Record) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use crate::record::LayerBalance;
+    use oedometer_mpm::run::results::outcome::Failure;
 
     #[test]
     fn the_water_that_may_be_missing_is_that_of_the_discretisation_and_the_storage() {
@@ -379,5 +381,74 @@ mod tests {
         assert!(is(of("cosine-layer", ""), 1e-9), "{:?}", of("cosine-layer", ""));
         let jittered = of("terzaghi", "points.jitter = 0.1");
         assert!(jittered.is_err_and(|why| why.contains("scattered points overlap")));
+    }
+
+    #[test]
+    fn a_burst_is_of_moving_sets_with_a_conservative_continuity_alone() {
+        let text = "title = 't'\nscene = 'xie-leo'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP-SRI']\n\
+                    integrator = ['implicit']\ncells = [4]\ntime_step = [{ growth = 0.3 }]\n";
+        let mut moving = records_of(text).remove(0);
+        moving.case.column.points.sets = 2;
+        let layers = LayerBalance {
+            pore_water: 0.0,
+            water_left: 0.0,
+            water_left_error: 0.0,
+            water_points: 8,
+            largest_pressure: Some(1.5),
+        };
+        moving.balance = vec![Balance { layers: Some(layers), ..moving.balance[0] }; 3];
+        assert!(!has_burst(&moving), "as large as it may be");
+        for place in 0..3 {
+            for largest in [1.51, f64::NAN] {
+                let mut burst = moving.clone();
+                let one = LayerBalance { largest_pressure: Some(largest), ..layers };
+                burst.balance[place].layers = Some(one);
+                assert!(has_burst(&burst), "{largest} at {place}");
+                let changes: [fn(&mut Record); 3] = [
+                    |one| one.case.column.points.sets = 1,
+                    |one| one.case.material.continuity = Continuity::ConstantPorosityGradient,
+                    |one| one.case.scene = SceneKind::Terzaghi,
+                ];
+                for change in changes {
+                    let mut other = burst.clone();
+                    change(&mut other);
+                    assert!(!has_burst(&other));
+                }
+            }
+        }
+        for (kind, has_left) in [
+            (FailureKind::Unstable, true),
+            (FailureKind::PoresClosed, true),
+            (FailureKind::TimedOut, false),
+            (FailureKind::Stopped, false),
+        ] {
+            moving.status = Status::Failed(Failure::of_attached(kind, String::new()));
+            assert_eq!(has_burst(&moving), has_left, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn the_worst_check_is_the_one_nearest_to_its_bound() {
+        let check = |value: f64, bound: Option<f64>| RecordCheck::of("a number", value, bound);
+        // From best to worst; each is worse than all before it, and none is worse than itself.
+        let order = [
+            check(0.0, None),
+            check(-9.0, None),
+            check(f64::NAN, None),
+            check(0.0, Some(0.0)),
+            check(-1.0, Some(10.0)),
+            check(0.5, Some(1.0)),
+            check(-3.0, Some(1.0)),
+            check(f64::NAN, Some(1.0)),
+        ];
+        for (place, one) in order.iter().enumerate() {
+            for (other_place, other) in order.iter().enumerate() {
+                assert_eq!(is_worse(one, other), place > other_place, "{one:?} {other:?}");
+            }
+        }
+        assert!(is_worse(&check(1.0, Some(0.0)), &order[6]), "beyond a bound of nothing");
+        let holds =
+            [check(-1.0, Some(1.0)), check(-1.1, Some(1.0)), check(f64::NAN, Some(1.0)), check(9.0, None)];
+        assert_eq!(holds.map(|one| one.holds()), [true, false, false, true]);
     }
 }

@@ -254,4 +254,28 @@ mod tests {
         let first = compare(&runs)[0].ahead.expect("two are");
         assert!(std::ptr::eq(first.0, &raw const runs[1]) && first.1 == better, "{:?}", first.1);
     }
+
+    #[test]
+    fn every_column_of_a_table_of_peers_is_the_field_of_its_name() {
+        let head = include_str!("../../../examples/adapters/results.csv").lines().next().expect("a head");
+        let line = "a program,what,20,nodes,steps,0.3,0.5,0.2,1.9,+0.1,4.5,2026-01-02";
+        let [peer] = &read(&format!("{head}\n{line}\n")).expect("a table")[..] else { panic!("one peer") };
+        assert_eq!(
+            (peer.errors(), peer.worst_error(), peer.cells, peer.seconds),
+            ([0.3, 0.5, 0.2], 0.5, 20, 4.5)
+        );
+        let words = [&peer.name, &peer.kind, &peer.samples, &peer.time_scheme, &peer.day];
+        assert_eq!(words, ["a program", "what", "nodes", "steps", "2026-01-02"]);
+        // Series of errors, from lines in any order of their quantities.
+        let text = "# a note\nprogram,test,quantity,cell size,error\np,t,u,0.2,4.0\np,t,v,0.4,8.0\np,t,u,0.1,1.0\nq,t,u,0.2,4.0\n";
+        let series = read_series(text).expect("a table");
+        let told: Vec<_> =
+            series.iter().map(|one| (&*one.name, &*one.quantity, one.levels.clone())).collect();
+        let first = vec![(0.2, 4.0), (0.1, 1.0)];
+        assert_eq!(
+            told,
+            [("p: t", "u", first), ("p: t", "v", vec![(0.4, 8.0)]), ("q: t", "u", vec![(0.2, 4.0)])]
+        );
+        assert_eq!(series[0].orders(), [Ok(2.0)]);
+    }
 }

@@ -133,6 +133,8 @@ fn settings_of(case: &Case) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
+    use oedometer_mpm::explicit::Drag;
+    use oedometer_mpm::explicit::scheme::Scheme;
 
     #[test]
     fn a_map_is_drawn_over_what_takes_most_values_wherever_its_axis_stands() {
@@ -175,6 +177,58 @@ mod tests {
             let maps = maps_of(&records);
             assert_eq!(maps.len(), 1);
             assert!((maps[0].largest_deviation - 0.4).abs() < 1e-12, "{worst} at {place}: {maps:?}");
+        }
+    }
+
+    #[test]
+    fn curves_lie_along_the_axis_of_their_map_with_steps_over_that_of_the_wave() {
+        use MapScale::{Counts, Linear, Log};
+        for (key, values, label, scale, places) in [
+            ("hydraulic_conductivity", "1e-4, 1e-6", "hydraulic conductivity k (m/s)", Log, [1e-6, 1e-4]),
+            ("water_bulk_modulus", "4e9, 2e9", "stiffness of the water K_w/E (–)", Log, [2e3, 4e3]),
+            ("porosity", "0.4, 0.2", "porosity n (–)", Log, [0.2, 0.4]),
+            ("points_per_cell", "3, 2", "points per cell (–)", Counts, [2.0, 3.0]),
+            ("offset", "0.25, -0.25", "shift of the points, in spacings (–)", Linear, [-0.25, 0.25]),
+            ("flip", "1.0, 0.5", "FLIP share (–)", Linear, [0.5, 1.0]),
+        ] {
+            let mut records = records_of(&format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [1e-4]\n[[sweep]]\nmethod = ['MPM', 'GIMP']\n\
+                 integrator = ['explicit']\ncells = [2]\n{key} = [{values}]\n"
+            ));
+            for record in &mut records {
+                record.stability = Some(CriticalStep {
+                    predicted: 2.0,
+                    creeping_from: None,
+                    unknown: None,
+                    observed: (record.case.method.to_string() == "MPM").then_some(1.0),
+                    wave_limit: 4.0,
+                    drag_limit: 8.0,
+                    combined_limit: 3.0,
+                    probes: Vec::new(),
+                    asymmetry: None,
+                });
+            }
+            // A record whose step was not searched is on no map.
+            let not_searched = Record { stability: None, ..records[0].clone() };
+            let maps = maps_of(&[&records[..], &[not_searched]].concat());
+            let [map] = &maps[..] else { panic!("{maps:?}") };
+            assert_eq!((map.axis.label, map.axis.scale, &*map.shared), (label, scale, "explicit drag"));
+            assert_eq!(map.largest_deviation, 0.5);
+            let point = |observed: Option<f64>| move |at: f64| MapPoint { at, predicted: 0.5, observed };
+            let curve = |name: &str, observed: Option<f64>| MapCurve {
+                name: name.to_owned(),
+                points: places.map(point(observed)).to_vec(),
+            };
+            assert_eq!(map.curves, [curve("MPM", Some(0.25)), curve("GIMP", None)], "{key}");
+            // Another choice of the integrator is another map.
+            records[0].case.settings.mapping_back = false;
+            let shared: Vec<String> = maps_of(&records).into_iter().map(|map| map.shared).collect();
+            assert_eq!(shared, ["explicit drag, no mapping back", "explicit drag"], "{key}");
+            let settings = &mut records[0].case.settings;
+            (settings.drag, settings.scheme) = (Drag::Centred, Scheme::Leapfrog);
+            (settings.affine, settings.stress_slopes) = (true, true);
+            let all = "centred drag, no mapping back, APIC, stress slopes, leapfrog";
+            assert_eq!(settings_of(&records[0].case), all);
         }
     }
 }

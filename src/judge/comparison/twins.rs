@@ -348,4 +348,62 @@ mod tests {
         early.case.time_factors = vec![1e-4, 0.1].into();
         assert_eq!(Situation::of(&early), Usual);
     }
+
+    #[test]
+    fn runs_that_failed_and_times_count_for_the_side_that_they_are_of() {
+        use Situation::{
+            BodyForces, Extreme, GrowingLoad, LoadAtOnce, MuchOfTheHeight, OutOfPlace, Usual, Waves,
+        };
+        let names = [Usual, OutOfPlace, Extreme, Waves, LoadAtOnce, GrowingLoad, MuchOfTheHeight, BodyForces];
+        assert!(names.is_sorted(), "the easy ones first");
+        let told = [
+            "Small strain, usual soil",
+            "Small strain, points out of place",
+            "Small strain, extreme soil, size or time",
+            "Waves",
+            "Large strain, load at once",
+            "Large strain, load that grows",
+            "Large strain of 40 % and more",
+            "Large strain under body forces",
+        ];
+        assert_eq!(names.map(Situation::name), told);
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [0.1, 0.2]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [4]\npoints_per_cell = [2, 4]\n",
+        );
+        let (mut one, mut other) = (records[0].clone(), records[1].clone());
+        for (record, errors) in [(&mut one, [-0.5, 0.25]), (&mut other, [1.0, -1.0])] {
+            for row in &mut record.errors {
+                row.value = errors[usize::from(row.time_factor == 0.2)];
+            }
+        }
+        let sample = |seconds: f64, cpu_seconds: Option<f64>| WallSample {
+            seconds,
+            cpu_seconds,
+            ..WallSample::default()
+        };
+        one.wall = vec![sample(9.0, Some(2.0)), sample(9.0, Some(3.0)), sample(1.0, Some(9.0))];
+        other.wall = vec![sample(6.0, None)];
+        let of = |one: &Record, other: &Record| by_situation(&[Twins { one, other }]).remove(0);
+        let found = of(&one, &other);
+        assert_eq!((found.situation, found.method, found.pairs), (Usual, Some(one.case.method), 1));
+        assert_eq!((found.ratios, found.failed, found.cost), (Some([2.0, 3.0, 4.0]), [0, 0], Some(2.0)));
+        other.wall = vec![sample(0.0, None)];
+        assert_eq!(of(&one, &other).cost, None, "no time at all");
+        let failure = oedometer_mpm::run::results::outcome::Failure::of_attached(
+            oedometer_mpm::run::results::outcome::FailureKind::Unstable,
+            String::new(),
+        );
+        other.status = Status::Failed(failure);
+        assert_eq!(of(&one, &other).failed, [0, 1]);
+        assert_eq!(of(&other, &one).failed, [1, 0]);
+        // Where one of both has no error at an output, the other outputs count.
+        other.errors.retain(|row| row.time_factor == 0.2);
+        assert_eq!(of(&one, &other).ratios, Some([4.0; 3]));
+        // Errors that differ by a millionth are the same, in one row without a method.
+        for (share, is_same) in [(1.0 + 0.9e-6, true), (1.0 - 0.9e-6, true), (1.0 + 1.1e-6, false)] {
+            other.errors.iter_mut().for_each(|row| row.value = 0.25 * share);
+            assert_eq!(of(&one, &other).method.is_none(), is_same, "{share}");
+        }
+    }
 }

@@ -323,6 +323,15 @@ time_step = [{ growth = 0.005 }]
             let found = [wide, missing].map(|errors| ways(&[&with(errors)], "terzaghi").len());
             assert_eq!(found, [1, 0], "{place}");
         }
+        // Of two at equal cost the more accurate one, and of errors the tolerance itself is within it.
+        let at = |error: f64| with([Some(9.0), Some(error), Some(error), Some(error)]);
+        let (good, fair, bad) = (at(2e-3), at(TOLERANCE), at(1.001 * TOLERANCE));
+        for records in [[&bad, &good, &fair], [&fair, &good, &bad], [&good, &bad, &fair]] {
+            let found = ways(&records, "terzaghi");
+            let told: Vec<_> = found.iter().map(|way| (&*way.name, way.cells, way.error)).collect();
+            assert_eq!(told, [("MPM implicit", 5, 2e-3)]);
+        }
+        assert_eq!([&fair, &bad].map(|one| ways(&[one], "terzaghi").len()), [1, 0]);
     }
 
     #[test]

@@ -250,4 +250,32 @@ mod tests {
         assert_eq!(decided.deciding_situations(), [(2, 1)]);
         assert_eq!(grid(&[[1.0, 5.0, 9.0], [1.0, 5.0, 9.0]]).deciding_situations(), []);
     }
+
+    #[test]
+    fn what_differs_by_less_than_two_percent_is_equal_and_twice_the_best_is_nearly_as_good() {
+        let exact = |values: [f64; 3]| GridRow {
+            scores: values.map(|value| Score::Value { value, scatter: 0.0 }).to_vec(),
+            ..grid(&[[1.0; 3]]).rows.remove(0)
+        };
+        let row = exact([1.019, 1.0, 1.021]);
+        assert_eq!((row.best(), [0, 1, 2].map(|one| row.rank(one))), (Some(1), [Some(1), Some(1), Some(2)]));
+        assert_eq!([0, 1, 2].map(|one| row.ratio(one)), [Some(1.0), Some(1.0), Some(1.021)]);
+        // The sum of both scatters counts: 1 and 1.21 are apart, 1 and 1.19 are not.
+        let scattered = grid(&[[1.0, 1.19, 1.21]]);
+        assert_eq!([0, 1, 2].map(|one| scattered.rows[0].rank(one)), [Some(1), Some(1), Some(2)]);
+        let nearly = Grid { rows: vec![exact([1.0, 2.0, 2.001]); 2], ..grid(&[]) };
+        assert_eq!([0, 1, 2].map(|one| nearly.overall(one, &[0, 1]).nearly_best), [2, 2, 0]);
+        assert_eq!(nearly.overall(2, &[1]).worst_at, Some(1));
+        // Of equal ranks the smaller worst ratio, and of equal ratios the better rank, wherever they stand.
+        let turned = grid(&[[9.0, 1.0, 3.0], [1.0, 3.0, 2.0], [NEVER, 2.0, 1.0]]);
+        let order: Vec<usize> = turned.by_rank().iter().map(|one| one.contender).collect();
+        assert_eq!(order, [2, 1, 0]);
+        assert_eq!(
+            grid(&[[2.0, 3.0, 1.0], [3.0, 1.0, 3.0]]).one_for(&[0, 1]).map(|one| one.contender),
+            Some(2)
+        );
+        let never = grid(&[[NEVER, FAILED, 1.0]]);
+        let of = |one: usize| (never.overall(one, &[0]).without, never.overall(one, &[0]).mean_rank);
+        assert_eq!([of(0), of(1), of(2)], [(1, f64::INFINITY), (1, 2.0), (0, 1.0)]);
+    }
 }

@@ -323,6 +323,7 @@ mod tests {
     use crate::record::WallSample;
     use crate::study::file::StudySource;
     use oedometer_mpm::run::TimeStepRule;
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     fn records(integrator: &str) -> Vec<Record> {
         records_of(&format!(
@@ -434,5 +435,78 @@ mod tests {
         study.not_applicable.push(("GIMP", "a test".to_owned()));
         let runs = Runs::of(&study, contender, &all);
         assert!(runs.path.is_empty() && runs.two_steps.is_none(), "what is refused has no runs");
+    }
+
+    #[test]
+    fn a_row_has_the_finest_common_mesh_and_each_cell_ends_in_its_own_words() {
+        let text = "title = 'Race: a front'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
+                    method = ['GIMP', 'MPM']\nintegrator = ['implicit']\ncells = [8, 2, 4]\n";
+        let source = StudySource { name: "race-early-front.toml".to_owned(), text: text.to_owned() };
+        let mut study = Study::check(&source).expect("a sound study");
+        let mut records = records_of(text);
+        records.retain(|record| (record.case.cells, &*record.case.method.to_string()) != (8, "MPM"));
+        for record in &mut records {
+            for row in &mut record.errors {
+                let share = if row.time_factor == 0.2 { 1.0 } else { 0.5 };
+                row.value = share / record.case.cells as f64
+                    * match (row.quantity, row.sample) {
+                        (Quantity::Pressure, Sample::Points) => 0.25,
+                        (Quantity::EffectiveStress, Sample::Points) => 0.125,
+                        (Quantity::Settlement, _) => -1.0,
+                        _ => 9.0,
+                    };
+            }
+            match (record.case.cells, &*record.case.method.to_string()) {
+                (4, "GIMP") => record.balance[1].settlement_curve_gap = 0.5,
+                (2 | 4, "MPM") => {
+                    let failure = Failure::of_attached(FailureKind::Unstable, "it grew".to_owned());
+                    record.status = Status::Failed(failure);
+                }
+                _ => {}
+            }
+        }
+        assert!(RaceRow::of(&study, &records).is_none(), "no race");
+        study.is_race = true;
+        study.not_applicable.push(("VP", "it cannot".to_owned()));
+        assert!(RaceRow::of(&study, &[]).is_none(), "nothing has run");
+        let row = RaceRow::of(&study, &records).expect("a row");
+        assert_eq!((row.cells, row.group, row.name(), row.title()), (4, "early", "early-front", "a front"));
+        let cell = |name: &str| row.contenders.iter().find(|one| one.name == name).expect("a contender");
+        let gap = "settlement off the settlement curve is 5.00e-1 at T_v = 0.2, more than 2.0e-3";
+        for (name, ending) in [
+            ("GIMP", ("ok", gap)),
+            ("MPM", ("unstable", "on 2 cells: it grew")),
+            ("VP", ("n/a", "it cannot")),
+            ("PPP", ("n/a", "it has not been run")),
+        ] {
+            assert_eq!(cell(name).ending(), ending, "{name}");
+        }
+        let errors = |cells: f64| [0.25, 0.125, 1.0].map(|error| Some(error / cells));
+        let gimp = cell("GIMP");
+        assert_eq!((gimp.errors, gimp.score), (errors(4.0), Some(0.25)));
+        assert_eq!(gimp.levels, [2.0, 4.0, 8.0].map(|cells| (1.0 / cells, errors(cells))));
+        assert_eq!((cell("MPM").errors, cell("MPM").score, cell("PPP").levels.len()), ([None; 3], None, 0));
+        // To be ranked: a result that is off by less than itself.
+        let scored = |score: Option<f64>, scatter: Option<f64>, ended: Ended| RaceCell {
+            score,
+            scatter,
+            ended,
+            ..gimp.clone()
+        };
+        let value = |value: f64, scatter: f64| Score::Value { value, scatter };
+        let cells = [
+            (scored(Some(0.999), Some(0.1), Ended::Well), value(0.999, 0.1)),
+            (scored(Some(0.25), None, Ended::Well), value(0.25, 0.0)),
+            (scored(Some(1.0), None, Ended::Well), Score::Failed),
+            (scored(Some(f64::NAN), None, Ended::Well), Score::Failed),
+            (scored(None, None, Ended::Well), Score::Failed),
+            (scored(Some(0.1), None, Ended::Failed("unstable", String::new())), Score::Failed),
+            (scored(Some(0.1), None, Ended::NotApplicable(String::new())), Score::NotApplicable),
+        ];
+        let (contenders, scores): (Vec<RaceCell>, Vec<Score>) = cells.into_iter().unzip();
+        let grid = grid_of(&[RaceRow { contenders, ..row.clone() }]);
+        let wanted = GridRow { situation: "a front".to_owned(), group: "early".to_owned(), scores };
+        assert_eq!(grid.rows, [wanted]);
+        assert!(grid.contenders.iter().zip(CONTENDERS.iter()).all(|(name, one)| name == one.name));
     }
 }

@@ -351,7 +351,12 @@ mod tests {
             ..SampledState::default()
         };
         let found = interior_zeros(&column, &[state([1.0, 0.0, 0.8, 0.0, 0.0])]).expect("a finding");
-        assert!(found.sentence.contains("2 of 3"), "{}", found.sentence);
+        let told = "at T_v = 0.1, 2 of 3 pressures inside are exactly 0 and the others are not: programs write 0 at the middle \
+                    of sides; keep the corners of the cells ([rows] corners = true in the mapping) or take an interpolated array";
+        assert_eq!(
+            (found.name, found.sentence.replace("0.09999999999999999", "0.1")),
+            (Lack::ZerosInside, told.to_owned())
+        );
         assert_eq!(interior_zeros(&column, &[state([1.0, 0.9, 0.8, 0.4, 0.0])]), None);
         assert_eq!(interior_zeros(&column, &[state([0.0; 5])]), None, "nothing but zeros is another mistake");
     }
@@ -376,5 +381,126 @@ mod tests {
         assert_eq!((said(0.0), said(0.019)), (None, None), "it settles by 2 %");
         assert_eq!(said(0.025).map(|found| found.name), Some(Lack::VolumeDiffers));
         assert_eq!(said(-0.002).map(|found| found.name), Some(Lack::VolumeDiffers));
+    }
+
+    fn at(time_factor: f64, heights: &[f64], distances: &[f64]) -> SampledState {
+        SampledState {
+            time: ColumnParameters::default().time(time_factor),
+            initial_height: heights.to_vec(),
+            initial_distance: distances.to_vec(),
+            ..SampledState::default()
+        }
+    }
+
+    #[test]
+    fn what_is_missing_is_told_with_its_time_its_place_and_how_much() {
+        let column = ColumnParameters::default();
+        let (kind, layer) = (ReferenceKind::Terzaghi, ReferenceKind::CosineLayer);
+        let whole = |reference: ReferenceKind, is_declared: bool, has_volumes: bool| {
+            let volumes = &[1.0, 0.25];
+            Whole { parameters: &column, reference, volumes, is_declared, has_volumes }
+        };
+        let told = |reference: ReferenceKind, states: &[SampledState]| -> Vec<(Lack, String)> {
+            let found = whole(reference, false, true).findings(states).expect("the seed column");
+            found.into_iter().map(|one| (one.name, one.sentence)).collect()
+        };
+        let nodes = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+        let with = |time: f64, sum: f64| SampledState { volume: vec![0.5 * sum; 2], ..at(time, &nodes, &[]) };
+        // Of the scene, or of all times where volumes have another unit, and the farthest off of all.
+        let (scene, all) = ("that of the scene", "the largest of all times");
+        for (sums, place, of, said) in [
+            ([1.0, 0.5, 0.75], "T_v = 0.2, the volumes add up to 0.5", scene, "1: 50.00 % are missing"),
+            ([1.0, 1.0, 1.25], "T_v = 0.4, the volumes add up to 1.25", scene, "1: 25.00 % are too many"),
+            ([0.25, 0.25, 0.2], "T_v = 0.4, the volumes add up to 0.2", scene, "0.25: 20.00 % are missing"),
+            ([3.0, 2.0, 3.0], "T_v = 0.2, the volumes add up to 2", all, "3: 33.33 % are missing"),
+        ] {
+            let states = [0, 1, 2].map(|place| with([0.1, 0.2, 0.4][place], sums[place]));
+            let sentence = format!("at {place}, and {of} is {said}");
+            assert_eq!(told(kind, &states), [(Lack::VolumeDiffers, sentence)]);
+            assert_eq!(whole(kind, false, false).findings(&states).expect("the seed column"), []);
+        }
+        let unit = |is_declared: bool, has_volumes: bool, sum: f64| {
+            whole(kind, is_declared, has_volumes).unit_of_volume(&[with(0.1, sum)])
+        };
+        let taken = "the volumes add up to 3, which is no volume of the scene: they are taken as weights; with \
+                     `whole_volume` in the mapping their sum is checked";
+        assert_eq!(unit(false, true, 3.0), Some(taken.to_owned()));
+        assert_eq!(
+            [unit(true, true, 3.0), unit(false, false, 3.0), unit(false, true, 2.4)],
+            [None, None, None]
+        );
+        let all = |distances: &[f64], heights: &[f64]| {
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                distances.iter().flat_map(|x| heights.iter().map(move |y| (*x, *y))).unzip();
+            SampledState { volume: vec![1.0], ..at(0.1, &y, &x) }
+        };
+        let gap = [0.0, 0.125, 0.25, 0.375, 0.75, 0.875, 1.0];
+        let cut = SampledState { volume: vec![1.0], ..at(0.1, &gap, &[]) };
+        let mut holes = all(&nodes, &nodes);
+        holes.initial_distance.remove(31);
+        holes.initial_height.remove(31);
+        let bare = "no sample lies between 0.375 m and 0.75 m";
+        let base = format!("{bare} over the base");
+        for (reference, states, lack, said) in [
+            (kind, vec![cut], Lack::HeightNotCovered, &*base),
+            (layer, vec![all(&gap, &nodes)], Lack::LengthNotCovered, &format!("{bare} from the crest")),
+            (
+                layer,
+                vec![holes],
+                Lack::PlacesMissing,
+                "samples stand at 80 of the 81 crossings of their lines",
+            ),
+        ] {
+            assert_eq!(told(reference, &states), [(lack, format!("at T_v = 0.1, {said}"))]);
+        }
+        assert_eq!(told(layer, &[all(&nodes, &nodes)]), []);
+        let one_more = "; 1 more time has fewer samples than that";
+        for (counts, few, many, more) in [
+            ([9, 8, 9], "T_v = 0.2 has 8 samples", "T_v = 0.4", ""),
+            ([1, 9, 8], "T_v = 0.1 has 1 sample", "T_v = 0.2", one_more),
+        ] {
+            let states = [0, 1, 2].map(|place| at([0.1, 0.2, 0.4][place], &nodes[..counts[place]], &[]));
+            let found = whole(kind, false, true).counts(&states).expect("they differ");
+            assert_eq!(found.sentence, format!("{few}, and {many} has 9{more}"));
+        }
+        // Samples that were chosen for display are told and not blamed.
+        let shown = |kind: ReferenceKind, state: SampledState| whole(kind, false, true).profiles(&[state]);
+        let lie =
+            |place: &str| Some(format!("the samples lie at {place} m: nothing is known about the rest"));
+        assert_eq!(shown(kind, at(0.1, &[0.5; 3], &[])), lie("y = 0.5"));
+        assert_eq!(shown(layer, all(&[0.0, 0.25, 0.5], &nodes)), lie("x = 0, 0.25, 0.5"));
+        assert_eq!(shown(layer, all(&[0.0, 0.25, 0.5, 1.0], &nodes)), None);
+        assert_eq!(shown(kind, all(&[0.0, 0.25], &nodes)), None, "of a column no verticals are chosen");
+    }
+
+    #[test]
+    fn times_that_are_missing_and_meshes_with_fewer_samples_are_told() {
+        let told = |missing: &[f64], has: &[f64], asked: bool| {
+            missing_times(missing, has, asked).map(|one| one.sentence)
+        };
+        let near = "; the nearest it has is T_v = 0.11, 1.00e-1 off in relative terms";
+        let said =
+            |more: &str, who: &str, near: &str| Some(format!("there is no T_v = 0.1{more}, {who}{near}"));
+        let (asked, other) = ("which was asked for", "which another result has");
+        assert_eq!(told(&[], &[0.1], true), None);
+        assert_eq!(told(&[0.1], &[], true), said("", asked, ""));
+        assert_eq!(told(&[0.1], &[0.05, 0.11, 0.2], true), said("", asked, near));
+        assert_eq!(told(&[0.1, 0.3, 0.4], &[0.5, 0.11], false), said(" (and 2 more)", other, near));
+        let column = ColumnParameters::default();
+        let states =
+            [&[0.125, 0.375, 0.625, 0.875][..], &[0.1, 0.5, 0.9], &[0.0, 0.5, 1.0], &[0.2, 0.4, 0.6, 0.8]]
+                .map(|heights| at(0.1, heights, &[]));
+        let [full, few, nodes, same] = states.each_ref();
+        for (meshes, found) in [
+            ([(2, full), (4, few)], Some((1, "there are 0.75 heights a cell, and 2 on 2 cells"))),
+            ([(4, few), (2, full)], Some((0, "there are 0.75 heights a cell, and 2 on 2 cells"))),
+            ([(2, nodes), (2, full)], Some((0, "there are 1 heights a cell, and 2 on 2 cells"))),
+            ([(2, full), (4, same)], None),
+            ([(4, full), (3, few)], None),
+        ] {
+            let told = uneven_meshes(&meshes, &column).map(|(place, one)| (place, one.name, one.sentence));
+            let expected = found.map(|(place, told)| (place, Lack::SamplesDiffer, told.to_owned()));
+            assert_eq!(told, expected, "{meshes:?}");
+        }
     }
 }

@@ -280,3 +280,60 @@ impl Scored {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Norm, Sample, Task};
+    use oedometer_mpm::scene::SceneKind;
+
+    #[test]
+    fn a_result_is_named_by_its_files_and_by_their_ends_where_they_are_many() {
+        let name = |files: &[&str]| {
+            let files = files.iter().map(Into::into).collect();
+            Scored { run: Run { files, ..Run::default() }, ..Scored::default() }.name()
+        };
+        assert_eq!([name(&["a"]), name(&["a", "b", "c"])], ["a", "a, b, c"]);
+        assert_eq!([name(&["a", "b", "c", "d"]), name(&[])], ["a … d (4 files)", ""]);
+        let missing = ScoreError::NoTime("there is no T_v = 0.1".to_owned()).to_string();
+        let told = "no time is one of the requested ones: there is no T_v = 0.1; --time-tolerance sets how near is near";
+        assert_eq!(missing, told);
+    }
+
+    #[test]
+    fn what_keeps_a_settlement_from_being_judged_is_noted_by_the_scene() {
+        let row = |quantity: Quantity| ErrorRow {
+            time_factor: 0.1,
+            quantity,
+            sample: Sample::Nodes,
+            norm: Norm::L2,
+            reference: "terzaghi".to_owned(),
+            value: 0.1,
+            absolute: 0.1,
+        };
+        let (moved, settled) = (row(Quantity::Displacement), row(Quantity::Settlement));
+        let notes = |scene: SceneKind, errors: &[ErrorRow], horizontal: &[f64]| {
+            let states = vec![SampledState {
+                horizontal_displacement: horizontal.to_vec(),
+                ..SampledState::default()
+            }];
+            let run = Run { states, ..Run::default() };
+            let mut one = Scored { run, score: Score { errors: errors.to_vec(), ..Score::default() } };
+            one.note_absences(&Case::seed(Task::Solve, scene));
+            one.run.notes
+        };
+        let surface = "no settlement is judged: no sample lies on the surface";
+        let crest = "no settlement is judged: no sample lies on the surface under the crest of the load";
+        let plate = "no settlement is judged: it is that of the plate, where no sample lies: give a curve by [settlement] in the \
+                     mapping";
+        let vertical = "there is no u_x: the displacement is judged by its vertical component alone";
+        let (both, alone) = ([moved.clone(), settled.clone()], [moved]);
+        assert_eq!(notes(SceneKind::Terzaghi, &alone, &[]), [surface]);
+        assert_eq!(notes(SceneKind::Mandel, &alone, &[]), [plate]);
+        assert_eq!(notes(SceneKind::CosineLayer, &alone, &[]), [crest, vertical]);
+        assert_eq!(notes(SceneKind::CosineLayer, &alone, &[0.1]), [crest]);
+        assert_eq!(notes(SceneKind::CosineLayer, &both, &[]), [vertical]);
+        assert_eq!(notes(SceneKind::Terzaghi, &both, &[]), [""; 0]);
+        assert_eq!(notes(SceneKind::CosineLayer, &[settled], &[]), [""; 0], "no displacement at all");
+    }
+}

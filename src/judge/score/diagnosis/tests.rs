@@ -158,7 +158,8 @@ fn in_a_layer_the_other_end_may_look_like_the_other_sign() {
     }
     let told = diagnosis(&layer, ReferenceKind::CosineLayer, &[state], &mapping(PLANE_CONVENTION));
     let told = told.expect("a layer");
-    assert!(told.len() == 1 && told[0].contains("does `x` count from the other end?"), "{told:?}");
+    let sign = "your p is −1.00 × the exact one: is the sign declared wrongly? Or does `x` count from the other end?";
+    assert_eq!(told, [sign]);
 }
 
 #[test]
@@ -241,7 +242,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
         only(
             &changed(off, |state| state.pressure = total(state)),
             &[
-                "your p matches the exact total stress: is it given in place of the pore pressure? Or does nothing",
+                "your p matches the exact total stress: is it given in place of the pore pressure? Or does nothing drain?",
             ],
         );
     }
@@ -290,9 +291,10 @@ fn another_stiffness_and_another_permeability_are_named() {
         &["your u_y is 1.2 × the exact one: is E taken"],
     );
     // μ = 1e-3 Pa s.
-    for (factor, words) in
-        [(1e3, "is k/μ taken for the hydraulic"), (1e-3, "is k divided by μ where it should not be?")]
-    {
+    for (factor, words) in [
+        (1e3, "at 1000 × the time: is k/μ taken for the hydraulic conductivity k?"),
+        (1e-3, "at 0.001 × the time: is k divided by μ where it should not be?"),
+    ] {
         let times = if factor > 1.0 { [2e-3, 4e-3, 8e-3, 1.6e-2] } else { TIMES };
         let exact = times.map(|time| factor * time);
         let told = told(&states(&exact, |time| time / factor, 1e-3));
@@ -302,7 +304,12 @@ fn another_stiffness_and_another_permeability_are_named() {
         let times = if factor > 1.0 { [5e-6, 1e-5, 5e-5, 1e-4] } else { TIMES };
         let exact = times.map(|time| factor * time);
         let told = told(&states(&exact, |time| time / factor, 0.0));
-        assert!(told.iter().any(|told| told.contains("γ_w")), "{factor}: {told:?}");
+        let words = if factor > 1.0 {
+            "is k taken for k/γ_w?"
+        } else {
+            "is k/γ_w, or k/μ in place of it, taken for the hydraulic conductivity k?"
+        };
+        assert!(told.iter().any(|told| told.ends_with(words)), "{factor}: {told:?}");
     }
 }
 
@@ -395,7 +402,8 @@ fn a_slab_without_a_plate_is_named() {
         diagnosis(&column, ReferenceKind::Mandel, &states, &mapping(CONVENTION)).expect("a slab")
     };
     let without = told(&|time, zeta| start * bare.fields(time, zeta).expect("inside").pressure);
-    assert!(without.len() == 1 && without[0].contains("held plane by a rigid plate?"), "{without:?}");
+    let bends = "your p matches a slab whose load does not move to its middle: is the top held plane by a rigid plate?";
+    assert_eq!(without, [bends]);
     let with = told(&|time, zeta| {
         slab.fields(time, zeta).expect("inside").pressure * (1.0 + 0.2 * (7.0 * zeta).sin())
     });
@@ -438,5 +446,28 @@ fn a_wrong_unit_is_named_beside_the_one_that_was_declared_for_that_quantity() {
         });
         let expected = format!("each of your p and effective_stress {words}");
         assert_eq!(told_by(&states, &text), [expected], "{declared}");
+    }
+}
+
+#[test]
+fn a_top_that_is_not_plane_is_told_with_its_ends_from_two_percent_of_the_settlement_on() {
+    let settled = ColumnParameters::default().final_settlement();
+    for (share, is_told) in [(0.019, false), (0.021, true), (-0.5, true)] {
+        let mut states = states(&TIMES, |time| time, 0.0);
+        let last = states.last_mut().expect("a state");
+        let moved = last.displacement[0];
+        let other = moved + share * settled;
+        last.initial_height.push(1.0);
+        last.volume.push(1.0);
+        last.pressure.push(0.0);
+        last.effective_stress.push(last.effective_stress[0]);
+        last.displacement.push(other);
+        let (least, most) = (short(moved.min(other)), short(moved.max(other)));
+        let sentence = format!(
+            "your top is not plane: at y = 1 m u_y lies between {least} and {most} m: are the sides on rollers, and does the \
+             load press evenly?"
+        );
+        let wanted: &[String] = if is_told { &[sentence] } else { &[] };
+        assert_eq!(told(&states), wanted, "{share}");
     }
 }
