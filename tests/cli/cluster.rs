@@ -164,7 +164,7 @@ fn a_cluster_that_takes_no_array_or_is_none_is_told() {
 #[test]
 fn the_scripts_have_every_option_that_was_given() {
     let cluster = Cluster::new(4, "COMPLETED", NOTHING);
-    let options = "--dry-run --partition short --time 1:30:00 --cores 3 --sbatch=--account=soil --tier ci";
+    let options = "--dry-run --partition short --time 1:30:00 --cores 5 --sbatch=--account=soil --tier ci";
     let told = cluster.run(&options.split(' ').collect::<Vec<_>>());
     let scripts = r#"# out/slurm/array.sh
 #!/bin/bash
@@ -173,7 +173,7 @@ fn the_scripts_have_every_option_that_was_given() {
 #SBATCH --ntasks=1
 #SBATCH --partition=short
 #SBATCH --account=soil
-#SBATCH --cpus-per-task=3
+#SBATCH --cpus-per-task=5
 #SBATCH --output=out/slurm/logs/%A_%a.log
 #SBATCH --open-mode=append
 #SBATCH --requeue
