@@ -111,4 +111,43 @@ mod tests {
         let twice = Err::<(), _>(none()).context(format!("cannot read a.csv: {}", none())).expect_err("none");
         assert_eq!(sentence(&twice), "error: cannot read a.csv: No such file or directory");
     }
+
+    #[test]
+    fn every_error_has_the_exit_code_of_its_kind_under_whatever_it_is_told_with() {
+        let study = || StudyError { name: "s".to_owned(), source: String::new(), diagnostics: Vec::new() };
+        for (error, exit, code) in [
+            (Ended::usage("a"), Exit::Usage, 2),
+            (Ended::with(Exit::VerdictFailed, "a"), Exit::VerdictFailed, 1),
+            (Ended::with(Exit::Golden, "a"), Exit::Golden, 5),
+            (Ended::with(Exit::IncompleteMerge, "a"), Exit::IncompleteMerge, 6),
+            (ScoreError::NoTime("a".to_owned()).into(), Exit::NothingSelected, 4),
+            (ScoreError::Exact(ExactError::NoFields).into(), Exit::Usage, 2),
+            (study().into(), Exit::Usage, 2),
+            (OverrideError::Typed("a".to_owned()).into(), Exit::Usage, 2),
+            (OverrideError::Study(study()).into(), Exit::Usage, 2),
+            (ExactError::NoFields.into(), Exit::Usage, 2),
+            (std::io::Error::other("full").into(), Exit::CaseFailed, 3),
+        ] {
+            assert_eq!((Exit::of(&error), exit as u8), (exit, code), "{error}");
+            assert_eq!(Exit::of(&error.context("more")), exit);
+        }
+        assert_eq!(Exit::Pass as u8, 0);
+        let order = [Exit::Pass, Exit::VerdictFailed, Exit::Usage, Exit::CaseFailed, Exit::NothingSelected];
+        assert!(order.is_sorted() && order[4] < Exit::Golden && Exit::Golden < Exit::IncompleteMerge);
+        let told = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed out, \
+                    4 nothing selected, 5 golden missing or stale, 6 incomplete merge";
+        assert_eq!(HELP, told);
+    }
+
+    #[test]
+    fn what_shows_its_lines_has_no_word_before_them_and_all_else_has() {
+        let diagnostics = vec![crate::study::diagnostic::Diagnostic::at(0..1, "odd", "none")];
+        let study = StudyError { name: "s".to_owned(), source: "x".to_owned(), diagnostics };
+        let lines = "error: odd\n --> s:1:1\n  |\n1 | x\n  | ^\n  |\n  = help: none";
+        assert_eq!(sentence(&study.clone().into()), lines);
+        assert_eq!(sentence(&OverrideError::Study(study).into()), lines);
+        assert_eq!(sentence(&OverrideError::Typed("a".to_owned()).into()), "error: a");
+        let both = Ended::usage("a (os error 2) and b (os error 13), c").context("first");
+        assert_eq!(sentence(&both), "error: first: a and b, c");
+    }
 }

@@ -135,13 +135,32 @@ mod tests {
             list.command("oedometer", "3"),
             r"oedometer run 'my study.toml' b.toml --out 'o'\''ut' --tier ci --shard 3/8 --balance --resume"
         );
+        let list = JobList {
+            results: "out".into(),
+            tier: Tier::Full,
+            parting: Parting::Hash,
+            allow_solvers: true,
+            ..list
+        };
+        assert_eq!(
+            list.command("/a b/oedometer", "$TASK"),
+            "'/a b/oedometer' run 'my study.toml' b.toml --out out --shard $TASK/8 --allow-solvers --resume"
+        );
     }
 
     #[test]
     fn a_word_is_quoted_where_a_shell_would_read_it_otherwise() {
-        for (word, expected) in
-            [("", "''"), ("a b", "'a b'"), ("$x", "'$x'"), ("a-b_c.d/e=f:1,2", "a-b_c.d/e=f:1,2")]
-        {
+        for (word, expected) in [
+            ("", "''"),
+            ("a b", "'a b'"),
+            ("$x", "'$x'"),
+            ("*", "'*'"),
+            ("~", "'~'"),
+            ("é", "'é'"),
+            ("#a;", "'#a;'"),
+            ("a'b", r"'a'\''b'"),
+            ("a-b_c.d/e=f:1,2+3@4%", "a-b_c.d/e=f:1,2+3@4%"),
+        ] {
             assert_eq!(quoted(word), expected);
         }
     }

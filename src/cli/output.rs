@@ -211,16 +211,14 @@ fn rows_of(table: &Table) -> anyhow::Result<Vec<serde_json::Map<String, serde_js
 /// # Errors
 /// When the device fails.
 pub fn print_coloured(text: &str) -> anyhow::Result<()> {
-    print_as_it_is(&coloured(&document(text)))
+    let text = document(text);
+    let is_wanted = wants_colour(io::stdout().is_terminal(), |name| std::env::var(name).ok());
+    print_as_it_is(&if is_wanted { coloured(&text) } else { text.into_owned() })
 }
 
-/// Colours the marks of verdicts if standard output is a terminal that wants it.
+/// The marks of verdicts in their colours.
 fn coloured(text: &str) -> String {
-    if wants_colour(io::stdout().is_terminal(), |name| std::env::var(name).ok()) {
-        text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")
-    } else {
-        text.to_owned()
-    }
+    text.replace('✓', "\x1b[32m✓\x1b[0m").replace('✗', "\x1b[31m✗\x1b[0m")
 }
 
 /// Whether colours are wanted: on a terminal, unless `NO_COLOR` is set or the terminal is dumb.
@@ -265,9 +263,18 @@ mod tests {
 
     #[test]
     fn a_variable_is_on_unless_it_is_empty_or_says_off() {
-        for (value, on) in
-            [("true", true), ("1", true), ("yes", true), ("", false), ("0", false), ("False", false)]
-        {
+        for (value, on) in [
+            ("true", true),
+            ("1", true),
+            ("yes", true),
+            ("", false),
+            ("0", false),
+            ("False", false),
+            ("NO", false),
+            ("off", false),
+            ("on", true),
+            ("00", true),
+        ] {
             assert_eq!(means_on(Some(value.into())), on, "`{value}`");
         }
         assert!(!means_on(None));
@@ -317,5 +324,27 @@ mod tests {
         let rows = rows_of(&table).expect("rows");
         assert_eq!(serde_json::to_string(&rows[0]).expect("JSON"), r#"{"error":0.0015,"method":"GIMP"}"#);
         assert!(rows[1]["error"].is_string(), "what is no number is written as such: {:?}", rows[1]);
+    }
+
+    #[test]
+    fn a_mark_that_passes_is_green_and_one_that_fails_red() {
+        assert_eq!(coloured("✓ a ✗ ✓"), "\x1b[32m✓\x1b[0m a \x1b[31m✗\x1b[0m \x1b[32m✓\x1b[0m");
+        assert_eq!(coloured("plain"), "plain");
+    }
+
+    #[test]
+    fn what_is_appended_stands_behind_what_is_there_and_what_is_written_in_its_place() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.md");
+        let text = || fs::read_to_string(&path).expect("a file");
+        append(&path, "one\n").expect("written");
+        append(&path, "two\x1b\n").expect("written");
+        assert_eq!(text(), "one\ntwo\u{fffd}\n");
+        write_document(&path, "three\n").expect("written");
+        assert_eq!(text(), "three\n");
+        let told = append(folder.path(), "x").expect_err("a folder").to_string();
+        assert!(told.starts_with(&format!("cannot write {}: ", folder.path().display())), "{told}");
+        let rows = [vec!["1".to_owned(), "x, y".to_owned()], vec![String::new(), "z".to_owned()]];
+        assert_eq!(csv_of(["a", "b"], rows).expect("text"), "a,b\n1,\"x, y\"\n,z\n");
     }
 }

@@ -226,4 +226,46 @@ mod tests {
         }
         assert_eq!(folder_of_golden(None), here, "of a study from inside the program");
     }
+
+    #[test]
+    fn studies_of_a_folder_are_the_shipped_ones_in_the_order_of_the_report_and_then_the_others_by_name() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let at = folder.path();
+        for (name, text) in [
+            ("zz.toml", "title = 't'\nscene = 'terzaghi'\n"),
+            ("aa.toml", "  [[sweep]]\n"),
+            ("at-rest.toml", "scene = 'at-rest'\n"),
+            ("terzaghi-mesh.toml", "scene = 'terzaghi'\n"),
+            ("mapping.toml", "[columns]\np = 'scene'\n"),
+            ("notes.md", "scene\n"),
+            ("deep.toml.bak", "scene\n"),
+        ] {
+            std::fs::write(at.join(name), text).expect("a file");
+        }
+        let names = |found: Vec<PathBuf>| -> Vec<String> {
+            found.iter().map(|path| name_of(&path.to_string_lossy()).to_owned()).collect()
+        };
+        let here = ["terzaghi-mesh", "at-rest", "aa", "zz"];
+        assert_eq!(names(studies_in(at)), here);
+        // An empty `studies/` hides nothing, and one with a study hides what is beside it.
+        std::fs::create_dir(at.join(STUDIES)).expect("a folder");
+        assert_eq!(names(studies_in(at)), here);
+        std::fs::write(at.join("studies/inner.toml"), "scene = 'terzaghi'\n").expect("a file");
+        assert_eq!(names(studies_in(at)), ["inner"]);
+        let given = ["b.toml".into(), at.to_owned(), RACE.into(), "a.toml".into()];
+        let chosen = names(named(&given).expect("a folder with a study"));
+        assert_eq!(chosen[..3], ["b", "inner", "race-column-usual"]);
+        assert_eq!(chosen[chosen.len() - 2..], ["race-footing", "a"]);
+        let race = &chosen[2..chosen.len() - 1];
+        assert!(race.iter().all(|name| name.starts_with("race-")), "{race:?}");
+        assert_eq!(race.len(), shipped_names().iter().filter(|name| name.starts_with("race-")).count());
+        let empty = at.join("empty");
+        std::fs::create_dir(&empty).expect("a folder");
+        let told = named(std::slice::from_ref(&empty)).expect_err("no study").to_string();
+        let shown = empty.display();
+        assert_eq!(
+            told,
+            format!("the folder {shown} has no study: `oedometer new {shown}/my-study` writes one there")
+        );
+    }
 }

@@ -143,11 +143,16 @@ mod tests {
     #[test]
     fn a_case_of_hours_is_told_with_what_takes_seconds() {
         let note = note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7));
-        let note = note.expect("it is long");
-        assert!(
-            note.contains("integrator = [\"implicit\"]") && note.contains("case_seconds = 3600"),
-            "{note}"
-        );
+        let case = longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7);
+        let [own, other] = [&case, &longest(SceneKind::Terzaghi, IntegratorKind::Implicit, 1e-7)]
+            .map(|one| duration(estimated_seconds(&one.case)));
+        let head = format!("warning: soft: {}\n  explicit: about {own}; ", case.case.label());
+        let end = ", and the case is ended after 60 min (`case_seconds = 3600`)";
+        let sweep = "`integrator = [\"implicit\"]` in its [[sweep]]";
+        assert_eq!(note, Some(format!("{head}{sweep}: {other}{end}")));
+        assert_eq!(note_on_solve(&case), Some(format!("{head}`--integrator implicit`: {other}{end}")));
+        let patient = LongestCase { case_seconds: estimated_seconds(&case.case), ..case };
+        assert_eq!(note_on_longest(&patient), Some(format!("{head}{sweep}: {other}")));
         assert_eq!(note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-3)), None);
         assert_eq!(note_on_longest(&longest(SceneKind::Terzaghi, IntegratorKind::Implicit, 1e-7)), None);
     }
@@ -155,12 +160,26 @@ mod tests {
     #[test]
     fn no_scene_of_waves_is_sent_to_long_steps() {
         let note = note_on_longest(&longest(SceneKind::DynamicColumn, IntegratorKind::Explicit, 1e-7));
-        assert!(!note.expect("it is long").contains("implicit"));
+        let remedy = "; larger steps, fewer cells or an earlier last `time_factors` take less";
+        assert!(note.is_some_and(|note| !note.contains("implicit") && note.contains(remedy)));
+        let mut search = longest(SceneKind::Terzaghi, IntegratorKind::Explicit, 1e-7);
+        (search.case.task, search.case.cells) = (Task::Stability, 100_000);
+        search.case_seconds = f64::INFINITY;
+        let note = note_on_longest(&search).expect("it is long");
+        assert!(note.ends_with("; an earlier last `time_factors` takes less"), "{note}");
+    }
+
+    #[test]
+    fn a_run_of_a_minute_is_worth_a_word() {
+        assert_eq!(note_on_run("s", 7, 59.9), None);
+        assert_eq!(note_on_run("s", 7, 60.0).as_deref(), Some("s: 7 cases, about 60 s"));
+        assert_eq!(note_on_run("s", 7, 7200.0).as_deref(), Some("s: 7 cases, about 2 h"));
     }
 
     #[test]
     fn cases_side_by_side_take_as_long_as_the_longest() {
         assert_eq!(side_by_side(10.0, 2.0, 4), 2.5);
         assert_eq!(side_by_side(10.0, 8.0, 4), 8.0);
+        assert_eq!(side_by_side(10.0, 8.0, 0), 10.0, "no job is one");
     }
 }

@@ -14,6 +14,7 @@ use crate::study::check::solvers::digest_of_file;
 use crate::study::solver::ExternalSolver;
 use clap::builder::FalseyValueParser;
 use oedometer_soil::wording::count_of;
+use std::ffi::OsString;
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -55,7 +56,7 @@ impl TrustArguments {
         starting.is_empty()
             || self.allow_solvers
             || place::is_shipped(&study.name, named)
-            || is_remembered(&digest_of(study, &starting))
+            || folder().is_some_and(|folder| is_remembered(&folder, &digest_of(study, &starting)))
             || is_answered(study, &starting)
     }
 
@@ -122,16 +123,20 @@ fn digest_of(study: &Study, starting: &[&ExternalSolver]) -> String {
 
 /// Folder of what is remembered.
 fn folder() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    folder_by(|name| std::env::var_os(name))
+}
+
+fn folder_by(environment: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    let variable = |name: &str| environment(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let state = variable("XDG_STATE_HOME")
         .or_else(|| variable("LOCALAPPDATA"))
         .or_else(|| Some(variable("HOME")?.join(".local/state")))?;
     Some(state.join("oedometer"))
 }
 
-fn is_remembered(digest: &str) -> bool {
-    let text = folder().and_then(|folder| fs::read_to_string(folder.join(REMEMBERED)).ok());
-    text.is_some_and(|text| text.lines().any(|line| line.split_whitespace().next() == Some(digest)))
+fn is_remembered(folder: &Path, digest: &str) -> bool {
+    let text = fs::read_to_string(folder.join(REMEMBERED));
+    text.is_ok_and(|text| text.lines().any(|line| line.split_whitespace().next() == Some(digest)))
 }
 
 fn remember(folder: &Path, digest: &str, study: &str) -> std::io::Result<()> {

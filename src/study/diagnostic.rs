@@ -183,4 +183,30 @@ mod tests {
         assert_eq!(nearest("gc-sri-patch", ["GIMP", "GC-SRI-patch"]), Some("GC-SRI-patch"));
         assert_eq!(nearest("zzz", ["porosity", "height"]), None);
     }
+
+    #[test]
+    fn a_name_is_near_from_three_letters_in_five_on() {
+        assert_eq!(nearest("abcde", ["uvwxy", "abcxy", "zzzzz"]), Some("abcxy"));
+        assert_eq!(nearest("abcde", ["abwxy"]), None);
+        assert_eq!(nearest("abcde", ["abcdx", "abcxy"]), Some("abcdx"));
+        assert_eq!(nearest("abcde", ["abcxy", "abcdx"]), Some("abcdx"));
+    }
+
+    #[test]
+    fn a_dozen_names_are_listed_and_of_more_there_is_the_beginning_and_where_all_are() {
+        let names: Vec<String> = ('a'..='m').map(|letter| letter.to_string().repeat(4)).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let dozen =
+            "`aaaa`, `bbbb`, `cccc`, `dddd`, `eeee`, `ffff`, `gggg`, `hhhh`, `iiii`, `jjjj`, `kkkk`, `llll`";
+        for (word, count, told) in [
+            ("zzzz", 1, "it can be `aaaa`".to_owned()),
+            ("aaaz", 1, "did you mean `aaaa`? It can be `aaaa`".to_owned()),
+            ("zzzz", 12, format!("it can be {dozen}")),
+            ("bbzb", 12, format!("did you mean `bbbb`? It can be {dozen}")),
+            ("zzzz", 13, format!("it can be {dozen}, …: `oedometer list` has all 13")),
+            ("mmzm", 13, "did you mean `mmmm`? `oedometer list` has all 13".to_owned()),
+        ] {
+            assert_eq!(one_of(word, &names[..count]), told, "{word} of {count}");
+        }
+    }
 }

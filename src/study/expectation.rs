@@ -222,3 +222,70 @@ impl CaseExpectation {
             && self.demand.status.as_ref().is_some_and(|status| *status == record.status.name())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Task;
+    use oedometer_mpm::method::Method;
+    use oedometer_mpm::scene::SceneKind;
+
+    #[test]
+    fn a_measure_is_told_by_what_it_is_held_against() {
+        let of = |reference: &str, probe, time_factor| {
+            let measure = Measure {
+                quantity: Quantity::EffectiveStress,
+                sample: Sample::Centres,
+                norm: Norm::Linf,
+                reference: reference.to_owned(),
+                time_factor,
+                probe,
+            };
+            measure.to_string()
+        };
+        assert_eq!(of("terzaghi", None, 0.1), "effective_stress linf centres against terzaghi at T_v = 0.1");
+        assert_eq!(
+            of("next-finer", None, 0.0),
+            "effective_stress linf centres against next-finer at T_v = 0"
+        );
+        assert_eq!(of("none", None, 0.1), "effective_stress without reference at T_v = 0.1");
+        assert_eq!(of("none", Some(0.25), 2.0), "effective_stress at ζ = 0.25 without reference at T_v = 2");
+    }
+
+    #[test]
+    fn a_selection_fits_by_every_input_that_it_names_but_that_of_the_axis() {
+        let key = |name: &str| Key::named(name, "sweep").expect("a key");
+        let method = Solver::Own(Method::named("MPM").expect("a method"));
+        let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        key("method").set(&mut case, Value::Method(method));
+        let cells = |cells: usize| (key("cells"), Value::Count(cells));
+        let porosity = |porosity: f64| (key("porosity"), Value::Number(porosity));
+        // The seed's porosity is 0.3.
+        for (named, fits, along_cells, along_porosity) in [
+            (vec![], true, true, true),
+            (vec![cells(8), porosity(0.3)], true, true, true),
+            (vec![cells(4), porosity(0.3)], false, true, false),
+            (vec![cells(8), porosity(0.4)], false, false, true),
+            (vec![porosity(0.4), cells(4)], false, false, false),
+        ] {
+            let selection = Selection(named);
+            let found = [
+                selection.fits(&case),
+                selection.fits_along("cells", &case),
+                selection.fits_along("porosity", &case),
+            ];
+            assert_eq!(found, [fits, along_cells, along_porosity], "{selection:?}");
+            assert_eq!(selection.method(), None);
+        }
+        let selection = Selection(vec![cells(8), (key("method"), Value::Method(method))]);
+        assert_eq!(selection.method(), Some(method));
+        for (status, is_skip) in
+            [(Some("skipped"), true), (Some("ok"), false), (Some("crashed"), false), (None, false)]
+        {
+            let demand = CaseDemand { status: status.map(str::to_owned), ..CaseDemand::default() };
+            let expectation =
+                CaseExpectation { selection: Selection::default(), demand, tier: Tier::Ci, line: 1 };
+            assert_eq!(expectation.asks_for_a_skip(), is_skip, "{status:?}");
+        }
+    }
+}

@@ -143,13 +143,22 @@ mod tests {
         for name in ["terzaghi-mesh", "a", "63", "v1.2_b"] {
             assert_eq!(refused_name(name), None, "{name}");
         }
-        let long = "a".repeat(LONGEST + 1);
+        let plain = "take lower-case letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`";
         let others = [
             "", ".", "..", ".hidden", "-a", "a-", "a.", "MyStudy", "ä", "a b", "a/b", "a\\b", "a\n", "a--b",
-            "con:", &long,
+            "con:", "_a", "a-.b--c",
         ];
         for name in others {
-            assert!(refused_name(name).is_some(), "{name}");
+            assert_eq!(refused_name(name).as_deref(), Some(plain), "{name}");
+        }
+        assert_eq!(refused_name(&"a".repeat(100)), None);
+        assert_eq!(refused_name(&"a".repeat(101)).as_deref(), Some("it has 101 letters: take 100 at most"));
+        for name in ["findings", "survival", "how", "profiles", "history", "columns"] {
+            let why = format!(
+                "`{name}` is what a part of the report, of the golden values or of the tables is called"
+            );
+            assert_eq!(refused_name(name), Some(why));
+            assert_eq!(refused_name(&format!("{name}2")), None);
         }
     }
 }

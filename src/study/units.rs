@@ -46,6 +46,10 @@ impl Unit {
         let text = text.replace('²', "2").replace('³', "3");
         let mut unit = Self { dimension: [0; 3], tens: 0, up: 1.0, down: 1.0 };
         for (number, product) in text.split('/').enumerate() {
+            // Neither `m/` nor `/` is a unit.
+            if product.trim_matches([' ', '*', '·']).is_empty() {
+                return None;
+            }
             for power in product.split([' ', '*', '·']).filter(|power| !power.is_empty()) {
                 let end = power.find(|letter: char| letter.is_ascii_digit() || "^-".contains(letter));
                 let (symbol, exponent) = power.split_at(end.unwrap_or(power.len()));
@@ -57,7 +61,7 @@ impl Unit {
                 unit.multiply(symbol, if number == 0 { exponent } else { -exponent })?;
             }
         }
-        (!text.trim().is_empty()).then_some(unit)
+        Some(unit)
     }
 
     fn multiply(&mut self, symbol: &str, exponent: i32) -> Option<()> {
@@ -241,6 +245,29 @@ mod tests {
         ] {
             let found = in_si(text, si).unwrap_or_else(|told| panic!("{text}: {told:?}"));
             assert!((found / value - 1.0).abs() < 1e-15, "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn prefixes_that_nobody_means_and_powers_beyond_all_sense_are_no_units() {
+        for symbol in [
+            "mPa", "cPa", "µPa", "kbar", "mbar", "mN", "GN", "Mm", "Gm", "mg", "cg", "Gg", "kt", "Mt", "ks",
+            "cs", "Ms", "kh", "md", "ma", "mmin", "mseconds", "krad", "mdeg", "pa", "PA", "M", "k", "m^10",
+            "m-10", "m^x", "m/", "/", "/s", "m//s", "*", "1/s",
+        ] {
+            assert!(!has_unit(&format!("3 {symbol}")), "{symbol}");
+        }
+        assert!(has_unit("3 m^9") && has_unit("3 m-9"));
+        // The same kind by other symbols, and one exponent off.
+        for (text, si) in [
+            ("3 m²", "m"),
+            ("3 kg m/s", "N/m³"),
+            ("3 m/", "m"),
+            ("3 /", "rad"),
+            ("3 s²", "s"),
+            ("3 N/m", "Pa"),
+        ] {
+            assert!(in_si(text, si).is_err(), "{text} as {si}");
         }
     }
 }

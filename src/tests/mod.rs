@@ -17,6 +17,7 @@ mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;
 mod study_answers;
+mod study_complaints;
 mod study_limits;
 mod whole_pages;
 mod whole_records;

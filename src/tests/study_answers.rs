@@ -231,7 +231,7 @@ const OF_COLUMNS: &[(&str, &str)] = &[
     ("time_factor = 0.07", "time_factor = 0.07\nquantity = \"settlement\""),
     ("time_factor = 0.07", "time_factor = 0.07\nquantity = \"settlement\"\nnorm = \"l1\""),
     ("time_factor = 0.07", "time_factor = 0.07\nquantity = \"settlement\"\nsample = \"nodes\""),
-    ("time_factor = 0.07", "time_factor = 0.07\nquantity = \"load-factor\"\nsample = \"nodes\""),
+    ("time_factor = 0.07", "time_factor = 0.07\nquantity = \"load_factor\"\nsample = \"nodes\""),
     (
         "time_factor = 0.07",
         "time_factor = 0.07\nquantity = \"displacement\"\nnorm = \"linf\"\nsample = \"nodes\"",
@@ -369,7 +369,7 @@ const OF_FOOTINGS: &[(&str, &str)] = &[
     ("plate = \"rough\"", "undrained = \"two-phase\""),
     ("cells = [2, 4, 8]", "cells = [2, 4, 8]\nundrained_strength = [3e3, 5e3]"),
     ("output", "points.offset = 0.1\noutput"),
-    ("quantity = \"load-factor\"\n", ""),
+    ("quantity = \"load_factor\"\n", ""),
 ];
 
 /// Edits of the square.
@@ -418,7 +418,7 @@ fn studies_of_other_bodies_with_one_edit() {
     );
     let footing = footing.replace(
         "time_factor = 1.0\n",
-        "time_factor = 1.0\nquantity = \"load-factor\"\nat = { cells = 4, below = 0.3 }\n",
+        "time_factor = 1.0\nquantity = \"load_factor\"\nat = { cells = 4, below = 0.3 }\n",
     );
     let footing = footing.replace("{ seconds = 0.1 }", "{ growth = 0.1 }");
     edits(&mut text, "t.toml", &footing, OF_FOOTINGS);

@@ -34,7 +34,7 @@ fn held(limits: &[Limit], of: impl Fn(&str) -> Option<String>) {
 
 #[test]
 fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
-    const INPUTS: [Limit; 16] = [
+    const INPUTS: [Limit; 17] = [
         ("points_per_cell = [#]", &["1", "2", "16"], &["0", "-1", "17"]),
         ("offset = [#]", &["-0.5", "0.1", "0.5"], &["-0.500001", "0.500001", "nan"]),
         ("jitter = [#]", &["-0.5", "0.1", "0.5"], &["-0.500001", "0.500001", "nan"]),
@@ -54,16 +54,18 @@ fn inputs_of_cases_are_taken_up_to_their_limits_and_no_further() {
             &["1e-9", "0.5", "1.0"],
             &["0.0", "-1.0", "9e-10", "1.000001", "nan"],
         ),
-        ("time_step = [{ seconds = # }]", &["1.0"], &["0.0", "-1.0", "nan"]),
+        ("time_step = [{ seconds = # }]", &["1e-12", "1.0"], &["0.0", "-1.0", "inf", "nan"]),
+        ("time_step = [{ tolerance = # }]", &["1e-12", "1e-4"], &["9e-13", "0.0", "-1.0", "inf", "nan"]),
     ];
     held(&INPUTS, |sweep| said(STUDY, "", sweep, ""));
     held(&[("[#]", &["1", "2", "100000"], &["0", "-1", "100001"])], |cells| {
         said(&STUDY.replace("[4, 8, 16]", cells), "", "", "")
     });
     let explicit = STUDY.replace("implicit", "explicit");
-    let of_explicit: [Limit; 2] = [
+    let of_explicit: [Limit; 3] = [
         ("flip = [#]", &["0.0", "0.5", "1.0"], &["-0.000001", "1.000001", "nan"]),
-        ("time_step = [{ stable = # }]", &["0.8", "1.3"], &["0.0", "-1.0", "nan"]),
+        ("time_step = [{ stable = # }]", &["1e-9", "0.8", "1.3"], &["9e-10", "0.0", "-1.0", "inf", "nan"]),
+        ("time_step = [{ courant = # }]", &["1e-9", "0.5"], &["9e-10", "0.0", "-1.0", "inf", "nan"]),
     ];
     held(&of_explicit, |sweep| said(&explicit, "", sweep, ""));
     held(&[("sets = [#]", &["1", "2"], &["0", "3"])], |sweep| said(LAYERS, "", sweep, ""));

@@ -27,9 +27,12 @@ fn a_starter_runs_and_meets_what_it_expects() {
     let told = call(at, &["check", "my-study.toml"]);
     assert!(told.out.contains("1 of 1 expectations met"), "{}{}", told.out, told.err);
     // At large strain, and in the plane.
-    for (name, scene, met) in
-        [("large", "xie-leo", "2 of 2"), ("plane", "cosine-layer", "4 of 4"), ("plate", "footing", "3 of 3")]
-    {
+    for (name, scene, met) in [
+        ("large", "xie-leo", "2 of 2"),
+        ("plane", "cosine-layer", "4 of 4"),
+        ("plate", "footing", "3 of 3"),
+        ("soils", "layered", "1 of 1"),
+    ] {
         assert_eq!(call(at, &["new", name, "--scene", scene]).code, 0);
         let told = call(at, &["check", &format!("{name}.toml")]);
         assert!(told.out.contains(&format!("{met} expectations met")), "{scene}: {}{}", told.out, told.err);

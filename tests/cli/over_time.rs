@@ -106,6 +106,9 @@ fn bisect_finds_the_commit_that_moved_the_results_and_skips_what_cannot_be_tried
     assert!(first.ends_with(WORSE), "{}{}", told.out, told.err);
     assert!(told.out.contains(" moved, in 2 cases"), "{}", told.out);
     assert!(told.err.contains(" skip: Break the build"), "{}", told.err);
+    let skipped: Vec<&str> = told.out.lines().filter_map(|line| line.strip_prefix("  skipped ")).collect();
+    let why = " Break the build: the build failed: exit status: 1: it said nothing";
+    assert!(skipped.iter().any(|line| line.ends_with(why) && line.len() == 8 + why.len()), "{skipped:?}");
     // The user's own work tree is as it was.
     assert_eq!(git(folder.path(), &["status", "--porcelain"]), before);
     assert_eq!(git(folder.path(), &["worktree", "list"]).lines().count(), 1);
@@ -181,11 +184,21 @@ fn what_cannot_be_compared_is_refused_in_sentences() {
     );
     let outside = TempDir::new().expect("a folder");
     refused(outside.path(), &["history"], "is in no git repository");
+    let [there, root] = [outside.path(), at].map(|folder| folder.canonicalize().expect("a folder"));
+    let told = format!("error: {} lies outside the repository {}\n", there.display(), root.display());
+    refused(at, &["history", "--golden", &there.display().to_string()], &told);
     // A golden file of another layout is passed over with a word.
     fs::write(at.join("golden/gate.csv"), "{\"schema\": 1}\n").expect("written");
     git(at, &["commit", "-q", "-a", "-m", "Write another layout"]);
     let told = call(at, &["history"]);
     assert!(told.code == 0 && told.err.contains("is passed over"), "{}", told.err);
+    for number in 2..6 {
+        fs::write(at.join("golden/gate.csv"), format!("{{\"schema\": {number}}}\n")).expect("written");
+        git(at, &["commit", "-q", "-a", "-m", "Write one more"]);
+    }
+    let told = call(at, &["history"]);
+    let lines: Vec<&str> = told.err.lines().collect();
+    assert_eq!((lines.len(), lines[3]), (4, "2 more files are passed over"), "{}", told.err);
 }
 
 /// A solver in Python, right but for a factor, with its study.

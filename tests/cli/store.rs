@@ -441,6 +441,33 @@ fn every_column_of_the_table_is_what_the_record_says() {
     assert!(rows.next().is_none(), "no row more");
 }
 
+#[test]
+fn tables_have_the_records_of_other_sources_too_and_say_how_many() {
+    let folder = folder_with(STUDY);
+    let at = folder.path();
+    let end = |cases: &str| format!("short: {cases} (0 from disk, 0 failed), out/short/short.csv\n");
+    assert_eq!(call(at, &["run", "short.toml"]).err, end("8 cases"));
+    let mut files: Vec<String> = fs::read_dir(at.join("out/short"))
+        .expect("a folder")
+        .filter_map(|entry| entry.expect("an entry").file_name().into_string().ok())
+        .collect();
+    files.sort();
+    assert_eq!(files, ["cases", "columns.csv", "history.csv", "profiles.csv", "short.csv"]);
+    let table = || fs::read_to_string(at.join("out/short/short.csv")).expect("a table");
+    let rows = table().lines().count();
+    change_records(&at.join("out"), |number, record| {
+        if number < 3 {
+            record.provenance.sources = "0123456789abcdef".to_owned();
+        }
+    });
+    let hash = study().cases(Tier::Full)[4].hash();
+    let told = call(at, &["run", "short.toml", "--case", &hash]);
+    let others = "short: 3 older records in the table are of other sources\n".to_owned();
+    assert_eq!((told.code, told.err), (0, others + &end("1 case")));
+    assert_eq!(table().lines().count(), rows);
+    assert_eq!(table().matches(",0123456789abcdef,").count(), 3 * (rows - 1) / 8);
+}
+
 // ---- what cannot be kept ----
 
 #[test]

@@ -338,4 +338,16 @@ mod tests {
             );
         }
     }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_command_that_fails_is_told_by_its_status_and_its_last_words() {
+        let of = |line: &str| ended(Command::new("sh").args(["-c", line]));
+        assert_eq!(of("echo odd >&2; exit 0"), Ok(()));
+        let last = "echo first >&2; echo '  last  ' >&2; echo ' ' >&2; exit 3";
+        assert_eq!(of(last), Err("exit status: 3: last".to_owned()));
+        assert_eq!(of("echo out; exit 4"), Err("exit status: 4: it said nothing".to_owned()));
+        let told = ended(&mut Command::new("no-such-program-of-a-test")).expect_err("no program");
+        assert!(told.contains("No such file"), "{told}");
+    }
 }

@@ -244,3 +244,75 @@ impl<'a> CheckJson<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::golden::GoldenFile;
+    use crate::study::file::StudySource;
+
+    const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                         integrator = ['implicit']\ncells = [3]\n";
+
+    /// The check of a study that is as its golden values say, and one whose golden values are missing.
+    fn checks() -> [StudyCheck; 2] {
+        let source = StudySource { name: "t.toml".to_owned(), text: STUDY.to_owned() };
+        let study = Study::check(&source).expect("sound");
+        let records = run_quietly(std::slice::from_ref(&study), 1).expect("records").remove(0);
+        let golden = GoldenFile::of("t", &records, "a reason");
+        [Ok(golden), GoldenFile::read(Path::new("no-such-folder"), "t")]
+            .map(|golden| StudyCheck::new(&study, &records, Tier::Ci, golden))
+    }
+
+    fn note(case: &str) -> CaseNote {
+        CaseNote { case: case.to_owned(), sentence: format!("{case} is odd") }
+    }
+
+    #[test]
+    fn the_worst_end_of_all_studies_is_that_of_the_command() {
+        let with = |change: fn(&mut StudyCheck)| {
+            let [mut check, _] = checks();
+            change(&mut check);
+            check
+        };
+        let pass = || with(|_| {});
+        let case = || with(|check| check.failed_cases = vec![note("a")]);
+        let unsound = || with(|check| check.unsound = vec![note("a")]);
+        let golden = || checks().into_iter().next_back().expect("one");
+        assert_eq!(worst_of(&[]), Exit::Pass);
+        for (all, exit) in [
+            (vec![pass(), pass()], Exit::Pass),
+            (vec![golden(), pass()], Exit::Golden),
+            (vec![pass(), golden(), case()], Exit::CaseFailed),
+            (vec![case(), golden()], Exit::CaseFailed),
+            (vec![unsound(), case(), golden()], Exit::VerdictFailed),
+            (vec![golden(), case(), unsound()], Exit::VerdictFailed),
+        ] {
+            assert_eq!(worst_of(&all), exit);
+        }
+    }
+
+    #[test]
+    fn the_json_of_a_check_has_each_list_under_its_name() {
+        let [mut check, missing] = checks();
+        check.failed_cases = vec![note("failed")];
+        check.unsound = vec![note("unsound")];
+        check.agreeing = 17;
+        check.proposals = vec!["proposed".to_owned()];
+        check.warnings = vec!["warned".to_owned()];
+        let [key, before, after] = ["porosity", "before", "after"].map(str::to_owned);
+        check.inputs = vec![InputChange { key, before, after, cases: 3 }];
+        let wanted = serde_json::json!({
+            "study": "t", "end": "failed", "judgements": [],
+            "failed_cases": [{ "case": "failed", "sentence": "failed is odd" }],
+            "unsound_records": [{ "case": "unsound", "sentence": "unsound is odd" }],
+            "golden_values_that_agree": 17, "golden_problem": null, "proposed_expectations": ["proposed"],
+            "inputs_that_differ": [{ "key": "porosity", "before": "before", "after": "after", "cases": 3 }],
+            "groups": [], "differences": [], "accuracy_and_cost": [], "warnings": ["warned"],
+        });
+        assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
+        let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");
+        let why = "there is no golden file no-such-folder/t.csv: look at the results, then `oedometer accept` them with a reason";
+        assert_eq!((&told["golden_problem"], &told["end"]), (&why.into(), &"golden".into()));
+    }
+}

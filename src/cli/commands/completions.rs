@@ -52,3 +52,35 @@ pub fn run(arguments: &Arguments, command: clap::Command) -> anyhow::Result<Exit
     print_data(&String::from_utf8(script)?)?;
     Ok(Exit::Pass)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shell_offers_each_argument_the_names_that_it_takes() {
+        let command = with_names(crate::cli::command());
+        let offered = |command_name: &str, argument: &str| -> Vec<String> {
+            let found = command.find_subcommand(command_name).expect("a command");
+            let argument = found.get_arguments().find(|one| one.get_id() == argument).expect("an argument");
+            argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect()
+        };
+        let scenes: Vec<&str> = SceneKind::ALL.iter().map(|scene| scene.name()).collect();
+        let references: Vec<&str> = ReferenceKind::ALL.iter().map(|kind| kind.name()).collect();
+        let shelf =
+            ["biot-column", "cryer", "barron", "barron-free-strain", "seabed", "injection", "davis-raymond"];
+        for name in ["solve", "stability", "new"] {
+            assert_eq!(offered(name, "scene"), scenes, "{name}");
+        }
+        assert_eq!(offered("exact", "scene"), [&references[..], &shelf].concat());
+        assert_eq!(offered("score", "scene"), [&scenes[..], &shelf].concat());
+        assert_eq!(offered("solve", "reference"), references);
+        assert_eq!(offered("score", "reference"), references);
+        for name in ["solve", "stability"] {
+            assert_eq!(offered(name, "method"), Method::names(), "{name}");
+        }
+        assert_eq!(offered("solve", "integrator"), ["explicit", "semi-implicit", "implicit"]);
+        assert_eq!(offered("list", "show"), shipped_names());
+        assert!(offered("solve", "cells").is_empty() && offered("run", "studies").is_empty());
+    }
+}

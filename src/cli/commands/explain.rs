@@ -146,3 +146,68 @@ fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Recor
     }
     Ok(record)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::file::StudySource;
+
+    fn study(name: &str, sweep: &str) -> Study {
+        let text = format!(
+            "title = 't'\nscene = 'terzaghi'\n[[result]]\nname = 'ogs'\nfiles = ['a-{{cells}}.csv']\ncells = [4]\n\
+             [[sweep]]\nintegrator = ['implicit']\ntime_step = [{{ growth = 0.1 }}]\n{sweep}\n"
+        );
+        Study::check(&StudySource { name: format!("{name}.toml"), text }).expect("sound")
+    }
+
+    fn found(studies: &[Study], description: &str) -> Result<String, (Exit, String)> {
+        match the_one(studies, description) {
+            Ok((study, case)) => Ok(format!("{}/{}", study.name, case.label())),
+            Err(error) => Err((Exit::of(&error), error.to_string())),
+        }
+    }
+
+    #[test]
+    fn a_case_is_found_by_its_label_its_words_or_the_first_digits_of_its_hash() {
+        let swept = "method = ['MPM', 'GIMP']\ncells = [4]\nporosity = [0.3, 0.4]";
+        let studies = [study("ogs", swept), study("mine", "method = ['MPM']\ncells = [8]")];
+        let label = "MPM implicit cells=4 points=2 growth=0.1 (porosity=0.4)";
+        let case = format!("ogs/{label}");
+        let hash = studies[0].planned[1].case.hash();
+        for description in [label, &case, "MPM porosity=0.4", "porosity=0.4 ogs MPM", &hash, &hash[..9]] {
+            assert_eq!(found(&studies, description), Ok(case.clone()), "{description}");
+        }
+        // The case's own words come before the name of a study.
+        assert_eq!(found(&studies[..1], "ogs"), Ok("ogs/ogs cells=4 (porosity=0.3)".to_owned()));
+        let mine = "mine/MPM implicit cells=8 points=2 growth=0.1";
+        for description in ["cells=8", "mine MPM", "MPM mine"] {
+            assert_eq!(found(&studies, description), Ok(mine.to_owned()), "{description}");
+        }
+        let told = |whose: &str, what: &str| {
+            let reason = format!("no case{whose} is described by `{what}`: `oedometer plan` lists them");
+            Err((Exit::NothingSelected, reason))
+        };
+        assert_eq!(found(&studies, "cells=5"), told("", "cells=5"));
+        for what in ["MP", "cells=", "porosity=0.45", "4"] {
+            let what = format!("{what} GIMP cells=4");
+            assert_eq!(found(&studies[..1], &what), told(" of `ogs`", &what));
+        }
+    }
+
+    #[test]
+    fn ten_of_the_cases_that_a_description_fits_are_listed_and_the_others_counted() {
+        for (count, more) in [(2, ""), (10, ""), (11, "\n  and 1 more"), (13, "\n  and 3 more")] {
+            let cells: Vec<String> = (2..2 + count).map(|cells| cells.to_string()).collect();
+            let studies = [study("mine", &format!("method = ['MPM']\ncells = [{}]", cells.join(", ")))];
+            let lines: Vec<String> = studies[0].planned[..count.min(10)]
+                .iter()
+                .map(|planned| format!("\n  {} mine/{}", planned.case.hash(), planned.case.label()))
+                .collect();
+            let told = format!(
+                "`MPM` describes {count} cases; give the first digits of a hash:{}{more}",
+                lines.concat()
+            );
+            assert_eq!(found(&studies, "MPM"), Err((Exit::Usage, told)));
+        }
+    }
+}

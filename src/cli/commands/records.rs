@@ -126,4 +126,35 @@ mod tests {
         assert_eq!(asked(&["ba", "aa1"]), ["aa1", "ba3"]);
         assert!(asked(&["1"]).is_empty());
     }
+
+    #[test]
+    fn a_row_of_the_list_has_what_its_columns_say() {
+        use crate::record::WallSample;
+        use crate::record::provenance::Machine;
+
+        let mut record = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        )
+        .remove(0);
+        record.hash = "abc".to_owned();
+        record.provenance.sources = "of".to_owned();
+        record.provenance.compiler = "rustc".to_owned();
+        let row = |record: &Record| {
+            let mut writer = csv::Writer::from_writer(Vec::new());
+            writer.serialize(Row::of(record.clone())).expect("a row");
+            String::from_utf8(writer.into_inner().expect("memory")).expect("words")
+        };
+        let header = "case,status,method,integrator,cells,node,processor,cpu_seconds,sources,compiler\n";
+        let sample = |name: &str, cpu_seconds| WallSample {
+            machine: Some(Machine { node: format!("{name} node"), processor: format!("{name} processor") }),
+            cpu_seconds,
+            ..WallSample::default()
+        };
+        record.wall = vec![sample("first", Some(2.5)), sample("last", Some(3.5))];
+        let first = "abc,ok,MPM,implicit,3,first node,first processor,2.5,of,rustc\n";
+        assert_eq!(row(&record), format!("{header}{first}"));
+        record.wall.clear();
+        assert_eq!(row(&record), format!("{header}abc,ok,MPM,implicit,3,,,,of,rustc\n"));
+    }
 }

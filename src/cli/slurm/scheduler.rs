@@ -292,6 +292,23 @@ mod tests {
         let told = "RUNNING\nRUNNING\n PENDING\nCOMPLETED\nFAILED\nCOMPLETING\n";
         assert_eq!(counted(told), Tasks { running: 3, waiting: 1 });
         assert_eq!(counted(""), Tasks::default());
+        for (states, running, waiting) in [
+            (&["RUNNING", "COMPLETING", "CONFIGURING", "STAGE_OUT", "SIGNALING"][..], 1, 0),
+            (
+                &["PENDING", "SUSPENDED", "REQUEUED", "REQUEUE_HOLD", "SPECIAL_EXIT", "RESIZING", "STOPPED"],
+                0,
+                1,
+            ),
+            (
+                &["COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL", "PREEMPTED", "OUT_OF_MEMORY"],
+                0,
+                0,
+            ),
+        ] {
+            for state in states {
+                assert_eq!(counted(state), Tasks { running, waiting }, "{state}");
+            }
+        }
     }
 
     #[test]
@@ -306,5 +323,8 @@ mod tests {
     fn shares_are_named_as_an_array_takes_them() {
         assert_eq!(ranges(&[1, 2, 3, 4, 7, 9, 10].into()), "1-4,7,9-10");
         assert_eq!(ranges(&[5].into()), "5");
+        assert_eq!(ranges(&[1, 3, 5].into()), "1,3,5");
+        assert_eq!(ranges(&[2, 3].into()), "2-3");
+        assert_eq!(ranges(&BTreeSet::new()), "");
     }
 }

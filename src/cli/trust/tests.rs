@@ -100,3 +100,56 @@ fn cases_that_were_not_allowed_to_run_are_no_success_and_hide_no_failure() {
     assert_eq!(end_with(tally(2), Exit::Pass), Exit::IncompleteMerge);
     assert_eq!(end_with(tally(2), Exit::VerdictFailed), Exit::VerdictFailed);
 }
+
+#[test]
+fn a_digest_is_remembered_as_a_whole_and_in_its_folder_alone() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = folder.path();
+    assert!(!is_remembered(at, "abcd"), "nothing is remembered yet");
+    remember(at, "abcd", "first").expect("written");
+    remember(at, "ef01", "second").expect("written");
+    for (digest, is_there) in
+        [("abcd", true), ("ef01", true), ("abc", false), ("abcde", false), ("first", false), ("", false)]
+    {
+        assert_eq!(is_remembered(at, digest), is_there, "{digest}");
+    }
+    assert!(!is_remembered(&at.join("other"), "abcd"));
+}
+
+#[test]
+fn what_is_allowed_is_kept_with_the_state_of_the_user() {
+    let of = |variables: &[(&str, &str)]| {
+        folder_by(|name| {
+            variables.iter().find(|(own, _)| *own == name).map(|(_, value)| OsString::from(value))
+        })
+    };
+    let [state, local, home] =
+        [("XDG_STATE_HOME", "/state"), ("LOCALAPPDATA", "/local"), ("HOME", "/home/me")];
+    for (variables, wanted) in [
+        (&[home, local, state][..], Some("/state/oedometer")),
+        (&[home, local], Some("/local/oedometer")),
+        (&[home], Some("/home/me/.local/state/oedometer")),
+        (&[("XDG_STATE_HOME", "state"), home], Some("/home/me/.local/state/oedometer")),
+        (&[("XDG_STATE_HOME", ""), local], Some("/local/oedometer")),
+        (&[("HOME", "me")], None),
+        (&[], None),
+    ] {
+        assert_eq!(of(variables), wanted.map(PathBuf::from), "{variables:?}");
+    }
+}
+
+#[test]
+fn what_would_be_started_is_told_with_its_folder_and_without_what_steers_a_terminal() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    fs::write(folder.path().join("adapter.sh"), "true").expect("a file");
+    let mut study = study(folder.path(), "", "\"toy\"");
+    let at = study.solvers[0].folder.display().to_string();
+    assert_eq!(told(&starting(&study)), format!("`sh adapter.sh` in {at}"));
+    study.solvers[0].command[1] = "a\u{1b}[2J".to_owned();
+    assert_eq!(told(&starting(&study)), format!("`sh a\\u{{1b}}[2J` in {at}"));
+    study.solvers[0].command[1] = "x".repeat(400);
+    let long = format!("`sh {}` in {at}", "x".repeat(297));
+    assert_eq!(told(&starting(&study)), long);
+    let twice = [&study.solvers[0], &study.solvers[0]];
+    assert_eq!(told(&twice), format!("{long} and {long}"));
+}

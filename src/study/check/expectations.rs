@@ -310,33 +310,26 @@ impl Checker<'_> {
         (self.diagnostics.len() == before).then_some(measured)
     }
 
-    /// The reference of an expectation: the one that it names; else the scene's own where the runs are compared with it,
-    /// or the only one that they are compared with.
+    /// The reference of an expectation: the one that it names; else the first that the runs are compared with, which is
+    /// the scene's own where it is among them.
     fn expected_reference(
         &mut self,
         typed: Option<&Placed<String>>,
         place: Range<usize>,
         subject: &Subject<'_>,
     ) -> Option<ReferenceKind> {
-        let names: Vec<&str> = subject.references.iter().map(|kind| kind.name()).collect();
         if let Some(word) = typed {
+            let names: Vec<&str> = subject.references.iter().map(|kind| kind.name()).collect();
             return Some(subject.references[self.word(word, "reference", &names)?]);
         }
-        let own = subject.scene.references().first().filter(|own| subject.references.contains(own));
-        match (own, subject.references) {
-            (Some(own), _) | (None, [own]) => return Some(*own),
-            (None, []) => self.complain(
+        if subject.references.is_empty() {
+            self.complain(
                 place,
                 "the runs are compared with no reference, and the expectation names none",
                 format!("add `reference = \"{NO_REFERENCE}\"`, or list some in `output.references`"),
-            ),
-            (None, _) => self.complain(
-                place,
-                format!("the runs are compared with {}, and the expectation names none", names.join(" and ")),
-                format!("add `reference = \"{}\"`", names[0]),
-            ),
+            );
         }
-        None
+        subject.references.first().copied()
     }
 
     /// A bound at a level that is named in the words of its axis.

@@ -281,3 +281,126 @@ fn write_exports(folder: &Path, page: &Page) -> anyhow::Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::study::file::StudySource;
+
+    /// A study whose tiers have 1, 3 and 6 cases, and its records.
+    fn study() -> (Study, Vec<Record>) {
+        let sweep = |tier: &str, cells: &str| {
+            format!(
+                "[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [{cells}]\ntier = '{tier}'\n"
+            )
+        };
+        let sweeps = [sweep("full", "2, 3, 4"), sweep("ci", "5, 6"), sweep("smoke", "7")].concat();
+        let text = format!("title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n{sweeps}");
+        let study = Study::check(&StudySource { name: "t.toml".to_owned(), text: text.clone() });
+        (study.expect("sound"), records_of(&text))
+    }
+
+    fn cells(records: &[Record]) -> Vec<usize> {
+        records.iter().map(|record| record.case.cells).collect()
+    }
+
+    #[test]
+    fn of_a_race_that_is_not_named_the_ci_tier_is_run_and_of_all_else_the_whole() {
+        let (mut study, _) = study();
+        for (is_race, is_named, count) in
+            [(false, false, 6), (false, true, 6), (true, false, 3), (true, true, 6)]
+        {
+            study.is_race = is_race;
+            assert_eq!(selected(&study, is_named).planned.len(), count, "{is_race} {is_named}");
+        }
+        study.is_race = true;
+        let run: Vec<usize> = selected(&study, false).planned.iter().map(|one| one.case.cells).collect();
+        assert_eq!(run, [5, 6, 7]);
+    }
+
+    #[test]
+    fn a_study_is_judged_by_its_ci_tier_where_that_is_all_there_is() {
+        let (study, records) = study();
+        let of = |count: usize| {
+            let report = RunReport { records: records[..count].to_vec(), ..RunReport::default() };
+            tier_of(&study, &report)
+        };
+        let tiers = [Tier::Full, Tier::Full, Tier::Full, Tier::Ci, Tier::Full, Tier::Full, Tier::Full];
+        assert_eq!([0, 1, 2, 3, 4, 5, 6].map(of), tiers);
+        let mut whole = study.clone();
+        whole.planned.retain(|planned| planned.tier <= Tier::Ci);
+        let report = RunReport { records: records[3..].to_vec(), ..RunReport::default() };
+        assert_eq!(tier_of(&whole, &report), Tier::Full, "the CI tier is the whole");
+    }
+
+    #[test]
+    fn what_a_tier_left_out_joins_its_records_where_all_of_it_is_there() {
+        let (study, records) = study();
+        for (stored, wanted, resumed) in [
+            (&records[..3], &[2, 3, 4, 5, 6, 7][..], 5),
+            (&records[..2], &[5, 6, 7], 2),
+            (&records[..0], &[5, 6, 7], 2),
+        ] {
+            let folder = tempfile::TempDir::new().expect("a folder");
+            let store = RecordStore::new(folder.path(), "t");
+            for record in stored {
+                store.write(record).expect("written");
+            }
+            // In the order of the study whatever that of the run.
+            let run: Vec<Record> = records[3..].iter().rev().cloned().collect();
+            let mut report = RunReport { records: run, resumed: 2, ..RunReport::default() };
+            add_finished(&study, &mut report, folder.path());
+            assert_eq!((cells(&report.records), report.resumed), (wanted.to_vec(), resumed));
+        }
+    }
+
+    #[test]
+    fn changes_are_those_of_the_ci_tier_and_what_got_worse_stands_first() {
+        let (study, records) = study();
+        let named = |name: &str| Study { name: name.to_owned(), ..study.clone() };
+        let studies = ["same", "better", "none", "worse"].map(named);
+        let golden = |name: &str| {
+            let mut records = records[3..].to_vec();
+            for row in &mut records[0].errors {
+                row.value *= match name {
+                    "better" => 1.5,
+                    "worse" => 0.5,
+                    _ => 1.0,
+                };
+            }
+            (name != "none").then(|| GoldenFile::of(name, &records, "a reason"))
+        };
+        let report = || RunReport { records: records.clone(), ..RunReport::default() };
+        let reports: Vec<RunReport> = studies.iter().map(|_| report()).collect();
+        let found = changes(&studies, &reports, golden).expect("golden values");
+        let names: Vec<(&str, bool, usize)> =
+            found.iter().map(|one| (one.study.as_str(), one.is_regression(), one.unpaired)).collect();
+        assert_eq!(names, [("worse", true, 0), ("better", false, 0)]);
+        assert!(changes(&studies, &reports, |_| None).is_none(), "no golden values");
+        let none: Vec<RunReport> = studies.iter().map(|_| RunReport::default()).collect();
+        assert!(changes(&studies, &none, golden).is_none(), "no records");
+        let same = changes(&studies[..1], &reports[..1], golden);
+        assert_eq!(same.map(|found| found.len()), Some(0), "nothing changed");
+    }
+
+    #[test]
+    fn a_study_is_linked_by_its_file_where_both_are_below_the_current_folder() {
+        let own = "studies/terzaghi-mesh.toml";
+        for (out, file, path) in [
+            ("report", own, Some("../studies/terzaghi-mesh.toml")),
+            ("a/b", own, Some("../../studies/terzaghi-mesh.toml")),
+            ("../report", own, None),
+            ("/tmp/report", own, None),
+            ("report", "studies/none.toml", None),
+            ("report", "./studies", None),
+            ("report", "terzaghi-mesh", None),
+            ("report", "src/../studies/terzaghi-mesh.toml", None),
+        ] {
+            assert_eq!(path_from(Path::new(out), file).as_deref(), path, "{out} {file}");
+        }
+        let chosen = [PathBuf::from("studies/a.toml"), "mandel".into()];
+        let typed = ["a", "mandel", "b"].map(|study| typed_name(study, &chosen));
+        assert_eq!(typed, ["studies/a.toml", "mandel", "b"]);
+    }
+}

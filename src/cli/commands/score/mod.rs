@@ -316,4 +316,73 @@ mod tests {
         }
         assert!(errors_below(1e-3, &[], Some("own")).is_err(), "nothing to judge is no pass");
     }
+
+    #[test]
+    fn a_time_stands_alone_or_with_its_unit_and_a_quantity_has_a_name() {
+        for (typed, value) in [("2", 2.0), ("2 min", 120.0), ("0.5 h", 1800.0), ("1e-3", 1e-3)] {
+            assert_eq!(seconds(typed), Ok(value), "{typed}");
+        }
+        let told = "`m` is not a unit of what is measured in s: write a plain number in s, or one with its unit in quotes, \
+                    like \"10 s\": s, min, h, days, years";
+        assert_eq!(seconds("2 m"), Err(told.to_owned()));
+        let of = |typed: &[&str]| {
+            let typed: Vec<String> = typed.iter().map(|one| (*one).to_owned()).collect();
+            quantities_of(&typed).map_err(|error| error.to_string())
+        };
+        let both = vec![Quantity::Settlement, Quantity::EffectiveStress];
+        assert_eq!(of(&["settlement", "effective_stress"]), Ok(both));
+        assert_eq!(of(&[]), Ok(Vec::new()));
+        let told = "`--without stress` is no quantity: expected one of pressure, effective_stress, displacement, \
+                    settlement, load_factor";
+        assert_eq!(of(&["settlement", "stress"]), Err(told.to_owned()));
+    }
+
+    #[test]
+    fn what_vanishes_is_judged_over_the_load_and_nothing_to_judge_is_no_pass() {
+        use crate::judge::score::Unresolved;
+
+        let row = |value: f64, absolute: f64| ErrorRow {
+            time_factor: 0.1,
+            quantity: Quantity::Displacement,
+            sample: Sample::Nodes,
+            norm: Norm::L2,
+            reference: "own".to_owned(),
+            value,
+            absolute,
+        };
+        let exit = |errors: Vec<ErrorRow>, unresolved: Vec<Unresolved>| {
+            let scored =
+                Scored { run: Run::default(), score: Score { errors, unresolved, ..Score::default() } };
+            errors_below(1e-2, &[scored], Some("own")).map_err(|error| Exit::of(&error))
+        };
+        // The exact value all but vanishes where the error over the load is below a thousandth of the relative one.
+        for (value, absolute, end) in [
+            (50.0, 0.009, Exit::Pass),
+            (-50.0, -0.009, Exit::Pass),
+            (50.0, 0.011, Exit::VerdictFailed),
+            (8.0, 0.009, Exit::VerdictFailed),
+            (0.009, 1.0, Exit::Pass),
+            (0.011, 1.0, Exit::VerdictFailed),
+        ] {
+            assert_eq!(exit(vec![row(value, absolute)], Vec::new()), Ok(end), "{value} {absolute}");
+        }
+        let unresolved = |reference: &str, absolute| Unresolved {
+            time_factor: 0.0,
+            quantity: Quantity::Displacement,
+            sample: Sample::Nodes,
+            reference: reference.to_owned(),
+            absolute,
+        };
+        for (absolute, end) in
+            [(-0.009, Exit::Pass), (0.011, Exit::VerdictFailed), (f64::NAN, Exit::VerdictFailed)]
+        {
+            assert_eq!(exit(Vec::new(), vec![unresolved("own", absolute)]), Ok(end), "{absolute}");
+        }
+        assert_eq!(exit(Vec::new(), vec![unresolved("other", 1.0)]), Err(Exit::NothingSelected));
+        let scored = [Scored { run: Run::default(), score: Score::default() }];
+        for bound in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let told = errors_below(bound, &scored, Some("own")).expect_err("no bound").to_string();
+            assert_eq!(told, format!("`--below {bound}` is invalid: expected a positive number"));
+        }
+    }
 }

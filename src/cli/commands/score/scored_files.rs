@@ -98,3 +98,26 @@ fn cells_of(typed: &str, results: usize) -> anyhow::Result<Vec<usize>> {
         cells.len()
     )))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_one_whole_number_a_result() {
+        let of = |typed: &str, results| cells_of(typed, results).map_err(|error| error.to_string());
+        assert_eq!(of("10, 20 ,5", 3), Ok(vec![10, 20, 5]));
+        assert_eq!(of("7", 1), Ok(vec![7]));
+        for typed in ["0,10", "10,-1", "10,", "ten", "1.5"] {
+            let told = format!("`--cells {typed}` is invalid: expected whole numbers from 1 up");
+            assert_eq!(of(typed, 2), Err(told));
+        }
+        for (typed, count, results) in [("10", 1, 2), ("10,20,40", 3, 2), ("10", 1, 0)] {
+            let told = format!(
+                "`--cells {typed}` has {count} numbers for {results} results: give one per result; several files of \
+                 one mesh are one result as a quoted pattern, like 'mesh-10/*.csv'"
+            );
+            assert_eq!(of(typed, results), Err(told));
+        }
+    }
+}
