@@ -426,7 +426,9 @@ mod tests {
         }
         let mut three: Vec<Record> = all.iter().filter(|record| record.case.cells == 8).cloned().collect();
         let mut shortest = three.clone();
-        shortest.iter_mut().for_each(|record| record.step_sizes.target *= 0.25);
+        for record in &mut shortest {
+            record.step_sizes.target *= 0.25;
+        }
         three.splice(0..0, shortest.into_iter().filter(|record| record.step_sizes.target < 0.5));
         let steps = Runs::of(&study, contender, &three)
             .two_steps
