@@ -192,7 +192,7 @@ fn value_found(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) 
     };
     let pass = value < below && value >= above;
     let told = format!("{what}: {}", short(value));
-    if above == 0.0 {
+    if above == 0.0 && (value.is_nan() || value >= 0.0) {
         return Check::compared(what, pass, value, &told, BELOW, &short(below));
     }
     Check::compared(what, pass, value, &told, IN, &format!("{} … {}", short(above), short(below)))

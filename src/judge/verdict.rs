@@ -13,7 +13,7 @@ use oedometer_convergence::{
     Class, Classification, Context, ErrorBound, ErrorSeries, FLOOR_LEVELS, FloorBand, NumericalUncertainty,
     OrderBand, SeriesDemand, Undefined, classify, hidden_floor,
 };
-use oedometer_soil::wording::{order, short};
+use oedometer_soil::wording::{count_of, order, short};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -236,7 +236,8 @@ fn spread_found(bound: ErrorBound, series: &ErrorSeries) -> Check {
         .collect();
     let count = counted.len();
     if count < 2 {
-        let reason = format!("{count} levels up to size {} have no spread", short(bound.size));
+        let levels = count_of(count, "level", "levels");
+        let reason = format!("{levels} up to size {}: too few for a spread", short(bound.size));
         return Check::failed("spread", reason);
     }
     let largest = counted.iter().copied().fold(0.0, f64::max);

@@ -278,7 +278,7 @@ fn a_verdict_says_what_was_asked_and_what_was_found() {
         (spread(0.1, 0.03), &steps, true, "6 levels; errors of 5 levels lie within 1.873 %, below 3 %"),
         (spread(0.1, 0.01), &steps, false, "errors of 5 levels lie within 1.873 %, not below 1 %"),
         (spread(0.2, 0.03), &steps, false, "errors of 6 levels lie within 49.813 %, not below 3 %"),
-        (spread(0.00625, 1.0), &steps, false, "1 levels up to size 0.00625 have no spread"),
+        (spread(0.00625, 1.0), &steps, false, "1 level up to size 0.00625: too few for a spread"),
         (class(Class::Exact), &series(|_| 0.0), true, "6 levels; {class}"),
     ] {
         assert_eq!(told(&demand, series), (pass, wanted.to_owned()));

@@ -205,6 +205,14 @@ fn a_critical_step_is_met_where_it_is_near_and_both_probes_end_as_predicted() {
 }
 
 #[test]
+fn a_value_under_a_range_from_nothing_on_lies_outside_of_it() {
+    let told = |value: f64| value_found("x", Some(value), Bounds { above: 0.0, below: 0.5 }).reason;
+    assert_eq!(told(-0.25), "x: -0.25 outside 0 … 0.5");
+    assert_eq!(told(0.75), "x: 0.75 not below 0.5");
+    assert_eq!(told(0.0), "x: 0 below 0.5");
+}
+
+#[test]
 fn every_demand_of_a_case_says_in_its_own_words_what_was_found() {
     // What is asked, and what is said of it where it is met and where it is not.
     let words = [

@@ -309,7 +309,8 @@ pub fn uneven_meshes(
     let are_alike = (0..meshes.len()).all(|place| count(place) == count(0));
     (*largest > UNEVEN * least && !are_alike).then(|| {
         let ([least, largest], cells) = ([*least, *largest].map(short), meshes[most].0);
-        let sentence = format!("there are {least} heights a cell, and {largest} on {cells} cells");
+        let sentence =
+            format!("samples stand at {least} heights per cell, and at {largest} on {cells} cells");
         (fewest, Finding::new(Lack::SamplesDiffer, sentence))
     })
 }
@@ -492,9 +493,9 @@ mod tests {
                 .map(|heights| at(0.1, heights, &[]));
         let [full, few, nodes, same] = states.each_ref();
         for (meshes, found) in [
-            ([(2, full), (4, few)], Some((1, "there are 0.75 heights a cell, and 2 on 2 cells"))),
-            ([(4, few), (2, full)], Some((0, "there are 0.75 heights a cell, and 2 on 2 cells"))),
-            ([(2, nodes), (2, full)], Some((0, "there are 1 heights a cell, and 2 on 2 cells"))),
+            ([(2, full), (4, few)], Some((1, "samples stand at 0.75 heights per cell, and at 2 on 2 cells"))),
+            ([(4, few), (2, full)], Some((0, "samples stand at 0.75 heights per cell, and at 2 on 2 cells"))),
+            ([(2, nodes), (2, full)], Some((0, "samples stand at 1 heights per cell, and at 2 on 2 cells"))),
             ([(2, full), (4, same)], None),
             ([(4, full), (3, few)], None),
         ] {
