@@ -275,11 +275,31 @@ fn run_and_keep(
 /// Records of the whole study of a text.
 #[cfg(test)]
 pub(crate) fn records_of(text: &str) -> Vec<Record> {
-    use crate::study::file::StudySource;
+    solved("study", text).1
+}
 
-    let source = StudySource { name: "study.toml".to_owned(), text: text.to_owned() };
-    let study = Study::check(&source).expect("a sound study");
-    run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records
+/// The study of a text, by a name.
+#[cfg(test)]
+pub(crate) fn study_of(name: &str, text: &str) -> Study {
+    let name = format!("{name}.toml");
+    Study::check(&crate::study::file::StudySource { name, text: text.to_owned() }).expect("a sound study")
+}
+
+/// The study of a text with its records.
+#[cfg(test)]
+pub(crate) fn solved(name: &str, text: &str) -> (Study, Vec<Record>) {
+    let study = study_of(name, text);
+    let records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+    (study, records)
+}
+
+/// The end of a run that failed at a step.
+#[cfg(test)]
+pub(crate) fn failed_at(step: u64) -> crate::record::Status {
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
+    crate::record::Status::Failed(Failure { kind, step, time: 1.0, growth: None, reason })
 }
 
 /// What the runner tells while it works.

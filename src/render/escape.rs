@@ -194,6 +194,16 @@ mod tests {
         let plain = "T_v = 0.1 − σ′ über 水 👩\u{200d}🔬\n\t";
         assert!(matches!(document(plain), Cow::Borrowed(text) if text == plain), "words stay");
         assert_eq!(one_line("a\tb\nc"), "a b c");
+        for unseen in ['\u{61c}', '\u{200e}', '\u{202a}', '\u{2069}', '\u{feff}', '\u{e0000}', '\u{e007f}'] {
+            assert_eq!(document(&format!("a{unseen}b")), "a\u{fffd}b", "{unseen:?}");
+        }
+        assert_eq!(
+            latex("\\~^{#$%−±×≤…"),
+            r"\textbackslash{}\textasciitilde{}\textasciicircum{}\{\#\$\%$-$$\pm$$\times$$\le$\ldots{}"
+        );
+        assert_eq!(latex("σνΔ′\u{2011}\u{202e}"), r"$\sigma$$\nu$$\Delta$$'$-?");
+        assert_eq!(latex_text("E₀"), r"E\textsubscript{0}");
+        assert_eq!(markdown("a\\b~c$d`e+ -"), r"a\\b\~c\$d\`e+ -");
     }
 
     #[test]

@@ -336,6 +336,9 @@ fn timeline_figure(line: &Timeline) -> Figure {
 mod tests {
     use super::*;
     use crate::golden::GoldenFile;
+    use crate::golden::inputs::InputChange;
+    use crate::history::comparison::{Behaviour, OrderChange};
+    use crate::history::repository::Commit;
     use crate::history::state::StudyState;
 
     /// A study whose errors, one a mesh, go from these values to others.
@@ -396,6 +399,194 @@ mod tests {
             sections,
             ["changes", "details"],
             "without point updates there is no plane of cost and error"
+        );
+    }
+
+    fn step(number: usize, moved: usize, unpaired: usize) -> Step {
+        let at = number as f64;
+        let (accuracy, cost) = [(Trend::Same, Trend::Improved), (Trend::Mixed, Trend::Regressed)][number % 2];
+        Step {
+            commit: Commit {
+                hash: format!("{number}23456789abc"),
+                date: format!("2026-01-0{number}"),
+                subject: format!("Subject {number}"),
+            },
+            reason: format!("reason {number}"),
+            values: 40,
+            error_index: 0.5 * at,
+            work_index: 0.25 * at,
+            moved,
+            unpaired,
+            largest_change: 0.125 * at,
+            accuracy,
+            cost,
+        }
+    }
+
+    fn csv(table: &Table) -> Vec<String> {
+        table.to_csv().expect("a table").lines().skip(1).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn a_timeline_tells_every_commit_and_in_short_the_last_that_moved_values() {
+        // What the first file has has not moved.
+        let all = [
+            Timeline {
+                study: "a".to_owned(),
+                steps: vec![step(1, 9, 2), step(2, 5, 0), step(3, 7, 1), step(4, 0, 3)],
+            },
+            Timeline { study: "b".to_owned(), steps: vec![step(1, 9, 0)] },
+            Timeline { study: "c".to_owned(), steps: Vec::new() },
+        ];
+        let rows = [
+            "a,12345678,2026-01-01,mixed,regressed,0.5,0.25,9,2,0.125,reason 1,Subject 1",
+            "a,22345678,2026-01-02,same,improved,1.0,0.5,5,0,0.25,reason 2,Subject 2",
+            "a,32345678,2026-01-03,mixed,regressed,1.5,0.75,7,1,0.375,reason 3,Subject 3",
+            "a,42345678,2026-01-04,same,improved,2.0,1.0,0,3,0.5,reason 4,Subject 4",
+            "b,12345678,2026-01-01,mixed,regressed,0.5,0.25,9,0,0.125,reason 1,Subject 1",
+        ];
+        assert_eq!(csv(&timeline_table(&all)), rows);
+        assert_eq!(csv(&timeline_summary(&all)), ["a,4,2,2.0,1.0,32345678,reason 3", "b,1,0,0.5,0.25,,"]);
+        let page = timeline_page(&all);
+        let Block::Table(studies) = &page.sections[0].blocks[0] else { panic!("a table first") };
+        let link = |study: &str| Cell::Link { words: study.to_owned(), target: format!("#{study}") };
+        assert_eq!([&studies.rows[0][0], &studies.rows[1][0]], [&link("a"), &link("b")]);
+        let ids: Vec<&str> = page.sections.iter().map(|section| section.id.as_str()).collect();
+        assert_eq!(ids, ["studies", "a", "b", "c"]);
+        let [Block::Figure(figure), Block::Table(own)] = &page.sections[1].blocks[..] else { panic!("both") };
+        assert_eq!(csv(own), rows[..4]);
+        assert_eq!(figure.caption, "Values moved at 2: `22345678` Subject 2; 3: `32345678` Subject 3.");
+        let drawn: Vec<_> =
+            figure.chart.series.iter().map(|one| (one.name.as_str(), one.points.as_slice())).collect();
+        let errors = [(1.0, 0.5), (2.0, 1.0), (3.0, 1.5), (4.0, 2.0)];
+        assert_eq!(drawn, [("errors", &errors[..]), ("work", &errors.map(|(at, index)| (at, 0.5 * index)))]);
+        assert!(matches!(page.sections[2].blocks[..], [Block::Table(_)]), "nothing moved, nothing is drawn");
+    }
+
+    /// A study whose cases go from one point of cost and error to another.
+    fn moving(name: &str, arrows: &[[(f64, f64); 2]]) -> StudyComparison {
+        let arrow = |[before, after]: &[(f64, f64); 2]| Arrow {
+            case: "c".to_owned(),
+            before: *before,
+            after: *after,
+        };
+        StudyComparison { arrows: arrows.iter().map(arrow).collect(), ..study(name, 0.2, Some(0.3)) }
+    }
+
+    #[test]
+    fn a_case_is_an_arrow_where_its_cost_or_its_error_moved_visibly_and_both_can_be_drawn() {
+        let start = (100.0, 0.2);
+        for (end, is_drawn) in [
+            (start, false),
+            ((100.05, 0.2), false),
+            ((100.0, 0.20005), false),
+            ((100.2, 0.2), true),
+            ((100.0, 0.1), true),
+            ((50.0, 0.2), true),
+            ((0.0, 0.2), false),
+            ((100.0, f64::NAN), false),
+            ((f64::INFINITY, 0.2), false),
+            ((100.0, -0.1), false),
+        ] {
+            for pair in [[start, end], [end, start]] {
+                let figure = arrows_of(&moving("s", &[pair]));
+                assert_eq!(figure.is_some(), is_drawn, "{pair:?}");
+                let Some(figure) = figure else { continue };
+                let told: Vec<_> = figure
+                    .chart
+                    .series
+                    .iter()
+                    .map(|one| (one.name.as_str(), one.points.as_slice()))
+                    .collect();
+                assert_eq!(told, [("", &pair[..]), ("before", &pair[..1]), ("after", &pair[1..])]);
+            }
+        }
+        let moved = [start, (100.0, 0.1)];
+        let caption = |arrows: &[_]| arrows_of(&moving("s", arrows)).expect("one moved").caption;
+        assert_eq!(
+            caption(&[moved, [start; 2], moved]),
+            "2 of 3 cases moved; to the left is cheaper, down is better."
+        );
+        assert!(
+            caption(&[moved; MOST_ARROWS + 1]).starts_with("40 of 41 cases moved"),
+            "the others are in the tables"
+        );
+        // Six figures stand open, the worst first.
+        let page = |studies: usize| {
+            let name = |number: usize| format!("s{number}");
+            let all: Vec<_> = (0..studies).map(|number| moving(&name(number), &[moved])).collect();
+            comparison_page(&all, ["A", "B"])
+        };
+        let of = |page: &Page| {
+            let drawn =
+                page.sections.iter().find(|section| section.id == "arrows").expect("drawn").blocks.clone();
+            let Block::Figures(open) = &drawn[0] else { panic!("{drawn:?}") };
+            let names: Vec<String> = open.iter().map(|figure| figure.name.clone()).collect();
+            let rest = drawn.get(1).map(|block| match block {
+                Block::Details { summary, blocks } => (summary.clone(), blocks.len()),
+                other => panic!("{other:?}"),
+            });
+            (names, rest)
+        };
+        let six: Vec<String> = (0..6).map(|number| format!("arrows-s{number}")).collect();
+        assert_eq!(of(&page(6)), (six.clone(), None));
+        assert_eq!(of(&page(7)), (six.clone(), Some(("1 more study".to_owned(), 1))));
+        assert_eq!(of(&page(9)), (six, Some(("3 more studies".to_owned(), 3))));
+        let page = page(2);
+        assert_eq!((page.title.as_str(), page.lead.as_str()), ("A → B", "2 of 2 studies got worse."));
+        let Some(Block::Details { summary, .. }) = page.sections[2].blocks.first() else { panic!("details") };
+        assert_eq!(summary, "what moved, 2 rows");
+    }
+
+    #[test]
+    fn states_have_their_times_their_values_and_their_orders_side_by_side() {
+        let seconds = |median: f64, least: f64, most: f64| Seconds { median, least, most };
+        assert_eq!(time(Some(seconds(2.0, 1.5, 3.0))), Cell::Text("2 (1.5–3)".to_owned()));
+        assert_eq!(time(Some(seconds(2.0, 2.0, 2.0))), Cell::Text("2".to_owned()));
+        assert_eq!(time(None), Cell::missing("not timed in both"));
+        let moods =
+            [Trend::Same, Trend::Improved, Trend::Mixed, Trend::Regressed].map(|one| trend(one).show());
+        assert_eq!(moods, ["✓ same", "✓ improved", "✗ mixed", "✗ regressed"]);
+        let timed = [seconds(2.0, 1.0, 3.0), seconds(5.0, 4.0, 6.0)];
+        let mut one = StudyComparison { seconds: Some(timed), ..study("timed", 0.75, Some(1.0)) };
+        let behaviour = |order: Option<f64>, class: &'static str| Behaviour { class, order };
+        one.orders = vec![OrderChange {
+            series: "its series".to_owned(),
+            before: behaviour(Some(2.0), "asymptotic"),
+            after: behaviour(None, "divergent"),
+        }];
+        one.inputs = vec![InputChange {
+            key: "porosity".to_owned(),
+            before: String::new(),
+            after: "0.4".to_owned(),
+            cases: 3,
+        }];
+        let found = [study("other", 0.2, Some(0.2)), one, study("gone", 0.25, None)];
+        let tables = comparison_tables(&found, ["A", "B"]);
+        let titles: Vec<&str> = tables.iter().map(|table| table.title.as_str()).collect();
+        assert_eq!(titles, ["A → B", "inputs that differ", "what moved", "orders and classes that changed"]);
+        let told: Vec<Vec<String>> = tables.iter().map(csv).collect();
+        assert_eq!(
+            told[0],
+            [
+                "timed,regressed,same,2,1,0,0,0.25,2 (1–3),5 (4–6)",
+                "gone,same,same,1,0,1,0,,,",
+                "other,same,same,2,0,0,0,,,"
+            ]
+        );
+        assert_eq!(told[1], ["timed,porosity,,0.4,3"]);
+        let value = "GIMP cells=8 | pressure points l2 terzaghi T_v=1";
+        let moved = "\"1 value moved, in 1 case; largest relative change 2.50e-1\"";
+        let gone = "\"1 value is no longer measured, in 1 case\"";
+        assert_eq!(
+            told[2],
+            [format!("timed,{moved},{value},7.50e-1,1.00e0"), format!("gone,{gone},{value},2.50e-1,")]
+        );
+        assert_eq!(told[3], ["timed,its series,2.0,asymptotic,,divergent"]);
+        assert_eq!(
+            comparison_tables(&found[..1], ["A", "B"]).len(),
+            1,
+            "where nothing differs there are no details"
         );
     }
 }

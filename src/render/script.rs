@@ -191,5 +191,10 @@ mod tests {
         assert!(lines.len() > 1);
         assert_eq!(lines.join(" "), "one two three four");
         assert_eq!(wrap("", 5.0), Vec::<String>::new());
+        // Three letters of 0.636, and a space of 0.337 between two words.
+        let near = |text: &str, wanted: f64| (width(text) - wanted).abs() < 1e-12;
+        assert!(near("abd", 1.908) && near("T_v", 0.7 + 0.72 * 0.636) && near("abd abd", 4.153));
+        assert_eq!(wrap("abd abd", 4.16), ["abd abd"]);
+        assert_eq!(wrap("abd abd", 4.15), ["abd", "abd"]);
     }
 }

@@ -205,7 +205,8 @@ fn subtitle(pairings: &[Path<'_>], at: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{failed_at, records_of, solved};
+    use crate::case::planned::Tier;
     use crate::judge::paths::paths;
 
     const TIMES: [f64; 3] = [0.1, 0.5, 1.0];
@@ -276,5 +277,55 @@ mod tests {
         }
         let none = told([all([0.02, 0.0, 0.0]); 4]);
         assert!(none.starts_with("On 4 cells no pairing of law and continuity gives Xie & Leo's"), "{none}");
+    }
+
+    #[test]
+    fn pairings_are_drawn_on_the_finest_mesh_of_all_and_at_the_middle_time_and_the_steepest_has_the_triangle()
+    {
+        let text = "title = 't'\nscene = 'xie-leo'\noutput.time_factors = [0.1, 0.5, 1.0]\n[[sweep]]\n\
+                    method = ['TL-GIMP-SRI-patch']\nlaw = ['log-linear', 'porosity-dependent']\n\
+                    continuity = ['conservative', 'constant-porosity-gradient']\nintegrator = ['implicit']\n\
+                    cells = [2, 4, 8]\ntime_step = [{ growth = 0.5 }]\n";
+        let (study, mut records) = solved("s", text);
+        for record in &mut records {
+            let cells = record.case.cells as f64;
+            let is_wanted = law_and_continuity(&record.case) == ("log-linear", "conservative");
+            for row in record.errors.iter_mut().filter(|row| row.reference == "xie-leo") {
+                let size = if is_wanted { 1.0 / (cells * cells) } else { 1.0 / cells };
+                row.value = if row.quantity == Quantity::Settlement {
+                    -row.time_factor
+                } else {
+                    size * row.time_factor
+                };
+            }
+            // The steepest of all would be one with two meshes.
+            if law_and_continuity(&record.case) == PRINTED {
+                record.errors.iter_mut().for_each(|row| row.value /= cells.powi(3));
+                record.status = if record.case.cells < 8 { Status::Ok } else { failed_at(1) };
+            }
+        }
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let found = pairings(&results);
+        let common = common_of(&found).expect("four pairings");
+        assert_eq!((found.len(), common.cells, common.middle), (4, 4, 0.5));
+        assert_eq!(common.times, TIMES);
+        assert!(common_of(&found[..1]).is_none() && common_of(&[]).is_none(), "one is compared with nothing");
+        let own = |figure: &Figure, name: &str| {
+            figure.chart.series.iter().find(|one| one.name == name).expect("drawn").points.clone()
+        };
+        let [time, mesh] = [over_time(&found, &common), over_mesh(&found, &common)];
+        assert_eq!(time.chart.subtitle.as_deref(), Some("TL-GIMP-SRI-patch, 4 cells"));
+        assert_eq!(mesh.chart.subtitle.as_deref(), Some("TL-GIMP-SRI-patch, T_v = 0.5"));
+        assert_eq!(own(&time, "log-linear, conservative"), TIMES.map(|time| (time, -time)));
+        let cells = [2.0, 4.0, 8.0];
+        assert_eq!(own(&mesh, "log-linear, conservative"), cells.map(|one| (1.0 / one, 0.5 / (one * one))));
+        assert_eq!(
+            own(&mesh, "log-linear, constant-porosity-gradient"),
+            cells.map(|one| (1.0 / one, 0.5 / one))
+        );
+        assert_eq!(own(&mesh, "porosity-dependent, constant-porosity-gradient (as printed)").len(), 2);
+        let triangle = SlopeTriangle { slope: 2.0, beside: "log-linear, conservative".to_owned() };
+        assert_eq!(mesh.chart.triangles, [triangle]);
+        assert_eq!(time.chart.rules, [Rule { at: 0.0, label: "Xie & Leo".to_owned() }]);
     }
 }

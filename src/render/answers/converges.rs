@@ -291,3 +291,98 @@ fn figure(refined: &Refined<'_>) -> Option<Figure> {
     "readme-mesh".clone_into(&mut figure.name);
     Some(figure)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{records_of, study_of};
+    use crate::case::planned::Tier;
+    use crate::record::{Record, WallSample};
+
+    const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+        method = ['GIMP', 'GC-SRI-patch', 'MPM']\nintegrator = ['implicit']\ncells = [5, 10, 20]\n[[sweep]]\n\
+        method = ['MPM']\nintegrator = ['implicit']\ncells = [40]\n";
+
+    /// Records with errors of second order, by their sizes on twenty cells: pressure, effective stress and settlement of
+    /// the three methods, and one run's seconds.
+    fn records(errors: [[f64; 3]; 3]) -> Vec<Record> {
+        let mut records = records_of(STUDY);
+        for record in &mut records {
+            let name = record.case.method.to_string();
+            let place = ["GIMP", PAPERS, "MPM"].iter().position(|one| *one == name).expect("one of them");
+            let [pressure, stress, settlement] = errors[place];
+            let coarse = 400.0 / (record.case.cells * record.case.cells) as f64;
+            for row in &mut record.errors {
+                row.value = coarse
+                    * match row.quantity {
+                        Quantity::Pressure if row.sample == Sample::Points => pressure,
+                        Quantity::EffectiveStress => stress,
+                        Quantity::Settlement => -settlement,
+                        _ => 1e-9,
+                    };
+            }
+            let of_run = |seconds: f64| WallSample { seconds, ..WallSample::default() };
+            record.wall = [[9.0, 8.0], [0.3, 0.2], [0.1, 0.4]][place].map(of_run).to_vec();
+        }
+        records
+    }
+
+    fn with<T>(records: &[Record], told: impl FnOnce(&Refined<'_>) -> T) -> T {
+        let study = study_of("s", STUDY);
+        let results = StudyResults::new(&study, records, Tier::Full);
+        told(&Refined::of(&results, "small strain", |_| true).expect("three methods"))
+    }
+
+    #[test]
+    fn another_method_is_advised_where_its_largest_error_on_the_finest_mesh_of_all_is_half_as_large() {
+        let advice = |own: [f64; 3], other: [f64; 3]| {
+            with(&records([[0.9; 3], own, other]), |refined| {
+                assert_eq!(
+                    refined.finest_cells(),
+                    20,
+                    "that of the paper's method, though another ran on 40"
+                );
+                better(refined)
+            })
+        };
+        let told = " Take `MPM` instead: the largest of its errors on 20 cells is 10.0 %, against 20.0 %.";
+        for own in [[0.2, 0.01, 0.1], [0.1, 0.2, 0.01], [0.01, 0.1, 0.2]] {
+            for other in [[0.1, 0.05, 0.01], [0.05, 0.1, 0.0], [0.0, 0.05, 0.1]] {
+                assert_eq!(advice(own, other).as_deref(), Some(told), "{own:?} {other:?}");
+                assert_eq!(advice(own, other.map(|error| 1.02 * error)), None, "it is not half as large");
+            }
+        }
+        assert_eq!(advice([0.1; 3], [f64::NAN, 0.01, 0.01]), None, "no number is no small one");
+    }
+
+    #[test]
+    fn the_cost_of_a_percent_is_that_of_the_coarsest_mesh_within_it_the_cheapest_method_first() {
+        let told = |own: f64, other: f64| with(&records([[0.9; 3], [own; 3], [other; 3]]), cost);
+        assert_eq!(
+            told(0.01, 0.02),
+            " A pressure within 1 % at T_v = 0.1 costs, each timed once beside others: `MPM` 100 ms on 40 cells, \
+             `GC-SRI-patch` 200 ms on 20 cells."
+        );
+        assert_eq!(
+            told(0.002, 0.05),
+            " A pressure within 1 % at T_v = 0.1 costs, each timed once beside others: `GC-SRI-patch` 200 ms on 10 cells."
+        );
+        assert_eq!(told(0.011, 0.05), " No run has an error of the pressure below 1 % at T_v = 0.1.");
+    }
+
+    #[test]
+    fn the_paper_s_method_leads_the_table_and_the_others_follow_by_their_largest_error() {
+        let [first, others] = [[0.5, 0.3], [0.3, 0.5]].map(|[one, other]| {
+            with(&records([[one; 3], [0.01, 0.02, 0.03], [0.1, other, 0.1]]), |refined| table(&[refined]))
+        });
+        let names = |table: &Table| table.rows.iter().map(|row| row[0].show()).collect::<Vec<_>>();
+        assert_eq!(names(&first), ["• GC-SRI-patch, the paper's", "MPM", "GIMP"]);
+        assert_eq!(names(&others), ["• GC-SRI-patch, the paper's", "GIMP", "MPM"]);
+        // On ten cells four times the error, each under its quantity.
+        let errors =
+            ["2.00, 4.00e\u{2011}2", "2.00, 4.00e\u{2011}9", "2.00, 8.00e\u{2011}2", "2.00, 1.20e\u{2011}1"];
+        assert_eq!(first.rows[0][1..], errors.map(Cell::from));
+        let heads: Vec<&str> = first.columns.iter().map(|column| column.header.as_str()).collect();
+        assert_eq!(heads, ["method", "p, points", "p, centres", "σ′, points", "settlement"]);
+    }
+}

@@ -86,6 +86,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::case::Solver;
+    use crate::judge::comparison::work_precision::Cheapest;
     use crate::measure::statistics::spread;
     use crate::record::Record;
     use oedometer_mpm::method::Method;
@@ -137,9 +138,25 @@ mod tests {
             told.contains(&like.name) && !told.contains("Kratos") && !told.contains("on 20 cells"),
             "{told}"
         );
+        assert!(told.ends_with(". The figure shows the time that an error costs."), "{told}");
         let good = [with(&|_| (), 1e-9)];
-        let told = equal_cells(&precision(&good, &errors));
-        assert!(told.is_some_and(|told| told.contains("no other program has a smaller pressure error")));
+        assert_eq!(
+            equal_cells(&precision(&good, &errors)).as_deref(),
+            Some(
+                "On equal cells and with like time steps no other program has a smaller pressure error than `GC-SRI-patch`."
+            )
+        );
+        let run = |seconds: f64| TimedRun { wall: spread(&[seconds]).expect("one"), ..found.runs[3].clone() };
+        let way = |tolerance: f64, seconds: Option<f64>| Cheapest { tolerance, run: seconds.map(run) };
+        let cheapest = vec![way(1e-2, Some(0.02)), way(1e-3, None), way(1e-4, Some(3.0))];
+        let label = records[3].case.label();
+        assert_eq!(
+            sentence(&WorkPrecision { cheapest, ..precision(&records, &errors) }),
+            format!(
+                "Cost of an error of the pressure: 1.00 % costs 20.0 ms (`{label}`); no timed run is within 0.10 %; 0.0100 % \
+                 costs 3.00 s (`{label}`)."
+            )
+        );
         assert_eq!(
             equal_cells(&precision(&others[..2], &errors)),
             None,

@@ -125,19 +125,17 @@ fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::solved;
+    use crate::case::Solver;
     use crate::case::planned::Tier;
     use crate::judge::comparison::twins::Situation;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use oedometer_mpm::method::Method;
 
     #[test]
     fn double_point_runs_are_compared_by_situation_and_nothing_is_said_without_pairs() {
         let text = "title = 't'\nscene = 'terzaghi'\n[output]\ntime_factors = [0.1]\n[[sweep]]\nmethod = ['GC-SRI-patch']\n\
                     integrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = [1, 2]\n";
-        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        let records = records_of(text);
+        let (study, records) = solved("s", text);
         let results = [StudyResults::new(&study, &records, Tier::Full)];
         // Any key of one and two will do.
         let key = Key::named("points_per_cell", "sweep").expect("a key");
@@ -147,8 +145,35 @@ mod tests {
         assert!(sentence.starts_with(start), "{sentence}");
         let end = "All of them reached their last output; no double-point run had a pressure burst.";
         assert!(sentence.contains(end), "{sentence}");
+        let Some(Block::Table(table)) = section.blocks.get(1) else { panic!("then a table") };
+        let [row] = &table.rows[..] else { panic!("one situation: {table:?}") };
+        let [Cell::Number(least), Cell::Number(median), Cell::Number(largest)] = &row[3..6] else {
+            panic!("{row:?}")
+        };
+        assert!(least < median && median < largest, "{row:?}");
+        assert_eq!([&row[2], &row[6], &row[7]], [&Cell::Count(2), &Cell::Count(0), &Cell::Count(0)]);
+        assert_eq!(table.notes[1], "in no double-point run did the pressure exceed what the load can cause");
         let dimensions = Key::named("dimensions", "column").expect("a key");
         assert!(compare(&results, dimensions).is_none());
+    }
+
+    #[test]
+    fn bursts_are_named_and_a_row_of_several_methods_says_whether_others_have_rows_of_their_own() {
+        let bursts = ["a", "b"].map(str::to_owned);
+        assert_eq!(burst_note(&bursts[..1]), "1 double-point run had a pressure burst: a");
+        assert_eq!(burst_note(&bursts), "2 double-point runs had a pressure burst: a; b");
+        let row = |situation: Situation, method: Option<&str>| TwinsOfSituation {
+            situation,
+            method: method.map(|name| Solver::Own(Method::named(name).expect("a method"))),
+            pairs: 1,
+            ratios: None,
+            failed: [0; 2],
+            cost: None,
+        };
+        let (usual, waves) = (Situation::Usual, Situation::Waves);
+        let told = [row(usual, Some("MPM")), row(usual, None), row(waves, None)];
+        assert_eq!(others(&told, &told[1]), "every other method");
+        assert_eq!(others(&told, &told[2]), "every method", "of its own situation there is no other row");
     }
 
     #[test]

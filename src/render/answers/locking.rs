@@ -127,7 +127,9 @@ fn table(sweep: &StiffnessSweep, rows: &[&SweepRow]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::runner::solved;
     use crate::case::Solver;
+    use crate::case::planned::Tier;
     use oedometer_mpm::method::Method;
 
     #[test]
@@ -226,10 +228,44 @@ mod tests {
         let told: Vec<[String; 2]> = shown.rows.iter().map(|row| [words(&row[0]), words(&row[1])]).collect();
         let methods: Vec<&str> = told.iter().map(|row| row[0].as_str()).collect();
         assert_eq!(methods, ["GIMP", "GIMP-SRI", "MPM", "VP"], "those that keep it first: {told:?}");
+        let none: Vec<&SweepRow> = all.iter().copied().filter(|row| row.method.to_string() == "VP").collect();
+        assert_eq!(
+            sentence(&sweep, &none, 0.1),
+            "Of 1 method on 4 cells, at T_v = 0.1, 0 keep displacement and pressure within 10 % up to ν = 0.49; lost from ν = 0.4 \
+             on (off by up to 50.0 %): `VP`."
+        );
         for (row, word) in
             told.iter().zip(["kept", "lost from ν = 0.49", "lost from ν = 0.4", "lost from ν = 0.4"])
         {
             assert!(row[1].ends_with(word), "{told:?}");
         }
+    }
+
+    #[test]
+    fn of_several_studies_the_one_with_most_methods_answers_and_at_its_last_time() {
+        let of = |name: &str, methods: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\nmethod = {methods}\n\
+                 integrator = ['implicit']\ncells = [2]\npoissons_ratio = [0.25, 0.3, 0.4]\ntime_step = [{{ growth = 0.5 }}]\n"
+            );
+            solved(name, &text)
+        };
+        let all =
+            [of("one", "['GIMP']"), of("two", "['GIMP', 'GIMP-SRI']"), of("as-many", "['MPM', 'GIMP']")];
+        let told = |places: &[usize]| {
+            let results: Vec<StudyResults<'_>> = places
+                .iter()
+                .map(|place| StudyResults::new(&all[*place].0, &all[*place].1, Tier::Full))
+                .collect();
+            let section = answer(&results).expect("an answer")?;
+            let Some(Block::Paragraph(text)) = section.blocks.first() else { panic!("a sentence first") };
+            Some(text.clone())
+        };
+        for places in [&[0, 1, 2][..], &[1, 0], &[1, 2, 0]] {
+            let text = told(places).expect("who locks");
+            assert!(text.starts_with("Of 2 methods on 2 cells, at T_v = 0.2, "), "{text}");
+            assert!(text.ends_with(" Evidence: [`two`](studies/two.html)."), "{text}");
+        }
+        assert_eq!(told(&[]), None);
     }
 }

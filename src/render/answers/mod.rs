@@ -209,10 +209,11 @@ fn verdict(results: &[StudyResults<'_>]) -> Callout {
         0 => "No expectations".to_owned(),
         _ => format!("{} of {judged} expectations met", results.iter().map(StudyResults::met).sum::<usize>()),
     };
-    let (studies, runs) = (count_of(results.len(), "study", "studies"), sum(|one| one.records.len()));
-    let mut text = format!("**{met}** in {studies} of {runs} runs.");
+    let studies = count_of(results.len(), "study", "studies");
+    let runs = count_of(sum(|one| one.records.len()), "run", "runs");
+    let mut text = format!("**{met}** in {studies} of {runs}.");
     if unsound > 0 {
-        let _ = write!(text, " {unsound} checks of runs fail.");
+        let _ = write!(text, " {}.", count_of(unsound, "check of runs fails", "checks of runs fail"));
     }
     if !failing.is_empty() {
         let _ = write!(text, " Not as expected: `{}`.", failing.join("`, `"));
@@ -243,9 +244,13 @@ fn what_changed(changes: Option<&[StudyComparison]>) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::runner::solved;
+    use crate::case::planned::Tier;
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
+    use crate::record::Record;
     use crate::render::table::{Cell, columns};
+    use crate::study::check::Study;
 
     #[test]
     fn a_report_from_records_alone_says_so() {
@@ -279,10 +284,140 @@ mod tests {
         let changes = [("worse", 0.3), ("better", 0.1)]
             .map(|(name, error)| StudyComparison::of(name, &state(0.2), &state(error)));
         let Some(section) = what_changed(Some(&changes)) else { panic!("they differ") };
-        let told = format!("{section:?}");
-        assert!(told.contains("Against the golden values 2 studies changed, of which 1 got worse"), "{told}");
-        assert!(told.contains("regressed") && told.contains("improved"), "{told}");
+        let [Block::Paragraph(told), Block::Table(table), ..] = &section.blocks[..] else {
+            panic!("{section:?}")
+        };
+        assert_eq!(told, "Against the golden values 2 studies changed, of which 1 got worse.");
+        assert_eq!(table.title, "the golden values → this report");
+        let trends: Vec<_> = table.rows.iter().map(|row| [row[0].show(), row[1].show()]).collect();
+        assert_eq!(trends, [["worse", "✗ regressed"], ["better", "✓ improved"]]);
         assert!(format!("{:?}", what_changed(Some(&[]))).contains("Nothing"));
         assert!(what_changed(None).is_none());
+    }
+
+    /// A small study with expectations of which some are met.
+    fn study(name: &str, bounds: &[f64]) -> (Study, Vec<Record>) {
+        let expect =
+            |below: &f64| format!("[[expect_case]]\ntime_factor = 0.1\nerror = {{ below = {below:e} }}\n");
+        let text =
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                    integrator = ['implicit']\ncells = [4]\n"
+                .to_owned()
+                + &bounds.iter().map(expect).collect::<String>();
+        solved(name, &text)
+    }
+
+    #[test]
+    fn the_head_of_the_page_counts_what_is_met_and_names_what_is_not_and_few_studies() {
+        let (met, unmet, bare) =
+            (study("met", &[0.9, 0.8]), study("unmet", &[0.9, 1e-9]), study("bare", &[]));
+        let of = |all: &[(&(Study, Vec<Record>), usize)]| {
+            let results = |((study, records), wrong): &(&'_ (Study, Vec<Record>), usize)| {
+                let mut one = StudyResults::new(study, records, Tier::Full);
+                one.unsound = vec![("a case".to_owned(), "why".to_owned()); *wrong];
+                let (mood, text) = verdict(&[one]);
+                format!("{mood:?} {text}")
+            };
+            all.iter().map(results).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            of(&[(&met, 0), (&unmet, 0), (&met, 2), (&bare, 0), (&bare, 1)]),
+            [
+                "Pass **2 of 2 expectations met** in 1 study of 1 run.",
+                "Fail **1 of 2 expectations met** in 1 study of 1 run. Not as expected: `unmet`.",
+                "Fail **2 of 2 expectations met** in 1 study of 1 run. 2 checks of runs fail. Not as expected: `met`.",
+                "Note **No expectations** in 1 study of 1 run.",
+                "Fail **No expectations** in 1 study of 1 run. 1 check of runs fails. Not as expected: `bare`.",
+            ]
+        );
+        let all: Vec<_> = ["a", "b", "c", "d", "e", "f", "g"].map(|name| study(name, &[])).into();
+        for (count, links, setting) in [(1, 1, true), (2, 2, false), (6, 6, false), (7, 0, false)] {
+            let results: Vec<_> = all[..count]
+                .iter()
+                .map(|(study, records)| StudyResults::new(study, records, Tier::Full))
+                .collect();
+            let making = Making::default();
+            let page = answer_page(&Answers { results: &results, changes: None, making: &making, race: &[] });
+            let lead = page.expect("a page").lead;
+            let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
+            assert_eq!(listed.matches("](studies/").count(), links, "{lead}");
+            assert_eq!(head.starts_with("*H* = 1 m"), setting, "what one study is about: {lead}");
+        }
+    }
+
+    #[test]
+    fn the_program_that_made_most_records_is_told_and_that_there_are_several() {
+        let (study, records) = study("s", &[]);
+        let with = |version: &str, commit: &str, dirty: bool| {
+            let mut record = records[0].clone();
+            let text = |word: &str| word.to_owned();
+            record.provenance = Provenance {
+                version: text(version),
+                sources: text("abc"),
+                commit: text(commit),
+                dirty,
+                compiler: text("rustc"),
+                target: text("x86"),
+                profile: text("release"),
+            };
+            record
+        };
+        let making = Making {
+            date: "DAY".to_owned(),
+            processor: "CPU".to_owned(),
+            command: "it".to_owned(),
+            ..Making::default()
+        };
+        let told = |records: &[Record], making: &Making| {
+            making.words(&[StudyResults::new(&study, records, Tier::Full)])
+        };
+        let end = "· rustc, release profile · DAY · CPU · rendered in 0.0 s from 1 records · `it`";
+        assert_eq!(told(&[with("1", "", true)], &making), format!("oedometer 1 · sources `abc` {end}"));
+        assert_eq!(
+            told(&[with("1", "f0", false)], &making),
+            format!("oedometer 1 · commit `f0`, sources `abc` {end}")
+        );
+        let changed = format!("oedometer 1 · commit `f0` with changes, sources `abc` {end}");
+        assert_eq!(told(&[with("1", "f0", true)], &making), changed);
+        let more = " 1 case of the full tier not run; `oedometer report --tier full` runs it.";
+        assert_eq!(told(&[with("1", "f0", true)], &Making { left_out: 1, ..making.clone() }), changed + more);
+        let several = told(&[with("1", "", false), with("2", "", false), with("2", "", false)], &making);
+        assert!(several.starts_with("oedometer 2 ·"), "{several}");
+        assert!(
+            several.ends_with(
+                " The records are of more than one program: 1 of version 1 and sources abc, 2 of version 2 and sources abc."
+            ),
+            "{several}"
+        );
+    }
+
+    #[test]
+    fn of_equals_the_first_study_answers_the_race_none_and_every_study_is_linked_once() {
+        let all = ["a", "b", "c", "d"].map(|name| study(name, &[]));
+        let found = |worths: [Option<usize>; 4], race: usize| {
+            let mut studies: Vec<Study> = all.iter().map(|(study, _)| study.clone()).collect();
+            studies[race].is_race = true;
+            let results: Vec<_> =
+                studies.iter().map(|study| StudyResults::new(study, &[], Tier::Full)).collect();
+            let place =
+                |one: &StudyResults<'_>| results.iter().position(|other| other.study.name == one.study.name);
+            study_with_most(&results, |one| Some((worths[place(one)?]?, one.study.name.clone())))
+                .map(|(one, found)| (one.study.name.clone(), found))
+        };
+        let is = |name: &str| Some((name.to_owned(), name.to_owned()));
+        assert_eq!(found([Some(1), Some(3), Some(3), Some(2)], 3), is("b"));
+        assert_eq!(found([Some(3), Some(1), Some(3), None], 3), is("a"));
+        assert_eq!(found([Some(3), None, Some(1), Some(4)], 0), is("d"));
+        assert_eq!(found([Some(3), None, None, None], 0), None);
+        let section = CHANGES.told("So it is.", ["b", "a_x", "b"], vec![Block::Code("c".to_owned())]);
+        let text = "So it is. Evidence: [`b`](studies/b.html), [`a_x`](studies/a_x.html).".to_owned();
+        assert_eq!(
+            section,
+            Section::new(
+                "What changed?",
+                "changes",
+                vec![Block::Paragraph(text), Block::Code("c".to_owned())]
+            )
+        );
     }
 }

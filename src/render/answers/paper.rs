@@ -133,10 +133,9 @@ pub(crate) fn largest_error(record: &Record, reference: &str) -> Option<(f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{failed_at, solved};
     use crate::case::planned::Tier;
     use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     #[test]
     fn only_the_papers_column_is_said_to_reproduce_the_paper() {
@@ -145,9 +144,7 @@ mod tests {
                 "title = 't'\nscene = '{scene}'\n{inputs}\n[output]\ntime_factors = [0.1]\n[[sweep]]\n\
                  method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n"
             );
-            let source = StudySource { name: "s.toml".to_owned(), text: text.clone() };
-            let study = Study::check(&source).expect("a sound study");
-            let records = records_of(&text);
+            let (study, records) = solved("s", &text);
             let results = [StudyResults::new(&study, &records, Tier::Full)];
             answer(&results).expect("an answer").is_some()
         };
@@ -156,5 +153,81 @@ mod tests {
         assert!(!answered("terzaghi", "[material]\nyoungs_modulus = 2e6"));
         assert!(!answered("terzaghi", "[column]\nheight = 5.0"));
         assert!(!answered("xie-leo", "[column]\nload = 100e3"));
+    }
+
+    /// A study with the pressure errors of the paper's method on ten cells, by time; all others are larger.
+    fn with_errors(name: &str, head: &str, outputs: &str, methods: &str) -> (Study, Vec<Record>) {
+        let text = format!(
+            "title = 't'\n{head}\noutput.time_factors = {outputs}\n[[sweep]]\nmethod = {methods}\n\
+             integrator = ['implicit']\ncells = [8, 10]\ntime_step = [{{ growth = 0.3 }}]\n"
+        );
+        let (study, mut records) = solved(name, &text);
+        let own = study.references[0].name();
+        for record in &mut records {
+            let is_papers = record.case.cells == 10 && record.case.method.to_string() == PAPERS;
+            for row in &mut record.errors {
+                let is_meant = (row.quantity, row.sample) == (Quantity::Pressure, Sample::Points);
+                let error = if row.time_factor == 0.2 { -0.03 } else { 0.02 };
+                row.value = if is_papers && is_meant && row.reference == own { error } else { 0.7 };
+            }
+        }
+        (study, records)
+    }
+
+    #[test]
+    fn the_figures_and_the_sentence_are_of_the_papers_sound_run_with_most_outputs() {
+        let methods = "['MPM', 'GC-SRI-patch', 'GIMP', 'GIMP-SRI', 'GIMP-mean']";
+        let small = |name: &str, outputs: &str| with_errors(name, "scene = 'terzaghi'", outputs, methods);
+        let mut all = [
+            small("few", "[0.2]"),
+            small("most", "[0.1, 0.2]"),
+            small("as-many", "[0.2, 0.3]"),
+            with_errors("large", "scene = 'xie-leo'\ncolumn.load = 200e3", "[0.1]", "['GC-SRI-patch']"),
+        ];
+        let failed = failed_at(1);
+        for record in all[1].1.iter_mut().filter(|one| one.case.method.to_string() == "MPM") {
+            record.status = failed.clone();
+        }
+        let answered = |all: &[(Study, Vec<Record>)]| {
+            let results: Vec<_> =
+                all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
+            answer(&results).expect("an answer")
+        };
+        let section = answered(&all).expect("answered");
+        let [Block::Paragraph(sentence), Block::Figures(figures)] = &section.blocks[..] else {
+            panic!("two")
+        };
+        assert_eq!(
+            *sentence,
+            "Figs 3a and 3b: on 10 cells the pressure of `GC-SRI-patch` is within 3.00 % of Terzaghi's solution with \
+             compressible water at every output (relative L_2 error at the points; the largest at T_v = 0.2). Figs 4a and \
+             4b: on 10 cells the pressure of `GC-SRI-patch` is within 2.00 % of the exact large-strain solution of its own \
+             equations at every output (relative L_2 error at the points; the largest at T_v = 0.1). Evidence: \
+             [`most`](studies/most.html), [`large`](studies/large.html)."
+        );
+        let told = |figure: &Figure| {
+            let series =
+                figure.chart.series.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" | ");
+            format!("{}: {}: {series}", figure.name, figure.chart.title)
+        };
+        let told: Vec<String> = figures.iter().map(told).collect();
+        assert_eq!(
+            told[..3],
+            [
+                "readme-fig-3a: Fig. 3a: Isochrones, GC-SRI-patch: theory | T_v = 0.1 | theory | T_v = 0.2",
+                // That of MPM failed, and three are enough.
+                "readme-fig-3b: Fig. 3b: Degree of consolidation: theory | GC-SRI-patch | GIMP | GIMP-SRI",
+                "readme-fig-4a: Fig. 4a: Isochrones, GC-SRI-patch: theory | T_v = 0.100, U = 36 %",
+            ]
+        );
+        assert_eq!(told[3], "readme-fig-4b: Fig. 4b: Degree of consolidation: theory | GC-SRI-patch");
+        assert!(figures.iter().all(|figure| figure.chart.size == QUARTER));
+        for (_, records) in &mut all {
+            records.retain(|record| record.case.method.to_string() != PAPERS || record.case.cells != 10);
+        }
+        assert_eq!(answered(&all), None, "on other meshes and with other methods nothing is reproduced");
+        let mut lost = [with_errors("lost", "scene = 'terzaghi'", "[0.1]", "['GC-SRI-patch']")];
+        lost[0].1.iter_mut().for_each(|record| record.status = failed.clone());
+        assert_eq!(answered(&lost), None, "nor by a run that failed");
     }
 }

@@ -349,6 +349,8 @@ fn times(ratio: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::runner::study_of;
+    use oedometer_convergence::Class;
 
     /// A grid of the paper's method and two others, by rows of scores that scatter by a hundredth; infinite: failed, NaN:
     /// not applicable.
@@ -410,5 +412,170 @@ mod tests {
     fn shares_have_two_digits() {
         let told = [1e-6, 8.4e-5, 0.0056, 0.0123, 0.156, 4.38, 36.0].map(in_percent);
         assert_eq!(told, ["<0.001", "0.008", "0.56", "1.2", "16", "438", "4e3"]);
+    }
+
+    fn cell(name: &'static str) -> RaceCell {
+        RaceCell {
+            name,
+            errors: [Some(0.02), None, None],
+            levels: Vec::new(),
+            order: None,
+            class: None,
+            cost: [None; 2],
+            oscillation: None,
+            locking: None,
+            step_ratio: None,
+            asymmetry: None,
+            score: Some(0.02),
+            scatter: None,
+            ended: Ended::Well,
+            complaint: None,
+        }
+    }
+
+    #[test]
+    fn a_cell_of_the_errors_is_shaded_by_its_ratio_and_says_why_it_has_none() {
+        let shown = |change: &dyn Fn(&mut RaceCell), ratio: Option<f64>| {
+            let mut cell = cell("a");
+            change(&mut cell);
+            let target = "t".to_owned();
+            match shaded(&cell, target, || error_shown(&cell, ratio)) {
+                Cell::Shaded { shade, words, value, title, .. } => (shade, words, value, title),
+                other => panic!("{other:?}"),
+            }
+        };
+        let is = |shade: Shade, words: &str, value: Option<f64>, title: &str| {
+            (shade, words.to_owned(), value, format!("a: {title}"))
+        };
+        let best = "1.0 times the best of the row";
+        assert_eq!(shown(&|_| (), Some(1.0)), is(Shade::Best, "2.0", Some(0.02), best));
+        let scatter = "2.5 times the best of the row; half the step changes it by 3.10 %";
+        let scattered = shown(&|cell| cell.scatter = Some(0.031), Some(2.5));
+        assert_eq!(scattered, is(Shade::Middling, "2.0", Some(0.02), scatter));
+        let at_rest = shown(&|cell| (cell.errors, cell.score) = ([None; 3], Some(3.2e-9)), Some(1.0));
+        assert_eq!(at_rest, is(Shade::Best, "3.20e-9", Some(3.2e-9), best));
+        // The critical step is told as a ratio, unless errors were measured.
+        for (errors, words) in [([None; 3], "0.5"), ([None, None, Some(0.02)], "2.0")] {
+            let step = shown(&|cell| (cell.errors, cell.step_ratio) = (errors, Some(0.51)), Some(1.0));
+            assert_eq!(step, is(Shade::Best, words, Some(0.02), best));
+        }
+        assert_eq!(shown(&|_| (), None), is(Shade::Failed, "2.0", Some(0.02), "no usable result"));
+        assert_eq!(shown(&|cell| cell.score = None, None), is(Shade::Failed, "✗", None, "no usable result"));
+        let failed =
+            shown(&|cell| cell.ended = Ended::Failed("unstable", "on 8 cells".to_owned()), Some(1.0));
+        assert_eq!(failed, is(Shade::Failed, "✗", None, "unstable, on 8 cells"));
+        let refused = shown(&|cell| cell.ended = Ended::NotApplicable("no plate".to_owned()), Some(1.0));
+        assert_eq!(refused, is(Shade::Empty, "n/a", None, "n/a, no plate"));
+    }
+
+    #[test]
+    fn orders_and_costs_have_shades_of_their_own() {
+        for (order, class, words, shade) in [
+            (Some(1.7), Class::Asymptotic, "1.7", Shade::Best),
+            (Some(1.69), Class::Superconvergent, "1.7", Shade::Good),
+            (Some(1.3), Class::PreAsymptotic, "1.3~", Shade::Good),
+            (Some(1.29), Class::Contaminated, "1.3~", Shade::Middling),
+            (Some(0.7), Class::Asymptotic, "0.7", Shade::Middling),
+            (Some(0.69), Class::Asymptotic, "0.7", Shade::Poor),
+            (Some(f64::NAN), Class::Asymptotic, "NaN", Shade::Poor),
+            (None, Class::Divergent, "–", Shade::Empty),
+        ] {
+            let title = format!("a: {}", class.name());
+            let own = RaceCell { order, class: Some(class), ..cell("a") };
+            let (found, told, value, said) = order_shown(&own);
+            assert_eq!((found, told.as_str(), said), (shade, words, title));
+            assert!(value.map(f64::to_bits) == order.map(f64::to_bits), "{value:?}");
+        }
+        assert_eq!(order_shown(&cell("a")).3, "a: not measured");
+        let study = study_of("race-column", RACED);
+        let costs = [Some(2.5), Some(2.0), Some(2.6), Some(5.0), Some(5.1), Some(25.1), None];
+        let mut contenders = costs.map(|cost| RaceCell { cost: [cost, None], ..cell("a") }).to_vec();
+        contenders[1].cost[1] = Some(0.5);
+        let row = RaceRow { study: &study, group: "column", cells: 8, contenders };
+        let shown: Vec<Shown> = row.contenders.iter().map(|cell| cost_shown(cell, &row)).collect();
+        // A quarter more than the least is as good.
+        let shades =
+            [Shade::Best, Shade::Best, Shade::Good, Shade::Good, Shade::Middling, Shade::Poor, Shade::Empty];
+        assert_eq!(shown.iter().map(|one| one.0).collect::<Vec<_>>(), shades);
+        assert_eq!(shown[0].1, "2.50 s");
+        assert_eq!((shown[1].2, shown[1].3.as_str()), (Some(2.0), "a: 0.1 % 500 ms"));
+        assert_eq!((shown[6].1.as_str(), shown[6].3.as_str()), ("–", "a: 0.1 % not reached"));
+        // Forces do the power of the stresses where the stiffness is symmetric.
+        let power = |all: [Option<[f64; 2]>; 4]| {
+            let contenders = ["a", "b", "c", "d"].into_iter().zip(all);
+            let contenders =
+                contenders.map(|(name, asymmetry)| RaceCell { asymmetry, ..cell(name) }).collect();
+            of_the_power(&[RaceRow { contenders, ..row.clone() }])
+        };
+        let told = power([Some([1e-12, 0.3]), Some([2e-11, 1e-11]), None, Some([1e-10, 9e-11])]);
+        assert_eq!(
+            told.as_deref(),
+            Some(
+                "**Power**: on the lattice of a column the forces of the skeleton do the power of its stresses, to \
+                 round-off, in 2 of 3 contenders, those of the water in 2 (`b`, `d`)."
+            )
+        );
+        assert_eq!(power([None; 4]), None);
+    }
+
+    const RACED: &str = "title = 'Race: a column'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+        method = ['race']\nintegrator = ['implicit']\ncells = [4]\n";
+
+    #[test]
+    fn contenders_that_are_as_good_are_named_and_what_the_step_changes_is_counted() {
+        let alike = |count: usize| Grid {
+            contenders: ["a", "b", "c", "d", "e", "f", "g"][..count]
+                .iter()
+                .copied()
+                .map(str::to_owned)
+                .collect(),
+            rows: ["rest-a", "rest-b", "own"]
+                .map(|situation| GridRow {
+                    situation: situation.to_owned(),
+                    group: situation.split('-').next().unwrap_or_default().to_owned(),
+                    scores: vec![Score::Value { value: 0.1, scatter: 0.0 }; count],
+                })
+                .to_vec(),
+        };
+        let told =
+            |grid: &Grid, group: &str, places: &[usize]| best_of_group(grid, group, places).expect("a best");
+        let best = "**Rest under weight** (2 situations): `a`, at most 1.0 times the best error";
+        assert_eq!(told(&alike(1), "rest", &[0, 1]), format!("{best}."));
+        assert_eq!(told(&alike(6), "rest", &[0, 1]), format!("{best}, tied with `b`, `c`, `d`, `e`, `f`."));
+        let mut grid = alike(7);
+        assert_eq!(told(&grid, "rest", &[0, 1]), format!("{best}, tied with `b`, `c`, `d`, `e`, 2 others."));
+        assert!(
+            told(&grid, "own", &[2]).starts_with("**Own** (1 situation): "),
+            "a group of somebody else's"
+        );
+        // One has a result in both, though a worse one; then none has.
+        grid.rows[0].scores[..6].fill(Score::Failed);
+        grid.rows[1].scores[6] = Score::Value { value: 0.3, scatter: 0.0 };
+        let worse = "**Rest under weight** (2 situations): `g`, at most 3.0 times the best error.";
+        assert_eq!(told(&grid, "rest", &[0, 1]), worse);
+        grid.rows[0].scores[6] = Score::Failed;
+        let none = format!("{best}; without a result in 1, tied with `b`, `c`, `d`, `e`, `f`.");
+        assert_eq!(told(&grid, "rest", &[0, 1]), none);
+        let of = |scatter: f64| Score::Value { value: 0.1, scatter };
+        grid.rows[0].scores = [0.01, 0.05, 0.0, 0.0, 0.0, 0.0, 0.0].map(of).to_vec();
+        assert_eq!(
+            of_the_step(&grid).as_deref(),
+            Some(
+                "**Half the step** changes the largest error by more than 5.00 % in 0 of 2 cells, most that of `b` in \
+                 “rest-a” (5.00 %). Errors that differ by less than this scatter are ties."
+            )
+        );
+        grid.rows[1].scores[3] = of(0.2);
+        let told = of_the_step(&grid).expect("some have a scatter");
+        assert!(told.contains("in 1 of 3 cells, most that of `d` in “rest-b” (20.0 %)."), "{told}");
+        assert_eq!(of_the_step(&alike(3)), None);
+        let never_first = self::grid(&[("column-a", [0.3, 0.1, 0.4]), ("column-b", [0.3, 0.3, 0.02])]);
+        assert_eq!(
+            of_the_paper(&never_first).as_deref(),
+            Some(
+                "**The paper's method**, `GC-SRI-patch`, is number 3 of 3 by mean rank (2.0 over 2 situations): it is first \
+                 in no situation; it is farthest from the best in “column-b”, 15 times its error."
+            )
+        );
     }
 }

@@ -154,8 +154,7 @@ fn table(keys: &[Varied<'_>], reference: &str) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use crate::campaign::runner::{failed_at, records_of};
 
     fn records(sweep: &str) -> Vec<Record> {
         records_of(&format!(
@@ -201,8 +200,7 @@ mod tests {
         assert_eq!(told(&records), [ends], "in any order");
         // A run that failed is no end.
         for record in records.iter_mut().filter(|one| one.case.material.hydraulic_conductivity == 1e-3) {
-            let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
-            record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+            record.status = failed_at(1);
         }
         let middle = "`hydraulic_conductivity` multiplies the error of the pressure by 50, the time of consolidation by 0.1";
         assert_eq!(told(&records), [middle]);

@@ -161,23 +161,17 @@ fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{failed_at, records_of, solved};
     use crate::case::planned::Tier;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     #[test]
     fn the_smallest_step_that_fails_is_the_one_named() {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP-SRI']\n\
                     integrator = ['implicit']\ncells = [5]\n\
                     time_step = [{ seconds = 0.04 }, { seconds = 0.02 }, { seconds = 0.01 }, { seconds = 0.005 }]\n";
-        let source = StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
-        let study = Study::check(&source).expect("a sound study");
-        let mut records = records_of(text);
+        let (study, mut records) = solved("s", text);
         for record in &mut records[..2] {
-            let (kind, reason) = (FailureKind::Unstable, "it grew".to_owned());
-            record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
+            record.status = failed_at(1);
         }
         let results = [StudyResults::new(&study, &records, Tier::Full)];
         let steps = Steps::of(&results[0]).expect("a study of the step");
@@ -186,5 +180,60 @@ mod tests {
         assert_eq!(row.unstable.map(step), Some(step(&records[1])));
         assert_eq!([row.largest, row.smallest].map(step), [2, 3].map(|place| step(&records[place])));
         assert!(sentence(&steps.rows, 0.1).contains(&format!("unstable from {} on", step(&records[1]))));
+    }
+
+    #[test]
+    fn paths_of_one_order_stand_together_and_the_one_that_the_step_changes_most_is_told() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4]\ntime_step = [{ seconds = 0.04 }, { seconds = 0.02 }]\n";
+        let steps = records_of(text);
+        let mut fallen = steps[0].clone();
+        fallen.status = failed_at(1);
+        let row = |label: &str, order: Option<&str>, errors: [Option<f64>; 2]| Row {
+            label: label.to_owned(),
+            order: order.map(str::to_owned),
+            largest: &steps[0],
+            smallest: &steps[1],
+            errors,
+            unstable: (label == "b").then_some(&fallen),
+        };
+        let of = |b: [Option<f64>; 2]| {
+            let same = [Some(0.12), Some(0.11)];
+            let mut rows = vec![row("a", Some("2.00"), same), row("b", None, b)];
+            rows.extend(["c", "d", "e", "f"].map(|label| row(label, Some("2.00"), same)));
+            rows
+        };
+        let start = "Order of the pressure in the step, from the differences between neighbouring steps at T_v = 0.1: 2.00 for \
+                     `a`, `c`, `d`, `e`, 1 more; none, of too few steps, for `b`. `b` ends unstable from Δt = 0.04 s on.";
+        for (b, left) in [
+            (
+                [Some(0.3), Some(0.1)],
+                " `b` is off by 30.0 % with Δt = 0.04 s and by 10.0 % with Δt = 0.02 s: smaller steps pay.",
+            ),
+            (
+                [Some(0.3), Some(0.274)],
+                " `b` is off by 30.0 % with Δt = 0.04 s and by 27.4 % with Δt = 0.02 s: the mesh, not the step, makes the error.",
+            ),
+            (
+                [Some(0.3), None],
+                " `f` is off by 12.0 % with Δt = 0.04 s and by 11.0 % with Δt = 0.02 s: the mesh, not the step, makes the error.",
+            ),
+        ] {
+            assert_eq!(sentence(&of(b), 0.1), format!("{start} Against the exact solution{left}"));
+        }
+        let unknown = [row("a", Some("1.00"), [None; 2]), row("c", Some("2.00"), [None; 2])];
+        let told = sentence(&unknown, 0.1);
+        assert!(
+            told.ends_with(": 1.00 for `a`; 2.00 for `c`. Every step that was tried is stable."),
+            "{told}"
+        );
+        let table = table(&of([Some(0.3), None]), "terzaghi", 0.1);
+        let cells: Vec<Vec<String>> =
+            table.rows[..2].iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        assert_eq!(cells[0], ["a", "2.00", "Δt = 0.04 s", "1.20e-1", "Δt = 0.02 s", "1.10e-1", "–"]);
+        assert_eq!(
+            cells[1],
+            ["b", "none, of too few steps", "Δt = 0.04 s", "3.00e-1", "Δt = 0.02 s", "–", "Δt = 0.04 s"]
+        );
     }
 }

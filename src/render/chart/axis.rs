@@ -349,6 +349,31 @@ mod tests {
     }
 
     #[test]
+    fn what_is_just_within_a_limit_is_drawn_and_what_is_just_beyond_is_not() {
+        assert_eq!([1e150, 1.01e150].map(|one| drawable(one, Scale::Linear).is_ok()), [true, false]);
+        assert_eq!([1e-150, 0.99e-150].map(|one| drawable(one, Scale::Log10).is_ok()), [true, false]);
+        assert_eq!(drawable(-1.01e150, Scale::Linear), Err(Reason::Extreme));
+        let (unit, decade) = (
+            Ends { scale: Scale::Linear, low: 0.0, high: 1.0 },
+            Ends { scale: Scale::Log10, low: 1.0, high: 10.0 },
+        );
+        let seen = [-0.0011, -0.0009, 1.0009, 1.0011].map(|one| unit.visible(one).is_ok());
+        assert_eq!(seen, [false, true, true, false]);
+        assert_eq!([-99.0, -5.0, 99.0].map(|one| unit.near(one)), [-20.0, -5.0, 21.0]);
+        let powers = [1e-30, 1e-5, 1e30].map(|one| decade.near(one).log10().round());
+        assert_eq!(powers, [-20.0, -5.0, 21.0]);
+        // Room of 4 % of two decades; of a sixth of a decade where the data take less than a third.
+        let of = |values: [f64; 2]| {
+            let own = ends(&ChartAxis::log10(""), &values);
+            [own.low / values[0], own.high / values[1]].map(|ratio| (1e3 * ratio.log10()).round())
+        };
+        assert_eq!(
+            [of([1.0, 100.0]), of([1.0, 1.9]), of([1.0, 2.1])],
+            [[-80.0, 80.0], [-150.0, 150.0], [-13.0, 13.0]]
+        );
+    }
+
+    #[test]
     fn round_ends_stay_and_others_get_room() {
         let whole = ends(&ChartAxis::linear(""), &[0.0, 1.0]);
         assert_eq!((whole.low, whole.high), (0.0, 1.0));

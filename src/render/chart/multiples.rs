@@ -127,6 +127,13 @@ mod tests {
         assert_eq!(names.len(), 15);
         assert_eq!(panels.iter().map(|panel| panel.names.len()).collect::<Vec<_>>(), [1, 0, 0]);
         assert_eq!(panels.iter().map(|panel| panel.triangles.len()).collect::<Vec<_>>(), [0, 0, 1]);
+        let part = |height: f64, text: &str| ((450.0, height), text.to_owned());
+        let (size, drawn) = side_by_side(&[part(300.0, "a"), part(320.0, "b"), part(310.0, "c")]);
+        assert_eq!(size, (900.0, 630.0), "two in a row, each row as high as its highest");
+        let places: Vec<&str> =
+            drawn.lines().filter(|line| line.starts_with("<svg")).map(|line| &line[5..20]).collect();
+        assert_eq!(places, ["x=\"0\" y=\"0\" wid", "x=\"4500\" y=\"0\" ", "x=\"0\" y=\"3200\" "]);
+        assert_eq!(side_by_side(&[part(300.0, "a")]).0, (450.0, 300.0));
         let svg = whole.svg().expect("it is drawn");
         assert_eq!(svg.matches(" of 3</text>").count(), 3);
         assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));

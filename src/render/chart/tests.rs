@@ -56,6 +56,43 @@ fn what_is_not_drawn_is_counted() {
 }
 
 #[test]
+fn a_figure_names_its_series_in_groups_of_their_dashes_in_a_legend_and_to_those_who_cannot_see_it() {
+    let line = |name: &str| Series::new(name, vec![(0.0, 1.0), (1.0, 2.0)]);
+    let chart = Chart::new("t", ChartAxis::linear("x"), ChartAxis::linear("y"));
+    let theory = Series { style: Style::Theory, ..line("exact") };
+    let text = svg(&chart.clone().with(theory).with(line("a")).with(line("b")).with(line("b")));
+    assert!(text.contains("<desc>y against x: exact, a, b.</desc>"), "{text}");
+    for (dash, name) in [("", "exact"), ("", "a"), (" stroke-dasharray=\"75 35\"", "b")] {
+        let group = format!("<g stroke-linejoin=\"round\"{dash}>\n<title>{name}</title>");
+        assert!(text.contains(&group), "{group}: {text}");
+        assert_eq!(text.matches(&format!("<g class=\"key\">\n<title>{name}</title>")).count(), 1, "{name}");
+    }
+    let told = |series: Series| svg(&chart.clone().with(series));
+    let lost = told(Series::new("a", vec![(0.0, 1.0), (1.0, f64::NAN)]));
+    assert!(lost.contains(">1 value not drawn: 1 not finite (a).</text>"), "{lost}");
+    // A line is cut at the frame without a word, a marker is missed.
+    let cut = Chart { y: ChartAxis::linear("y").between(0.0, 1.5), ..chart.clone() };
+    let told =
+        |style: Style| svg(&cut.clone().with(line("a").style(style))).contains("1 outside the axes (a)");
+    assert_eq!(
+        [Style::Line, Style::Theory, Style::Markers, Style::LineAndMarkers].map(told),
+        [false, false, true, true]
+    );
+    let mut field = pressure_field();
+    let own = field.field.as_mut().expect("a field");
+    own.values[3] = f64::INFINITY;
+    let text = svg(&field);
+    assert!(text.contains(">2 cells without a value are grey.</text>"), "{text}");
+    assert!(text.contains("<desc>p/q (–) in colour. y/H (–) against x/L (–).</desc>"), "{text}");
+    field.field.as_mut().expect("a field").values.pop();
+    let text = svg(&field);
+    assert!(
+        text.contains(">The edges and values of the field do not fit each other.<") && !text.contains("grey"),
+        "{text}"
+    );
+}
+
+#[test]
 fn points_outside_fixed_axes_are_counted_and_lines_cut() {
     let series = Series::new("a", vec![(0.0, 0.0), (1.0, 1e300), (0.5, 1e9)]);
     let chart =

@@ -233,6 +233,9 @@ mod tests {
         assert!(lines[0].starts_with("::error file=studies/study.toml,line=1,title="));
         assert_eq!(lines[9], "::notice title=oedometer check::12 more: see the summary");
         assert!(annotations_of(&[StudyCheck { warnings: Vec::new(), ..check(0) }], |_| None).is_empty());
+        let last = |failures: usize| annotations_of(&[check(failures)], |_| None).pop().expect("some");
+        assert_eq!(last(8), "::warning title=study%3A wall time::slow", "nine fit");
+        assert_eq!(last(9), "::notice title=oedometer check::1 more: see the summary");
     }
 
     #[test]

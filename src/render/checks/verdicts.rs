@@ -409,8 +409,32 @@ mod tests {
             found: Some(0.75),
             tolerance: 0.0625,
         };
-        let told = difference(&moved);
-        assert!(told.contains("0.75 was 0.5") && told.contains("4 times its tolerance"), "{told}");
+        let of = |golden: Option<f64>, found: Option<f64>, change: Change| {
+            difference(&Difference { change, golden, found, ..moved.clone() }).replace("\n    ", " ")
+        };
+        let start = "  MPM | pressure moved: ";
+        let told = of(Some(0.5), Some(0.75), Change::Moved);
+        assert_eq!(
+            told,
+            format!("{start}0.75 was 0.5, a relative change of 3.33e-1, 4 times its tolerance\n")
+        );
+        let told = of(Some(0.5), Some(1.25), Change::Moved);
+        assert_eq!(told, format!("{start}1.25 was 0.5, 2.5 times as large, 12 times its tolerance\n"));
+        assert_eq!(of(Some(0.5), None, Change::Missing), "  MPM | pressure missing: was 0.5\n");
+        assert_eq!(of(None, Some(0.5), Change::Extra), "  MPM | pressure not in the golden: 0.5\n");
+    }
+
+    #[test]
+    fn ten_proposals_are_shown_and_the_file_leads_to_the_others() {
+        let told = |count: usize, file: Option<&str>| {
+            let proposals = (0..count).map(|number| format!("line {number}")).collect();
+            text_of_proposals(&StudyCheck { proposals, ..check(0) }, file)
+        };
+        assert_eq!(told(0, Some("s.toml")), "");
+        assert!(told(10, Some("s.toml")).ends_with("line 8\nline 9"));
+        assert!(told(12, None).ends_with("line 9\nand 2 more\n"));
+        let whole = "line 9\nand 2 more: `oedometer check s.toml --format markdown` has all\n";
+        assert!(told(12, Some("s.toml")).ends_with(whole));
     }
 
     #[test]

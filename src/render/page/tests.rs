@@ -1,6 +1,6 @@
 use super::*;
 use crate::render::chart::{ChartAxis, Series};
-use crate::render::table::{Cell, TableColumn};
+use crate::render::table::{Cell, TableColumn, columns};
 
 fn chart() -> Chart {
     Chart::new("Error <of> p", ChartAxis::log10("h (m)"), ChartAxis::log10("error (–)"))
@@ -173,6 +173,55 @@ fn a_page_shows_the_first_rows_of_a_long_table_and_leads_to_the_rest() {
     assert_eq!(tables(&page)[0].1.to_csv().expect("a table").lines().count(), 251);
     let alone = Page { files: None, ..page };
     assert_eq!(written(render_html(&alone)).matches("<td ").count(), 250);
+}
+
+#[test]
+fn two_hundred_rows_are_whole_and_two_to_twenty_sections_are_listed() {
+    let long = |rows: u64| Table::of("", columns("> n"), (0..rows).map(|row| vec![Cell::Count(row)]));
+    for (rows, file, shown) in [(200, Some("f"), 200), (201, Some("f"), 200), (201, None, 201)] {
+        let table = long(rows);
+        let (found, rest) = shown_rows(&table, file);
+        assert_eq!((&found.rows[..], rest.is_some()), (&table.rows[..shown], shown < table.rows.len()));
+    }
+    for (sections, in_html, in_markdown) in [(1, 0, 0), (2, 2, 0), (3, 3, 3), (20, 20, 20), (21, 0, 21)] {
+        let section = |place: usize| Section::new(format!("S{place}"), format!("s{place}"), Vec::new());
+        let page = Page { sections: (0..sections).map(section).collect(), ..Page::default() };
+        assert_eq!(written(render_html(&page)).matches("<li><a href=\"#s").count(), in_html, "{sections}");
+        assert_eq!(written(render_markdown(&page)).matches("](#s").count(), in_markdown, "{sections}");
+    }
+}
+
+#[test]
+fn figures_and_tables_are_counted_wherever_they_stand() {
+    let table =
+        |rows: u64| Block::Table(Table::of("", columns("> n"), (0..rows).map(|row| vec![Cell::Count(row)])));
+    let figure = |name: &str| Block::Figure(Figure::new(name, chart(), "C."));
+    let view = |word: &str, rows: u64| (word.to_owned(), vec![table(rows), figure(word)]);
+    let hidden = Block::Details { summary: "more".to_owned(), blocks: vec![table(3), figure("c")] };
+    let blocks = vec![Block::Switch(vec![view("a", 1), view("b", 2)]), hidden, figure("d")];
+    let page = Page {
+        sections: vec![Section::new("S", "s", blocks)],
+        files: Some("p".to_owned()),
+        ..Page::default()
+    };
+    let files: Vec<_> = tables(&page).into_iter().map(|(name, table)| (name, table.rows.len())).collect();
+    assert_eq!(files, [1, 2, 3].map(|number| (format!("p-table-{number}"), number)));
+    assert_eq!(tables(&Page { files: None, ..page.clone() })[0].0, "page-table-1");
+    let html = written(render_html(&page));
+    for (place, name) in ["a", "b", "c", "d"].into_iter().enumerate() {
+        let link = format!("<a href=\"figures/{name}.svg\">SVG</a> <a href=\"figures/{name}.csv\">data</a>");
+        let told = format!("<b>Figure {}.</b> C. <span class=\"files\">{link}</span>", place + 1);
+        assert!(html.contains(&told), "{told}");
+    }
+    for (number, _) in files {
+        let link =
+            format!("<a href=\"tables/{number}.csv\">CSV</a> <a href=\"tables/{number}.tex\">LaTeX</a>");
+        assert!(html.contains(&link), "{link}");
+    }
+    assert!(
+        html.contains("id=\"view-1-0\" checked>") && html.contains("id=\"view-1-1\">"),
+        "the first is shown"
+    );
 }
 
 #[test]

@@ -165,18 +165,14 @@ fn end_of(record: &Record) -> Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{records_of, solved};
     use crate::case::planned::Tier;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     #[test]
     fn a_peak_stands_beside_the_exact_one_and_of_outputs_the_worst() {
         let text = "title = \"t\"\nscene = \"mandel\"\noutput = { time_factors = [0.0645, 0.068, 0.0717] }\n[[sweep]]\n\
                     method = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\ncells = [10]\ntime_step = [{ growth = 0.02 }]\n";
-        let study =
-            Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
-        let mut records = records_of(text);
+        let (study, mut records) = solved("s", text);
         let told = |records: &[Record]| {
             let blocks = measures(&StudyResults::new(&study, records, Tier::Full));
             let Some(Block::Table(table)) = blocks.last() else { return String::new() };
@@ -205,9 +201,7 @@ mod tests {
     fn each_group_of_all_runs_is_the_largest_wherever_it_stands() {
         let text = "title = \"t\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.2] }\n[[sweep]]\n\
                     method = [\"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [2, 3, 4]\n";
-        let study =
-            Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound");
-        let mut records = records_of(text);
+        let (study, mut records) = solved("s", text);
         for (record, [storage, strain, inertia]) in
             records.iter_mut().zip([[0.3, 0.02, 0.001], [0.1, 0.05, 0.004], [0.2, 0.03, 0.007]])
         {
@@ -229,9 +223,7 @@ mod tests {
 
     #[test]
     fn every_setup_has_its_row_every_method_its_column_and_the_first_of_several_runs_is_shown() {
-        let source = StudySource { name: "s.toml".to_owned(), text: STUDY.to_owned() };
-        let study = Study::check(&source).expect("sound");
-        let records = records_of(STUDY);
+        let (study, records) = solved("s", STUDY);
         let results = StudyResults::new(&study, &records, Tier::Full);
         let table = survival(&results).expect("a table");
         assert_eq!((table.columns.len(), table.rows.len()), (4, 2));

@@ -289,5 +289,15 @@ mod tests {
         assert_eq!(chart.series[0].points, [(0.011, 0.0071), (0.023, 0.0092)], "all runs of the integrator");
         assert_eq!(chart.series[1].points, [(0.011, 0.0071)], "the front alone");
         assert!(caption(&precision).contains("differs by 7 %"));
+        assert!(caption(&precision).ends_with(" Other programs were timed on another day."));
+        assert_eq!(chart.names[0], PointName { at: (0.011, 0.0071), name: "GIMP, 4".to_owned() });
+        let others = chart.series.last().expect("the programs");
+        let first = &peers::PEERS[0];
+        assert_eq!((others.name.as_str(), others.points.len()), ("other programs", peers::PEERS.len()));
+        assert_eq!(others.points[0], (first.seconds, first.worst_error()));
+        let named = PointName { at: others.points[0], name: format!("{}, {}", first.name, first.cells) };
+        assert_eq!((&chart.names[1], chart.names.len()), (&named, 1 + peers::PEERS.len()));
+        let alone = WorkPrecision { noise_floor: None, ..precision };
+        assert!(!caption(&alone).contains("Timed twice"), "{}", caption(&alone));
     }
 }

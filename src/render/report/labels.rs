@@ -285,4 +285,85 @@ mod tests {
         let note = note.expect("not all are shown");
         assert!(note.contains("show 2 of 16 series, those with porosity=0.3"), "{note}");
     }
+
+    #[test]
+    fn the_plain_soil_is_drawn_where_there_is_one_and_fourteen_series_are_not_too_many() {
+        let soils = |count: usize| (0..count).map(|one| format!("0.{one:02}")).collect::<Vec<_>>().join(", ");
+        let of =
+            |count: usize| series_of(&format!("method = ['MPM', 'GIMP']\njitter = [{}]\n", soils(count)));
+        assert_eq!(of(7), (14, 14, None));
+        let note = "The figures show 2 of 16 series, the plain soil only; the tables have every one.";
+        assert_eq!(of(8), (2, 16, Some(note.to_owned())));
+    }
+
+    #[test]
+    fn quantities_places_references_axes_and_orders_have_words_of_their_own() {
+        use Quantity::{Displacement, EffectiveStress, LoadFactor, Pressure, Settlement};
+        assert_eq!(
+            ["terzaghi", "terzaghi-incompressible", "large-strain", "xie-leo", "mandel"].map(solution),
+            [
+                "Terzaghi's solution with compressible water",
+                "Terzaghi's solution",
+                "the exact large-strain solution of its own equations",
+                "Xie & Leo's solution",
+                "the exact solution `mandel`"
+            ]
+        );
+        let all = [
+            (
+                Pressure,
+                Sample::Points,
+                "pore pressure at the points",
+                "relative L_2 error, pore pressure (–)",
+            ),
+            (
+                EffectiveStress,
+                Sample::Centres,
+                "effective stress at the cell centres",
+                "relative L_2 error, effective stress (–)",
+            ),
+            (
+                Displacement,
+                Sample::Nodes,
+                "displacement at the nodes",
+                "relative L_2 error, displacement (–)",
+            ),
+            (Settlement, Sample::Surface, "settlement of the surface", "relative error of settlement (–)"),
+            (LoadFactor, Sample::Surface, "load factor of the surface", "relative error of load factor (–)"),
+        ];
+        for (quantity, sample, words, of_axis) in all {
+            let measured = first_measure(quantity, sample, "terzaghi", 0.1);
+            assert_eq!((measure(&measured).as_str(), error_axis(&measured).as_str()), (words, of_axis));
+        }
+        assert_eq!(
+            Axis::ALL.map(axis),
+            [
+                "cell size h (m)",
+                "time step Δt (s)",
+                "spacing of the points in a cell, 1/m (–)",
+                "compressibility of the water 1/K_w (1/Pa)"
+            ]
+        );
+        let found =
+            |class: Class, order: Option<f64>| Classification { order, ..Classification::new(class, "") };
+        for (class, order, words) in [
+            (Class::Asymptotic, Some(1.998), "2.00"),
+            (Class::Superconvergent, Some(3.0), "3.00"),
+            (Class::PreAsymptotic, Some(1.5), "1.50 (pre-asymptotic)"),
+            (Class::Contaminated, Some(1.0), "1.00 (contaminated)"),
+            (Class::Divergent, None, "divergent"),
+        ] {
+            let found = found(class, order);
+            assert_eq!(order_or_class(&found), words);
+            assert_eq!(order_and_error(&found, Some(0.0012)), format!("{words}, 1.20e\u{2011}3"));
+            assert_eq!(order_and_error(&found, None), words);
+        }
+        let parts =
+            ["reload_modulus=12000000", "preconsolidation=100000", "load=99999", "x=-100000", "GIMP", "a=b"];
+        assert_eq!(
+            parts.map(short),
+            ["reload_modulus=1.2e7", "preconsolidation=1e5", "load=99999", "x=-1e5", "GIMP", "a=b"]
+        );
+        assert_eq!(["", "a b", "σ c"].map(capitalised), ["", "A b", "Σ c"]);
+    }
 }

@@ -247,3 +247,112 @@ pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
         Block::Figures(vec![results.figure("load-settlement", chart, caption)]),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{solved, study_of};
+    use crate::case::Solver;
+    use crate::case::planned::Tier;
+    use crate::judge::comparison::stiffness_sweep::SweepRow;
+    use oedometer_mpm::method::Method;
+
+    #[test]
+    fn fields_share_the_reach_of_the_exact_one_and_say_what_lies_beyond() {
+        let text = "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
+                    method = ['GIMP-SRI', 'GIMP']\nintegrator = ['implicit']\ncells = [4, 8]\npoints_per_cell = [2, 3]\n\
+                    time_step = [{ growth = 0.5 }]\n[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [8]\n\
+                    poissons_ratio = [0.3]\ntime_step = [{ growth = 0.5 }]\n";
+        let (study, records) = solved("s", text);
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let shown: Vec<_> = shown_records(&records)
+            .iter()
+            .map(|record| (record.case.method.to_string(), record.case.cells, record.case.points_per_cell))
+            .collect();
+        assert_eq!(
+            shown,
+            [("GIMP-SRI".to_owned(), 8, 2), ("GIMP".to_owned(), 8, 2)],
+            "the first run of each"
+        );
+        let found = blocks(&results).expect("theory");
+        assert_eq!(
+            found[0],
+            Block::Heading("Pressure at the points, 8 cells over the height, ν = 0.25".to_owned())
+        );
+        let Block::Figures(figures) = &found[1] else { panic!("{found:?}") };
+        let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
+        assert_eq!(names, ["s-field-exact", "s-field-gimp-sri", "s-field-gimp"]);
+        assert_eq!(figures[0].caption, "Theory at T_v = 0.1. All these fields share one scale.");
+        // The largest exact value is 2, so that the colours reach to 2.5.
+        let field = PlaneField {
+            columns: 2,
+            x_edges: vec![0.0, 0.5, 1.0],
+            y_edges: vec![0.0, 1.0],
+            computed: vec![-2.6, 1.0],
+            exact: vec![-2.0, 1.0],
+        };
+        let drawn = |values: &[f64], index: Option<f64>| figure(&results, "GIMP", &field, values, 0.2, index);
+        let beyond = drawn(&field.computed, Some(0.456));
+        let caption = "GIMP at T_v = 0.2: oscillation index 0.46. Values reach 2.6, beyond the common scale.";
+        assert_eq!(beyond.caption, caption);
+        assert_eq!(drawn(&[2.5, -1.0], Some(1.0)).caption, "GIMP at T_v = 0.2: oscillation index 1.00.");
+        let of = |figure: &Figure| {
+            let field = figure.chart.field.as_ref().expect("a field");
+            (field.has_bar, field.reach, field.values.clone(), figure.chart.size.width)
+        };
+        assert_eq!(of(&beyond), (false, Some(2.5), field.computed.clone(), 300.0));
+        assert_eq!(of(&drawn(&field.exact, None)), (true, Some(2.5), field.exact.clone(), 380.0));
+    }
+
+    #[test]
+    fn each_figure_and_table_of_a_sweep_shows_its_own_quantity_over_the_stiffness() {
+        let text = "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                    integrator = ['implicit']\ncells = [2]\n";
+        let study = study_of("s", text);
+        let results = StudyResults::new(&study, &[], Tier::Full);
+        let row = |time_factor: f64, off: f64| SweepRow {
+            method: Solver::Own(Method::named("GIMP").expect("a method")),
+            time_factor,
+            found: vec![[Some(0.1 + off), Some(0.2 + off), Some(0.3 + off)], [None; 3]],
+        };
+        let sweep = |stiffness: SweptStiffness| StiffnessSweep {
+            stiffness,
+            cells: 2,
+            values: vec![0.25, 0.49],
+            time_factors: vec![0.1, 0.2],
+            rows: vec![row(0.1, 5.0), row(0.2, 0.0)],
+        };
+        for (stiffness, word, at, header) in [
+            (SweptStiffness::Skeleton, "skeleton", 0.5, "ν = 0.49"),
+            (SweptStiffness::Water, "water", 0.25, "K_w/E = 0.49"),
+        ] {
+            for (showing, subject, kind, value) in [
+                (Showing::Displacement, "Displacement at the nodes", "displacement", 0.1),
+                (Showing::Pressure, "Pressure at the points", "pressure", 0.2),
+                (Showing::Oscillation, "Oscillation of the pressure", "oscillation", 0.3),
+            ] {
+                let is_ratio = showing == Showing::Oscillation;
+                let drawn = sweep_figure(&results, &sweep(stiffness), 0.2, showing);
+                assert_eq!(
+                    (drawn.name, drawn.caption),
+                    (format!("s-{kind}-{word}"), format!("{subject}, T_v = 0.2."))
+                );
+                // An oscillation of nothing is a ratio of one.
+                let up = if is_ratio { 1.0 + value } else { value };
+                let points: Vec<_> = drawn.chart.series.iter().map(|one| one.points.clone()).collect();
+                assert_eq!(points, [vec![(at, up)]], "nothing is drawn where nothing was found");
+                assert_eq!(drawn.chart.rules.len(), usize::from(is_ratio));
+                assert_eq!(drawn.chart.x.inverted, stiffness == SweptStiffness::Skeleton);
+                let table = sweep_table(&sweep(stiffness), 0.2, showing);
+                let cell = if is_ratio { Cell::Number(value) } else { Cell::Error(value) };
+                let name = Cell::Code("GIMP".to_owned());
+                assert_eq!(table.rows, [vec![name, cell, Cell::missing("not run")]]);
+                assert_eq!(
+                    (table.title, table.columns[2].header.as_str()),
+                    (format!("{subject}, T_v = 0.2"), header)
+                );
+                assert_eq!(table.notes.len(), usize::from(is_ratio));
+            }
+        }
+    }
+}

@@ -181,4 +181,56 @@ mod tests {
         };
         assert_eq!(place(&soil), (2e-5, 3e6));
     }
+
+    #[test]
+    fn every_soil_has_its_winner_every_method_its_counts_and_every_integrator_that_broke_its_places() {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let way = |name: &str, cells: usize, seconds: f64| Way {
+            name: name.to_owned(),
+            cells,
+            seconds,
+            error: 0.005,
+        };
+        let soil = |place: (f64, f64), ways: Vec<Way>, broken: &[&str]| MappedSoil {
+            conductivity: place.0,
+            stiffness: place.1,
+            tried: names(&["A implicit", "B explicit", "C explicit"]),
+            ways,
+            broken: names(broken),
+        };
+        let places = [(1e-5, 1e6), (1e-5, 1e7), (1e-3, 1e6), (1e-3, 1e7)];
+        let (a, b) = (way("A implicit", 8, 2.0), way("B explicit", 16, 8.0));
+        let soils = [
+            soil(places[0], vec![a.clone(), b.clone()], &[]),
+            soil(
+                places[1],
+                vec![way("B explicit", 4, 1.0), way("A implicit", 10, 3.0)],
+                &["B explicit", "C explicit"],
+            ),
+            soil(places[2], vec![a, way("B explicit", 20, 14.0)], &["C explicit"]),
+            soil(places[3], Vec::new(), &["A implicit"]),
+        ];
+        let series = |chart: &Chart| {
+            chart.series.iter().map(|one| (one.name.clone(), one.points.clone())).collect::<Vec<_>>()
+        };
+        let at = |name: &str, at: &[usize]| {
+            (name.to_owned(), at.iter().map(|place| places[*place]).collect::<Vec<_>>())
+        };
+        let won = [at("A implicit", &[0, 2]), at("B explicit", &[1]), at("none reaches it", &[3])];
+        assert_eq!(series(&winners(&soils)), won);
+        let chart = broken(&soils).expect("some broke");
+        assert_eq!(
+            series(&chart),
+            [at("explicit", &[1, 2]), at("implicit", &[3]), at("no run failed", &[0])]
+        );
+        assert_eq!(broken(&soils[..1]), None);
+        let table = methods_table(&soils);
+        let shown: Vec<Vec<String>> =
+            table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        // Medians of 1, 3, 1 and of 4, 1, 7 times the cheapest; of 8, 10, 8 and of 16, 4, 20 cells.
+        assert_eq!(shown[0], ["A implicit", "4", "3", "2", "1", "8", "1"]);
+        assert_eq!(shown[1], ["B explicit", "4", "3", "1", "4", "16", "1"]);
+        assert_eq!(shown[2], ["C explicit", "4", "0", "0", "–", "–", "2"]);
+        assert_eq!(table.notes, ["of 4 soils"]);
+    }
 }

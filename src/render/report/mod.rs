@@ -96,3 +96,40 @@ impl<'a> StudyResults<'a> {
         self.unsound.is_empty() && self.met() == self.judgements.len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, solved};
+
+    #[test]
+    fn what_ended_well_outside_of_the_race_is_checked_and_a_name_with_spaces_is_quoted() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                    integrator = ['implicit']\ncells = [2, 4, 8]\n";
+        let (mut study, mut records) = solved("s", text);
+        for record in &mut records[1..] {
+            record.start.as_mut().expect("a start").volume_error = 0.5;
+        }
+        records[2].status = failed_at(1);
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let cases: Vec<&str> = results.unsound.iter().map(|(case, _)| case.as_str()).collect();
+        assert_eq!(cases, [records[1].case.label()]);
+        assert!(!results.passes() && results.met() == 0);
+        assert!(StudyResults::new(&study, &records[..1], Tier::Full).passes());
+        assert_eq!(
+            (results.left_out(), StudyResults::new(&study, &records[..1], Tier::Full).left_out()),
+            (0, 2)
+        );
+        assert_eq!(results.run_command(), "oedometer run studies/s.toml");
+        assert_eq!(
+            results.from_file("my files/s.toml".to_owned()).run_command(),
+            "oedometer run \"my files/s.toml\""
+        );
+        study.is_race = true;
+        assert_eq!(
+            StudyResults::new(&study, &records, Tier::Full).unsound,
+            [],
+            "the race tells it in its cells"
+        );
+    }
+}

@@ -14,6 +14,7 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::{runs, uncertainties};
 use crate::study::expectation::Axis;
 use oedometer_exact::exact_error::ExactError;
+use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -32,7 +33,11 @@ pub fn index_page(results: &[StudyResults<'_>]) -> Page {
     sections.push(numbers_section(results));
     Page {
         title: "All studies".to_owned(),
-        lead: format!("{} studies in {} groups. [The answers](../index.html).", results.len(), groups.len()),
+        lead: format!(
+            "{} in {}. [The answers](../index.html).",
+            count_of(results.len(), "study", "studies"),
+            count_of(groups.len(), "group", "groups")
+        ),
         sections,
         footer: footer(results),
         filter: Some("Words that a study has".to_owned()),
@@ -179,7 +184,8 @@ fn verdict(results: &StudyResults<'_>) -> Callout {
         _ => format!("{} of {judged} expectations are met.", results.met()),
     };
     if let Some((case, sentence)) = results.unsound.first() {
-        let _ = write!(text, " {} checks of its runs fail, first {case}: {sentence}.", results.unsound.len());
+        let fail = count_of(results.unsound.len(), "check of its runs fails", "checks of its runs fail");
+        let _ = write!(text, " {fail}, first {case}: {sentence}.");
     }
     let failing = failing(results);
     for judgement in failing.iter().take(MOST_REASONS) {
@@ -241,10 +247,9 @@ fn sections(blocks: Vec<Block>) -> Vec<Section> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::solved;
     use crate::case::Tier;
     use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     #[test]
     fn a_study_is_marked_by_what_is_met_and_by_what_is_wrong_with_its_records() {
@@ -256,8 +261,7 @@ mod tests {
                 "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP']\n\
                         integrator = ['implicit']\ncells = [4]\n"
                     .to_owned() + &bounds.iter().map(expect).collect::<String>();
-            let source = StudySource { name: "s.toml".to_owned(), text: text.clone() };
-            let (study, records) = (Study::check(&source).expect("sound"), records_of(&text));
+            let (study, records) = solved("s", &text);
             let mut results = StudyResults::new(&study, &records, Tier::Full);
             results.unsound = vec![("a case".to_owned(), "why".to_owned()); wrong];
             met_cell(&results)
@@ -271,5 +275,47 @@ mod tests {
         ] {
             assert_eq!(of(bounds, wrong), Cell::Verdict(mood, words.to_owned()), "{bounds:?}");
         }
+    }
+
+    #[test]
+    fn studies_stand_by_their_first_word_and_those_alone_last_and_norms_and_references_once() {
+        let text = |name: &str| {
+            format!(
+                "title = '{name}'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                 integrator = ['implicit']\ncells = [2]\n"
+            )
+        };
+        let mut all: Vec<(Study, _)> =
+            ["zeta", "race-a", "mesh-a", "race-b", "mesh-b"].map(|name| solved(name, &text(name))).into();
+        // The largest of each, wherever they stand.
+        for ((_, records), (terms, tail)) in
+            all.iter_mut().zip([(3, 1e-9), (9, 1e-12), (5, 1e-8), (1, 0.0), (2, 0.0)])
+        {
+            (records[0].references[0].terms, records[0].references[0].tail_bound) = (terms, tail);
+            records[0].references.truncate(1);
+        }
+        all[0].1[0].provenance.version = "0.0.1".to_owned();
+        let results: Vec<StudyResults<'_>> =
+            all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
+        let page = index_page(&results);
+        let told = |section: &Section| {
+            let Block::Table(table) = &section.blocks[0] else { panic!("{section:?}") };
+            (
+                section.heading.clone(),
+                table.rows.iter().map(|row| row[0].show()).collect::<Vec<_>>().join(" "),
+            )
+        };
+        let is = |heading: &str, studies: &str| (heading.to_owned(), studies.to_owned());
+        let groups: Vec<_> = page.sections[..3].iter().map(told).collect();
+        assert_eq!(groups, [is("Race", "race-a race-b"), is("Mesh", "mesh-a mesh-b"), is("Other", "zeta")]);
+        assert_eq!(page.lead, "5 studies in 3 groups. [The answers](../index.html).");
+        assert_eq!(index_page(&results[..1]).lead, "1 study in 1 group. [The answers](../index.html).");
+        assert!(
+            page.footer.starts_with("oedometer 0.0.1, sources "),
+            "that of the first record: {}",
+            page.footer
+        );
+        let Block::Table(references) = &page.sections[3].blocks[1] else { panic!("norms, then references") };
+        assert_eq!(references.rows, [[Cell::Code("terzaghi".to_owned()), Cell::Count(9), Cell::Error(1e-8)]]);
     }
 }

@@ -1,7 +1,7 @@
 //! The page of a situation of the race: the errors of every contender against the mesh, and all its measures; and the
 //! table of all of them for programs.
 
-use crate::judge::race::{RaceCell, RaceRow};
+use crate::judge::race::{Ended, RaceCell, RaceRow};
 use crate::render::chart::{Chart, ChartAxis, Series, Size};
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
@@ -11,13 +11,7 @@ use crate::render::table::{Cell, Table, columns};
 /// Figures and the table of a situation; empty for any other study.
 pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let Some(row) = RaceRow::of(results.study, results.records) else { return Vec::new() };
-    let mut ranked: Vec<&RaceCell> = row.contenders.iter().collect();
-    let score = |cell: &RaceCell| match cell.ending().0 {
-        "ok" => cell.score.unwrap_or(f64::INFINITY),
-        "n/a" => f64::NAN,
-        _ => f64::INFINITY,
-    };
-    ranked.sort_by(|a, b| score(a).total_cmp(&score(b)));
+    let ranked = ranked(&row.contenders);
     let last = if results.study.scene.has_plane_fields() { "displacement" } else { "settlement" };
     let figures = ["pressure", "effective stress", last].into_iter().enumerate();
     let figures: Vec<Figure> =
@@ -26,6 +20,18 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
     blocks.extend(figures.into_iter().map(Block::Figure));
     blocks.push(Block::Table(table_of(&row, &ranked)));
     blocks
+}
+
+/// The best first, then those without a result, then those that cannot have one.
+fn ranked(contenders: &[RaceCell]) -> Vec<&RaceCell> {
+    let score = |cell: &RaceCell| match cell.ended {
+        Ended::Well => cell.score.unwrap_or(f64::INFINITY),
+        Ended::Failed(..) => f64::INFINITY,
+        Ended::NotApplicable(_) => f64::NAN,
+    };
+    let mut ranked: Vec<&RaceCell> = contenders.iter().collect();
+    ranked.sort_by(|a, b| score(a).total_cmp(&score(b)));
+    ranked
 }
 
 /// The figure of one error of all contenders.
@@ -102,17 +108,15 @@ fn row(situation: &RaceRow<'_>, cell: &RaceCell) -> Vec<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
+    use crate::campaign::runner::{solved, study_of};
+    use oedometer_convergence::Class;
 
     const SMALL: &str = "title = 'Race: small'\nscene = 'mandel'\noutput.time_factors = [0.1]\n[[sweep]]\n\
         method = ['race']\nintegrator = ['implicit']\ncells = [10, 20, 40]\ntime_step = [{ growth = 0.2 }]\n";
 
     #[test]
     fn the_header_is_that_of_the_contract_and_every_cell_has_a_row() {
-        let source = StudySource { name: "race-layer-small.toml".to_owned(), text: SMALL.to_owned() };
-        let (study, records) = (Study::check(&source).expect("sound"), records_of(SMALL));
+        let (study, records) = solved("race-layer-small", SMALL);
         let row = RaceRow::of(&study, &records).expect("a race");
         let csv = whole_table(&[row]).to_plain_csv().expect("a table");
         let lines: Vec<&str> = csv.lines().collect();
@@ -132,5 +136,49 @@ mod tests {
         // At small strain a method on the initial configuration is the one without the prefix, to the bit.
         let numbers = |method: &str| of(method).splitn(9, ',').skip(2).take(6).collect::<Vec<_>>().join(",");
         assert_eq!(numbers("TL-GC-SRI-patch"), numbers("GC-SRI-patch"));
+    }
+
+    #[test]
+    fn every_measure_of_a_contender_stands_under_its_name_and_the_best_first() {
+        let study = study_of("race-layer-small", SMALL);
+        let cell = |name: &'static str, score: Option<f64>, ended: Ended| RaceCell {
+            name,
+            errors: [Some(0.1), Some(0.2), Some(0.3)],
+            levels: Vec::new(),
+            order: Some(1.5),
+            class: Some(Class::PreAsymptotic),
+            cost: [Some(4.0), Some(5.0)],
+            oscillation: Some(0.6),
+            locking: Some(0.7),
+            step_ratio: Some(0.8),
+            asymmetry: Some([0.01, 0.02]),
+            score,
+            scatter: Some(0.03),
+            ended,
+            complaint: Some("odd".to_owned()),
+        };
+        let row = RaceRow {
+            study: &study,
+            group: "layer",
+            cells: 40,
+            contenders: vec![cell("a", Some(0.3), Ended::Well)],
+        };
+        let own = table_of(&row, &[&row.contenders[0]]).to_plain_csv().expect("a table");
+        assert!(
+            own.ends_with("a,0.1,0.2,0.3,1.5,pre-asymptotic,4.0,5.0,0.6,0.7,0.8,0.01,0.02,0.03,ok: odd\n"),
+            "{own}"
+        );
+        let whole = whole_table(std::slice::from_ref(&row)).to_plain_csv().expect("a table");
+        let line = "layer-small,a,40,0.1,0.2,0.3,1.5,pre-asymptotic,4.0,5.0,0.6,0.7,0.8,ok,odd\n";
+        assert!(whole.ends_with(line), "{whole}");
+        let cells = [
+            cell("never", Some(0.0), Ended::NotApplicable("no plate".to_owned())),
+            cell("failed", Some(0.1), Ended::Failed("unstable", "it grew".to_owned())),
+            cell("bare", None, Ended::Well),
+            cell("second", Some(0.2), Ended::Well),
+            cell("best", Some(0.1), Ended::Well),
+        ];
+        let order: Vec<&str> = ranked(&cells).iter().map(|cell| cell.name).collect();
+        assert_eq!(order, ["best", "second", "failed", "bare", "never"]);
     }
 }

@@ -341,7 +341,8 @@ fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{records_of, study_of};
+    use crate::case::planned::Tier;
     use crate::judge::paths::StudyPaths;
     use crate::record::Record;
     use oedometer_convergence::{Floor, Undefined};
@@ -404,5 +405,64 @@ mod tests {
         assert_eq!(triangles([0.2, 3.0]), []);
         assert_eq!(triangles([2.1, 0.9]), [(1.0, "b".to_owned()), (2.0, "a".to_owned())]);
         assert_eq!(triangles([1.8, 1.9]), [(2.0, "a".to_owned())], "the first of several");
+    }
+
+    #[test]
+    fn the_middle_of_the_times_that_all_paths_have_is_shown_and_levels_have_the_names_of_their_axis() {
+        let of = |times: &str, sweep: &str| records_of(&text_of(times, sweep));
+        let shown = |times: [&str; 2]| {
+            let records = times.map(|times| of(times, "cells = [2, 4]")).concat();
+            let paths: Vec<Path<'_>> = records
+                .chunks(2)
+                .map(|own| Path { axis: Axis::Cells, records: own.iter().collect() })
+                .collect();
+            shown_time(&paths)
+        };
+        for (times, middle) in [
+            (["[0.1]"; 2], Some(0.1)),
+            (["[0.1, 0.2]"; 2], Some(0.1)),
+            (["[0.1, 0.2, 0.3]"; 2], Some(0.2)),
+            (["[0.1, 0.2, 0.3, 0.4]"; 2], Some(0.2)),
+            (["[0.1, 0.2, 0.3]", "[0.2, 0.3, 0.4]"], Some(0.2)),
+            (["[0.1, 0.2, 0.3]", "[0.3, 0.4]"], Some(0.3)),
+            (["[0.1]", "[0.2]"], None),
+        ] {
+            assert_eq!(shown(times), middle, "{times:?}");
+        }
+        assert_eq!(shown_time(&[]), None);
+        for (axis, sweep, names) in [
+            (Axis::Cells, "cells = [2, 4, 8]", ["2", "4", "8"]),
+            (Axis::PointsPerCell, "cells = [2]\npoints_per_cell = [1, 2, 3]", ["m = 1", "m = 2", "m = 3"]),
+            (
+                Axis::TimeStep,
+                "cells = [2]\ntime_step = [{ seconds = 0.2 }, { seconds = 0.1 }, { seconds = 0.05 }]",
+                ["Δt = 0.2 s", "Δt = 0.1 s", "Δt = 0.05 s"],
+            ),
+        ] {
+            let records = of("[0.1]", sweep);
+            let paths = StudyPaths::of(&records);
+            let shorter = Path { axis, records: paths.along(axis)[0].records[..2].to_vec() };
+            assert_eq!(level_names(&[shorter, paths.along(axis)[0].clone()], axis), names);
+            let study = study_of("s", &text_of("[0.1]", sweep));
+            let results = StudyResults::new(&study, &records, Tier::Full);
+            // Along the points of a cell the error ends in that of the mesh: there is no order and no class.
+            let Some(Block::Table(table)) =
+                blocks(&results, axis).into_iter().find(|one| matches!(one, Block::Table(_)))
+            else {
+                panic!("{axis:?}")
+            };
+            let has = |header: &str| table.columns.iter().any(|column| column.header == header);
+            let has_orders = axis != Axis::PointsPerCell;
+            assert_eq!((has("class"), has("order of the finest 3")), (has_orders, has_orders), "{axis:?}");
+        }
+        assert!(!shows_orders(Axis::TimeStep, "terzaghi") && shows_orders(Axis::TimeStep, NEXT_FINER));
+        assert!(shows_orders(Axis::Cells, "terzaghi") && !shows_orders(Axis::PointsPerCell, NEXT_FINER));
+    }
+
+    fn text_of(times: &str, sweep: &str) -> String {
+        format!(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = {times}\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\n{sweep}\n"
+        )
     }
 }

@@ -112,4 +112,41 @@ mod tests {
         );
         assert_eq!(sentence(&[]), None);
     }
+
+    #[test]
+    fn numbers_have_the_unit_that_suits_them_and_what_does_not_consolidate_has_no_time() {
+        for (value, unit, words) in [
+            (1e9, "Pa", "1 GPa"),
+            (9.99e8, "Pa", "999 MPa"),
+            (1e6, "Pa", "1 MPa"),
+            (-2500.0, "Pa", "-2.5 kPa"),
+            (1.0, "Pa", "1 Pa"),
+            (0.5, "Pa", "0.5 Pa"),
+            (1e-3, "m/s", "0.001 m/s"),
+            (9.9e-4, "m/s", "9.9e-4 m/s"),
+            (9999.0, "m", "9999 m"),
+            (1e4, "m", "1e4 m"),
+            (0.123_456, "", "0.1235"),
+        ] {
+            assert_eq!(with_unit(value, unit), words);
+        }
+        let case = |head: &str| {
+            let text = format!(
+                "title = 't'\n{head}\n[[sweep]]\nmethod = ['GIMP']\nintegrator = ['implicit']\ncells = [2]\n"
+            );
+            records_of(&text).remove(0).case
+        };
+        let footing = case("scene = 'footing'");
+        assert_eq!([final_settlement(&footing), unit_of_time(&footing)], [None; 2]);
+        let mut column =
+            case("scene = 'terzaghi'\noutput.time_factors = [0.1]\ncolumn = { height = 2.0, load = 12e3 }");
+        // m_v q H = 12e3/1.2e6 · 2 m; H² γ_w/(k E_oed) = 4 · 9810/(1e-4 · 1.2e6) s.
+        let near =
+            |value: Option<f64>, wanted: f64| value.is_some_and(|value| (value / wanted - 1.0).abs() < 0.01);
+        assert!(near(final_settlement(&column), 0.02) && near(unit_of_time(&column), 327.0));
+        column.scene = SceneKind::XieLeo;
+        assert!(near(final_settlement(&column), 2.0 * (1.0 - (-0.01_f64).exp())), "logarithmic strain");
+        column.scene = SceneKind::CosineLayer;
+        assert_eq!(final_settlement(&column), None);
+    }
 }

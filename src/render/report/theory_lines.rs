@@ -183,10 +183,8 @@ fn sampling_note(shown: &[&Record]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::{RunOptions, run_study};
+    use crate::campaign::runner::solved;
     use crate::case::planned::Tier;
-    use crate::study::check::Study;
-    use crate::study::file::StudySource;
 
     const TIMES: [f64; 3] = [0.05, 0.1, 0.2];
 
@@ -195,9 +193,7 @@ mod tests {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.1, 0.2]\n[[sweep]]\n\
                     method = ['MPM', 'GIMP', 'GIMP-SRI']\nintegrator = ['implicit']\ncells = [10]\n\
                     time_step = [{ growth = 0.5 }]\n";
-        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
-        let study = Study::check(&source).expect("sound");
-        let records = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {}).records;
+        let (study, records) = solved("t", text);
         // Errors of the settlement, by method and output.
         let found = |errors: [[f64; 3]; 3]| {
             let mut records = records.clone();
@@ -240,5 +236,60 @@ mod tests {
         assert_eq!(places(0, 1, 48), (0..12).map(|marker| f64::from(4 * marker)).collect::<Vec<_>>());
         assert_eq!([places(0, 2, 48)[0], places(1, 2, 48)[0], places(3, 4, 48)[0]], [0.0, 2.0, 3.0]);
         assert_eq!(places(1, 2, 5), [0.0, 1.0, 2.0, 3.0, 4.0], "few are all shown");
+    }
+
+    #[test]
+    fn the_first_and_the_last_method_have_their_profiles_and_a_constant_in_each_cell_its_note() {
+        let of = |methods: &str, more: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2, 0.4]\n[[sweep]]\nmethod = {methods}\n\
+                 integrator = ['implicit']\ncells = [5, 10]\ntime_step = [{{ growth = 0.5 }}]\n{more}\n"
+            );
+            let (study, mut records) = solved("t", &text);
+            for record in &mut records {
+                for row in record.errors.iter_mut().filter(|row| row.quantity == Quantity::Pressure) {
+                    row.value = row.time_factor * if row.sample == Sample::Points { 0.1 } else { 0.01 };
+                }
+            }
+            (study, records)
+        };
+        let (study, records) = of("['GC-SRI-patch', 'GIMP-SRI', 'MPM']", "");
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let found = blocks(&results).expect("theory");
+        let Block::Figures(figures) = &found[1] else { panic!("{found:?}") };
+        assert_eq!(found[0], Block::Heading("Profiles on ten cells".to_owned()));
+        let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
+        assert_eq!(names, ["t-isochrones-gc-sri-patch", "t-isochrones-mpm"]);
+        assert_eq!(
+            figures[0].caption,
+            "Markers: material points of GC-SRI-patch on 10 cells. Lines: theory."
+        );
+        // (π/2)(1/10)√((1 − 1/4)/12) = 0.0393; the errors are those at T_v = 0.2.
+        let Some(Block::Paragraph(note)) = found.get(2) else { panic!("{found:?}") };
+        assert!(
+            note.starts_with("**The sampling points decide the order.** GIMP-SRI gives every point"),
+            "{note}"
+        );
+        let told = "(error 2.00e-3 at T_v = 0.2), but";
+        let measured =
+            "(π/2)(h/H)√((1 − 1/m²)/12) = 3.93e-2 with m = 2 points per cell, and 2.00e-2 is measured.";
+        assert!(note.contains(told) && note.contains(measured), "{note}");
+        assert!(blocks(&StudyResults::new(&study, &records[..2], Tier::Full)).expect("theory").is_empty());
+        let shown = |records: &[Record], has_kink: bool| {
+            let case = |record: &&Record| {
+                (record.case.method.to_string(), record.case.cells, record.case.points_per_cell)
+            };
+            shown_records(records, has_kink).iter().map(case).collect::<Vec<_>>()
+        };
+        let is = |method: &str, cells: usize, points: usize| (method.to_owned(), cells, points);
+        let (_, mut points) = of("['MPM', 'GIMP']", "points_per_cell = [3, 4, 2]");
+        assert_eq!(shown(&points, false), [is("MPM", 10, 2), is("GIMP", 10, 2)]);
+        assert_eq!(shown(&points, true), [is("MPM", 5, 2), is("GIMP", 5, 2)], "kinks show on the coarsest");
+        points.retain(|record| record.case.points_per_cell != 2);
+        assert_eq!(shown(&points, false), [is("MPM", 10, 4), is("GIMP", 10, 4)]);
+        points.retain(|record| record.case.points_per_cell != 4);
+        assert_eq!(shown(&points, false), []);
+        assert_eq!(depth_name(ReferenceKind::Mandel), "distance from the drained side (a − x)/a (–)");
+        assert_eq!(depth_name(ReferenceKind::Terzaghi), "depth below the surface (H − Y)/H (–)");
     }
 }

@@ -79,7 +79,7 @@ fn as_csv() {
 fn a_ragged_row_is_refused_by_every_writer() {
     let mut table = sample();
     table.rows[1].pop();
-    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv] {
+    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv, Table::to_latex] {
         let told = write(&table).err().map(|e| e.to_string()).unwrap_or_default();
         assert_eq!(told, "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns");
     }
@@ -90,6 +90,35 @@ fn an_empty_table_is_a_header() {
     let table = Table::of("", vec![TableColumn::text("a")], []);
     assert_eq!(written(table.to_csv()), "a\n");
     assert_eq!(written(table.to_markdown()), "| a |\n| :--- |\n");
+}
+
+#[test]
+fn shades_follow_the_ratio_footnotes_their_letters_and_long_words_a_wide_column() {
+    use Shade::{Best, Good, Middling, Poor};
+    let ratios = [0.5, 1.0, 1.01, 2.0, 2.01, 10.0, 10.1, f64::INFINITY, f64::NAN].map(Shade::of_ratio);
+    assert_eq!(ratios, [Best, Best, Good, Good, Middling, Middling, Poor, Poor, Poor]);
+    assert_eq!([0, 25, 26, 300].map(mark), ["a", "z", "27", "301"]);
+    let shaded = |value: Option<f64>| {
+        let (title, target) = ("a \"b\"".to_owned(), "s.html".to_owned());
+        Cell::Shaded { shade: Poor, words: "12".to_owned(), value, title, target }
+    };
+    let table = |cell: Cell| Table::of("", columns("a"), [vec![cell]]);
+    let html = |cell: Cell| written(table(cell).to_html());
+    let dense = html(shaded(Some(0.12)));
+    assert!(dense.starts_with("<div class=\"table dense\">"), "{dense}");
+    let link = "<a href=\"s.html\" title=\"a &quot;b&quot;\">12</a>";
+    assert!(dense.contains(&format!("<td class=\"l s4\" data-v=\"1.20000e-1\">{link}</td>")), "{dense}");
+    assert_eq!(
+        [60, 61].map(|letters| html("x".repeat(letters).into()).contains("<td class=\"l long\">")),
+        [false, true]
+    );
+    let csv = |value: Option<f64>| written(table(shaded(value)).to_csv());
+    assert_eq!([csv(Some(0.12)), csv(None)], ["a\n0.12\n", "a\n12\n"]);
+    let read = columns("case | > step [s] | > n");
+    assert_eq!(
+        read,
+        [TableColumn::text("case"), TableColumn::number("step").unit("s"), TableColumn::number("n")]
+    );
 }
 
 #[test]

@@ -110,12 +110,15 @@ fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::runner::{failed_at, records_of};
+    use crate::case::quantity::{Norm, Sample};
+    use crate::golden::compare::{Change, Difference};
     use crate::judge::explanation::ErrorPlace;
     use crate::record::ErrorRow;
 
     #[test]
     fn every_number_of_a_carrier_stands_under_its_name() {
-        let record = crate::campaign::runner::records_of(
+        let record = records_of(
             "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
              integrator = ['implicit']\ncells = [3]\n",
         )
@@ -140,5 +143,53 @@ mod tests {
         ] {
             assert_eq!(under(header), format!("{cell:?}"), "{header}");
         }
+    }
+
+    #[test]
+    fn golden_values_of_a_case_are_counted_and_a_failure_stands_in_the_title() {
+        let of = |has_golden: bool, differing: usize, agreeing: usize| {
+            let one = Difference {
+                name: "n".to_owned(),
+                change: Change::Moved,
+                golden: None,
+                found: None,
+                tolerance: 1e-9,
+            };
+            golden_sentence(&Explanation {
+                carriers: Vec::new(),
+                levels: Vec::new(),
+                inputs: Vec::new(),
+                differences: vec![one; differing],
+                agreeing,
+                has_golden,
+            })
+        };
+        assert_eq!(of(false, 0, 0), "there are no golden values to compare the case with");
+        assert_eq!(of(true, 0, 0), "this case has no golden values: it is not in the CI tier");
+        assert_eq!(of(true, 0, 3), "all 3 golden values of the case agree");
+        assert_eq!(of(true, 2, 3), "2 values differ from the golden ones, 3 agree");
+        assert_eq!(of(true, 2, 0), "2 values differ from the golden ones, 0 agree");
+        let row = |quantity: Quantity| ErrorRow {
+            time_factor: 0.5,
+            quantity,
+            sample: Sample::Surface,
+            norm: Norm::Relative,
+            reference: "r".to_owned(),
+            value: 0.02,
+            absolute: 0.1,
+        };
+        let carrier = |quantity: Quantity| Carrier { row: row(quantity), l1: None, linf: None, place: None };
+        let mut record = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        )
+        .remove(0);
+        record.status = failed_at(7);
+        let all = [Quantity::Settlement, Quantity::LoadFactor, Quantity::Pressure].map(carrier);
+        let table = carriers_table(&record, &all);
+        let main: Vec<&Cell> = table.rows.iter().map(|row| &row[4]).collect();
+        assert_eq!(main, [&Cell::Percent(0.02), &Cell::Percent(0.02), &Cell::Error(0.02)]);
+        assert!(table.title.ends_with(" (unstable at step 7)"), "{}", table.title);
+        assert!(table.notes[0].starts_with("relative errors against terzaghi, "), "{:?}", table.notes);
     }
 }

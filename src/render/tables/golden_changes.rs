@@ -118,3 +118,86 @@ pub fn differences_table(differences: &[Difference]) -> Table {
     )
     .notes(if rest > 0 { vec![format!("and {rest} more")] } else { Vec::new() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_change_has_its_sentence_of_one_value_and_of_several() {
+        let group =
+            |change: Change, values: usize, golden: Option<f64>, found: Option<f64>| DifferenceGroup {
+                change,
+                values,
+                cases: values.min(2),
+                shared_by_cases: vec!["MPM".to_owned(), "cells=8".to_owned()],
+                shared_by_measures: vec!["l2".to_owned()],
+                worst: Difference { name: "n | steps".to_owned(), change, golden, found, tolerance: 1e-9 },
+                place: (values == 3).then(|| "most of it is below".to_owned()),
+            };
+        let shared = ", all with `MPM`, `cells=8`, all of `l2`";
+        for (change, one, several) in [
+            (Change::Moved, "1 value moved, in 1 case", "moved"),
+            (Change::Missing, "1 value is no longer measured, in 1 case", "are no longer measured"),
+            (Change::Extra, "1 value is not in the golden file, in 1 case", "are not in the golden file"),
+            (
+                Change::Smaller,
+                "1 value is smaller where the case got worse elsewhere, in 1 case",
+                "are smaller where the case got worse elsewhere",
+            ),
+            (Change::Stale, "1 value is better: a stale golden, in 1 case", "are better: a stale golden"),
+        ] {
+            assert_eq!(summary(&group(change, 1, None, Some(1.0))), one);
+            let grown = group(change, 2, Some(-2.0), Some(7.0));
+            let told = format!("2 values {several}, in 2 cases{shared}; the largest is 3.5 times as large");
+            assert_eq!(summary(&grown), told);
+            assert_eq!(sentence(&grown), format!("{told}: n | steps"));
+            let moved = format!(
+                "3 values {several}, in 2 cases{shared}; largest relative change 2.50e-1; most of it is below"
+            );
+            assert_eq!(summary(&group(change, 3, Some(4.0), Some(3.0))), moved);
+        }
+    }
+
+    #[test]
+    fn a_case_is_judged_by_accuracy_and_cost_together_and_forty_values_are_enough() {
+        use ParetoChange::{Better, Dominated, NotComparable, Same, Traded};
+        let case = |change: ParetoChange, cost_ratio: f64, worse: usize, better: usize| CaseChange {
+            case: "c".to_owned(),
+            change,
+            cost_ratio,
+            worse,
+            better,
+            unpaired: 7,
+        };
+        let all = [
+            (case(Same, 1.0, 0, 0), "✓ same"),
+            (case(Better, 0.5, 0, 3), "• better"),
+            (case(Traded, 2.0, 0, 3), "• cost traded for accuracy"),
+            (case(Traded, 0.5, 4, 0), "• cost traded for accuracy"),
+            (case(Traded, 1.0, 4, 3), "✗ better here, worse there"),
+            (case(Dominated, 3.0, 5, 0), "✗ dominated by its golden values"),
+            (case(NotComparable, 1.0, 0, 0), "✗ values without a partner"),
+        ];
+        let table = changes_table(&all.each_ref().map(|one| one.0.clone()));
+        for (row, (change, words)) in table.rows.iter().zip(&all) {
+            assert_eq!(row[0].show(), *words);
+            let counts =
+                [change.worse, change.better, change.unpaired].map(|count| Cell::Count(count as u64));
+            assert_eq!((&row[2], &row[3..]), (&Cell::Number(change.cost_ratio), &counts[..]));
+        }
+        let moved = |values: usize| {
+            let one = |number: usize| Difference {
+                name: format!("{number}"),
+                change: Change::Moved,
+                golden: Some(1.0),
+                found: Some(2.0),
+                tolerance: 1e-9,
+            };
+            let table = differences_table(&(0..values).map(one).collect::<Vec<_>>());
+            (table.rows.len(), table.rows.last().map(|row| row[1].show()), table.notes)
+        };
+        assert_eq!(moved(40), (40, Some("39".to_owned()), Vec::new()));
+        assert_eq!(moved(43), (40, Some("39".to_owned()), vec!["and 3 more".to_owned()]));
+    }
+}

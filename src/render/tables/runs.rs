@@ -135,11 +135,13 @@ pub fn critical_steps(records: &[Record]) -> Table {
 
 fn critical_step_row(record: &Record) -> Option<Vec<Cell>> {
     let found = record.stability.as_ref()?;
+    let (no_limit, not_stable) = ("no limit is known: something grows under any step", "no step was stable");
+    let why = if found.known().is_none() { no_limit } else { not_stable };
     let mut row = vec![
         Cell::Code(record.case.label_without_step()),
-        Cell::of(found.known(), Cell::Error, "no limit is known: something grows under any step"),
-        Cell::of(found.observed, Cell::Error, "no step was stable"),
-        Cell::of(found.known().and(found.deviation()), Cell::Percent, "no step was stable"),
+        Cell::of(found.known(), Cell::Error, no_limit),
+        Cell::of(found.observed, Cell::Error, not_stable),
+        Cell::of(found.known().and(found.deviation()), Cell::Percent, why),
         Cell::Number(found.predicted / found.wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];
@@ -164,6 +166,8 @@ fn probe_words(probe: &Probe) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{AttachedRun, CriticalStep, Status};
+    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
     #[test]
     fn a_run_is_busy_where_its_wall_time_is_far_above_the_processors() {
@@ -175,5 +179,120 @@ mod tests {
         assert!(is_busy(&[sample(2.1, Some(1.0))]));
         assert!(!is_busy(&[sample(1.9, Some(1.0))]));
         assert!(!is_busy(&[sample(9.0, None)]) && !is_busy(&[]));
+    }
+
+    fn record() -> Record {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2]\n";
+        crate::campaign::runner::records_of(text).remove(0)
+    }
+
+    fn shown(row: &[Cell]) -> Vec<String> {
+        row.iter().map(Cell::show).collect()
+    }
+
+    #[test]
+    fn a_limit_that_is_not_known_has_no_difference_and_a_run_beside_it_is_told_by_its_end() {
+        let probe = |steps: u64, growth: Option<f64>| Probe {
+            share: 1.03,
+            step: 0.5,
+            steps,
+            reaches_end: steps == 7,
+            failure: growth.map(|_| {
+                let kind = FailureKind::Unstable;
+                Failure { kind, step: steps, time: 1.0, growth, reason: String::new() }
+            }),
+            predicted_growth: (steps == 9).then_some(1.0625),
+        };
+        let probes = [probe(7, None), probe(8, None), probe(9, Some(1.125)), probe(10, Some(1.25))];
+        let words = probes.each_ref().map(probe_words);
+        assert_eq!(
+            words,
+            [
+                "runs 7 steps to the end",
+                "runs 8 steps",
+                "unstable at step 9, grows by 1.1250 a step (1.0625 predicted)",
+                "unstable at step 10, grows by 1.2500 a step"
+            ]
+        );
+        let found = |observed: Option<f64>, unknown: Option<&str>| {
+            let mut record = record();
+            record.stability = Some(CriticalStep {
+                predicted: 0.5,
+                observed,
+                creeping_from: None,
+                wave_limit: 0.25,
+                drag_limit: 1.0,
+                combined_limit: 1.0,
+                unknown: unknown.map(str::to_owned),
+                probes: probes[..2].to_vec(),
+                asymmetry: None,
+            });
+            critical_step_row(&record).expect("a row")
+        };
+        assert_eq!(shown(&found(Some(0.75), None))[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2", "–"]);
+        let none = Cell::missing("no step was stable");
+        assert_eq!(found(None, None)[2..4], [none.clone(), none]);
+        let unknown = found(Some(0.75), Some("a reason"));
+        let nothing = "no limit is known: something grows under any step";
+        assert_eq!((&unknown[1], &unknown[2]), (&Cell::missing(nothing), &Cell::Error(0.75)));
+        assert_eq!(unknown[3], Cell::missing(nothing), "a step was stable");
+    }
+
+    #[test]
+    fn a_run_of_a_solver_is_told_with_its_end_its_command_and_what_the_system_does_not_tell() {
+        let sample = |seconds: f64, cpu: Option<f64>, load: f64| WallSample {
+            seconds,
+            cpu_seconds: cpu,
+            load: Some(load),
+            ..WallSample::default()
+        };
+        let mut all = [record(), record(), record(), record()];
+        assert!(attached_table(&all).is_none() && attached_notes(&all[0]).is_empty());
+        for record in &mut all[1..] {
+            record.attached = Some(AttachedRun::default());
+        }
+        let failed = |kind: FailureKind| {
+            Status::Failed(Failure { kind, step: 0, time: 0.0, growth: None, reason: "why".to_owned() })
+        };
+        (all[2].status, all[3].status) = (failed(FailureKind::Skipped), failed(FailureKind::TimedOut));
+        (all[1].wall, all[2].wall) =
+            (vec![sample(5.0, Some(2.0), 3.0), sample(6.0, Some(2.5), 1.5)], Vec::new());
+        all[3].wall = vec![sample(1.0, None, 0.5)];
+        let table = attached_table(&all).expect("three");
+        let ends: Vec<String> = table.rows.iter().map(|row| row[1].show()).collect();
+        assert_eq!(ends[0], "✓ ok");
+        assert!(ends[1].starts_with("• ") && ends[2].starts_with("✗ "), "{ends:?}");
+        assert_eq!(
+            table.notes[1],
+            "1 of 3 runs took more than 2 times their processor time: the machine was busy or they waited, so compare \
+             processor times"
+        );
+        assert_eq!(table.rows[1][3], Cell::missing("not run"));
+        assert_eq!(table.rows[2][5], Cell::missing("the system does not report it"));
+        assert_eq!(attached_table(&all[2..]).expect("two").notes.len(), 1, "none was busy");
+        let about = all[1].attached.as_mut().expect("attached");
+        (about.command, about.version) = (["sh", "{case}"].map(str::to_owned).into(), Some("2.1".to_owned()));
+        (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
+        about.taken = vec!["p from pressure".to_owned()];
+        assert_eq!(
+            attached_notes(&all[1]),
+            [
+                "run by `sh {case}`, version 2.1",
+                "wall time at least 5 s, median 5.5 s of 2 runs, processor 2.25 s, the system does not report memory, load of \
+                 the machine 3, the machine was busy or it waited: compare processor times",
+                "results of its repeats differ by at most 1e-9",
+                "a note",
+                "taken: p from pressure"
+            ]
+        );
+        let notes = attached_notes(&all[3]);
+        assert!(
+            notes[0].contains("why") && notes[1] == "read from existing files; nothing was run",
+            "{notes:?}"
+        );
+        let told = "wall time at least 1 s, median 1 s of 1 run, the system does not report processor time, the system does not \
+                    report memory, load of the machine 0.5";
+        assert_eq!(notes[2..], [told]);
     }
 }

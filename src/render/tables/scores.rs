@@ -1,6 +1,7 @@
 //! Tables of a foreign result compared with references.
 
 use crate::case::quantity::{Norm, Quantity};
+use crate::judge::paths::first_norm;
 use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace, error_key};
 use crate::record::ErrorRow;
@@ -43,6 +44,13 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     let unresolved = score.unresolved.iter().filter(|one| one.reference == first).map(|one| {
         let mut cells =
             vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
+        // Against another reference there may be one.
+        let norm = first_norm(one.quantity);
+        cells.extend(references.iter().map(|name| {
+            error_cell(
+                index.get(&(one.time_factor.to_bits(), one.quantity, one.sample, norm, *name)).copied(),
+            )
+        }));
         cells.resize_with(columns.len(), || Cell::missing(NOT_RESOLVED));
         cells
     });
@@ -105,6 +113,7 @@ pub fn series_table(series: &[ScoredSeries], cells: &[usize]) -> Table {
 mod tests {
     use super::*;
     use crate::case::quantity::Sample;
+    use crate::judge::score::Unresolved;
     use oedometer_convergence::{Class, Classification, ErrorSeries};
 
     #[test]
@@ -176,5 +185,50 @@ mod tests {
         for differences in [[0.0; 3], [9e-10; 3]] {
             assert_eq!(told(differences), ["the order is that of the finest three meshes"]);
         }
+    }
+
+    #[test]
+    fn what_has_no_error_against_the_first_reference_stands_last_with_the_reason() {
+        let row = |quantity: Quantity, norm: Norm, reference: &str, value: f64| ErrorRow {
+            time_factor: 0.2,
+            quantity,
+            sample: if quantity.is_of_surface() { Sample::Surface } else { Sample::Nodes },
+            norm,
+            reference: reference.to_owned(),
+            value,
+            absolute: 0.5,
+        };
+        let errors = vec![
+            row(Quantity::Pressure, Norm::L1, "first", 0.9),
+            row(Quantity::Pressure, Norm::L2, "first", 0.07),
+            row(Quantity::Settlement, Norm::Relative, "first", 0.03),
+            row(Quantity::Pressure, Norm::L2, "second", 0.08),
+            row(Quantity::Displacement, Norm::L2, "second", 0.06),
+        ];
+        let unresolved = |quantity: Quantity, reference: &str| Unresolved {
+            time_factor: 0.2,
+            quantity,
+            sample: Sample::Nodes,
+            reference: reference.to_owned(),
+            absolute: 1e-9,
+        };
+        let lost = vec![unresolved(Quantity::Displacement, "first"), unresolved(Quantity::Pressure, "third")];
+        let table = errors_table(&Score { errors, unresolved: lost, ..Score::default() }, "t");
+        let shown: Vec<Vec<String>> =
+            table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        assert_eq!(
+            shown,
+            [
+                ["0.2", "pressure", "nodes", "7.00e-2", "8.00e-2", "–", "–", "–", "–", "–"],
+                ["0.2", "settlement", "surface", "3.00 %", "–", "–", "–", "–", "–", "–"],
+                ["0.2", "displacement", "nodes", "–", "6.00e-2", "–", "–", "–", "–", "–"],
+            ]
+        );
+        let heads: Vec<&str> = table.columns[3..7].iter().map(|column| column.header.as_str()).collect();
+        assert_eq!(
+            heads,
+            ["error against first", "error against second", "error against third", "worst at ζ"]
+        );
+        assert_eq!(table.footnotes(), [NOT_RESOLVED]);
     }
 }

@@ -107,4 +107,33 @@ mod tests {
             assert!((eight / one - 1.0).abs() < 1e-6, "column {column}: {one} {eight}");
         }
     }
+
+    #[test]
+    fn three_levels_have_an_index_alone_and_those_that_oscillate_not_even_an_order() {
+        use ErrorModel::{FirstAndSecondOrder, FirstOrder, PowerLaw, SecondOrder};
+        let told = |levels: &[(f64, f64)]| {
+            let levels = levels.iter().map(|(size, value)| (*size, Some(*value))).collect();
+            let uncertainty = ValueSeries::new(levels).uncertainty(2.0).expect("three levels");
+            let (demand, series) = (SeriesDemand::default(), ErrorSeries::default());
+            let verdict = judge(&demand, &series, &Context::default(), &Beside::default());
+            let judgement =
+                Judgement { line: 1, subject: "s".to_owned(), verdict, uncertainty: Some(uncertainty) };
+            let table = table_of(&[judgement]).expect("a table");
+            (table.rows[0].iter().map(Cell::show).collect::<Vec<_>>(), table.footnotes().join("; "))
+        };
+        // 2 + h²: the index is 1.25 (φ₁ − φ₂)/(2² − 1), over the finest value.
+        let (row, why) = told(&[(1.0, 3.0), (0.5, 2.25), (0.25, 2.0625)]);
+        let share = crate::render::number::error(1.25 * 0.0625 / 2.0625);
+        let start =
+            ["s", "3", "2.062500", "monotone", "2", "2.000000", share.as_str(), "–", "–", share.as_str()];
+        assert_eq!((row, why.as_str()), (start.map(str::to_owned).to_vec(), FEW));
+        // Three times the range of the values.
+        let (row, why) = told(&[(1.0, 2.0), (0.5, 2.2), (0.25, 2.1)]);
+        let share = crate::render::number::error(3.0 * 0.2 / 2.1);
+        let start = ["s", "3", "2.100000", "oscillatory", "–", "–", "–", "–", "–", share.as_str()];
+        assert_eq!((row, why), (start.map(str::to_owned).to_vec(), format!("{OSCILLATES}; {FEW}")));
+        assert!(table_of(&[]).is_none());
+        let models = [PowerLaw, FirstOrder, SecondOrder, FirstAndSecondOrder].map(model_name);
+        assert_eq!(models, ["α h^p", "α h", "α h²", "α₁ h + α₂ h²"]);
+    }
 }
