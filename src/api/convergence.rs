@@ -107,7 +107,10 @@ mod tests {
         assert_eq!(found.sizes, [0.1, 0.05, 0.025]);
         assert_eq!(found.classification.class, Class::Asymptotic);
         assert!((found.classification.order.expect("an order") - 2.0).abs() < 1e-9);
-        assert!(convergence(&[0.1], &[], None).is_err());
+        let told = "there are 1 sizes and 0 errors: give one of each per level";
+        assert_eq!(convergence(&[0.1], &[], None).err().as_deref(), Some(told));
+        let lacking = convergence(&[0.1, 0.05, 0.025], &[4e-2, f64::NAN, 2.5e-3], None).expect("a series");
+        assert_eq!((lacking.pair_orders, lacking.errors[2]), (vec![None, None], 2.5e-3));
         // 0.171, −0.145, −0.223 % go to a limit, and their sizes alone would grow.
         let of = |errors: [f64; 4]| {
             let found = convergence(&[0.1, 0.05, 0.025, 0.0125], &errors, None);
@@ -131,7 +134,8 @@ mod tests {
         let nonsense = verdict(&sizes, &[4e-2, f64::NAN, 2.5e-3], &demand).expect("a series");
         assert!(!nonsense.0, "{}", nonsense.1);
         let unknown = Demand { class: Some("asymptotics".to_owned()), ..Demand::default() };
-        assert!(verdict(&sizes, &errors, &unknown).is_err_and(|told| told.contains("asymptotic")));
+        let told = verdict(&sizes, &errors, &unknown).expect_err("no class");
+        assert!(told.starts_with("unknown class `asymptotics`: ") && told.contains("`asymptotic`"), "{told}");
     }
 
     #[test]

@@ -214,4 +214,28 @@ mod tests {
             assert!(error.contains(told), "{error}");
         }
     }
+
+    #[test]
+    fn the_column_of_the_textbooks_is_what_a_hand_computes() {
+        let set = ["column.height=2.0", "column.load=40.0"].map(str::to_owned);
+        let found = exact("terzaghi-incompressible", &[0.0, 0.01], &[0.5, 1.0], &[], &set).expect("inside");
+        assert_eq!((found.height, found.load), (2.0, 40.0));
+        // c_v = 1e-4 · 1.2e6/9810 m²/s, T_v = 0.01; early a half space, U = 2√(T_v/π), s = U q H/E_oed.
+        let seconds = 0.01 * 4.0 * 9810.0 / 120.0;
+        assert!(found.time[0] == 0.0 && (found.time[1] / seconds - 1.0).abs() < 1e-12, "{:?}", found.time);
+        let degree = 2.0 * (0.01 / std::f64::consts::PI).sqrt();
+        assert!((found.degree_of_consolidation[1] / degree - 1.0).abs() < 1e-9, "{found:?}");
+        assert!((found.settlement[1] / (degree * 80.0 / 1.2e6) - 1.0).abs() < 1e-9, "{found:?}");
+        // The load is still in the water, in the middle but for erfc(2.5) of it.
+        let at = |values: &[f64], wanted: [f64; 4], near: f64| {
+            assert!(
+                values.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < near),
+                "{values:?}"
+            );
+        };
+        let erfc = 40.0 * 4.069_52e-4;
+        at(&found.pressure, [40.0, 40.0, 40.0 - erfc, 40.0], 1e-4);
+        at(&found.effective_stress, [0.0, 0.0, -erfc, 0.0], 1e-4);
+        assert_eq!(found.horizontal_displacement, [0.0; 0]);
+    }
 }

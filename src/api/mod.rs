@@ -142,7 +142,22 @@ mod tests {
             assert_eq!(dotted_key(scene, name).as_deref(), Ok(key));
         }
         let told = dotted_key("terzaghi", "permeability").expect_err("no such key");
-        assert!(told.contains("`permeability`") && told.contains("hydraulic_conductivity"), "{told}");
+        let start = "no input of `terzaghi` is called `permeability`; there are height, ";
+        assert!(told.starts_with(start) && told.contains(", hydraulic_conductivity, "), "{told}");
+        let told = dotted_key("terzagi", "load").expect_err("no such scene");
+        let start = "no exact solution is called `terzagi`; there are terzaghi, terzaghi-incompressible, ";
+        assert!(
+            told.starts_with(start) && told.ends_with(ShelfProblem::ALL[ShelfProblem::ALL.len() - 1].name()),
+            "{told}"
+        );
+        for (solution, scene) in [
+            ("terzaghi-incompressible", SceneKind::Terzaghi),
+            ("cosine-layer", SceneKind::CosineLayer),
+            ("mandel", SceneKind::Mandel),
+        ] {
+            let (kind, found) = scene_of(solution).expect("a solution");
+            assert_eq!((kind.name(), found), (solution, scene));
+        }
     }
 
     #[test]
@@ -222,5 +237,27 @@ mod tests {
             let (found, _) = runs_with(std::slice::from_ref(file), &meaning, body, false).expect("a state");
             assert_eq!(found.declared_by, wanted);
         }
+        // What the files show of their places goes over what a preset takes for granted, and not over a mapping's word.
+        let foreign = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign/kratos-vtk");
+        let nodes = std::fs::read_dir(foreign).expect("files").flatten().map(|entry| entry.path());
+        let nodes = nodes
+            .filter(|path| path.extension().is_some_and(|ending| ending == "vtk"))
+            .min()
+            .expect("a file");
+        let said = write("s.toml", "sample = \"points\"\n[columns]\np = \"WATER_PRESSURE\"\nu_y = \"\"\n");
+        let arrays = write("w.toml", "[columns]\np = \"WATER_PRESSURE\"\nu_y = \"\"\n");
+        for (mapping, sample) in [(&said, "points"), (&arrays, "nodes")] {
+            let meaning = Meaning {
+                preset: Some("meshio".to_owned()),
+                mapping: Some(mapping.clone()),
+                time_step: Some(0.08175),
+            };
+            let (found, _) = runs_with(std::slice::from_ref(&nodes), &meaning, body, false).expect("a state");
+            assert_eq!(found.sample.name(), sample);
+        }
+        let none = Meaning { mapping: Some(folder.path().join("none.toml")), ..Meaning::default() };
+        let told = runs_with(std::slice::from_ref(&table), &none, body, false).expect_err("no mapping");
+        let start = format!("cannot read the mapping {}: ", folder.path().join("none.toml").display());
+        assert!(told.starts_with(&start), "{told}");
     }
 }

@@ -375,6 +375,30 @@ mod tests {
         assert!(largest > 1e-2, "a displacement along the layer counts: {largest}");
     }
 
+    #[test]
+    fn files_have_a_score_each_mesh_by_their_names_in_their_order() {
+        let foreign = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign");
+        let [ten, twenty, forty] = ["ogs", "ogs-20", "ogs-40"].map(|name| foreign.join(name).join("col.pvd"));
+        let meaning = Meaning { preset: Some("ogs".to_owned()), ..Meaning::default() };
+        let of = |files: &[PathBuf], reference| score_files("terzaghi", files, &meaning, reference, &[]);
+        let files = [forty, ten, twenty];
+        let found = of(&files, Some("terzaghi")).expect("scores");
+        let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, files.each_ref().map(|file| file.to_str().expect("UTF-8")));
+        let alone = files.map(|file| of(&[file], Some("terzaghi")).expect("a score").remove(0).1.errors);
+        assert!(
+            found.iter().zip(&alone).all(|((_, score), alone)| score.errors == *alone && !alone.is_empty())
+        );
+        assert!(alone[0] != alone[1] && alone[1] != alone[2], "each has its own");
+        assert!(alone.iter().flatten().all(|row| row.reference == "terzaghi"));
+        let told = of(&[foreign.join("none.pvd")], None).expect_err("no file");
+        assert!(told.contains("none.pvd"), "{told}");
+        let samples = Samples { time: &[1.0], height: &[0.5], pressure: &[1.0], ..Samples::default() };
+        let told = score("terzaghi", &samples, "places", None, &[]).err();
+        let words = "unknown kind of places `places`: expected points, centres, nodes, surface";
+        assert_eq!(told.as_deref(), Some(words));
+    }
+
     /// Height over the base of a layer 1 m high.
     fn found_height(depth: f64) -> f64 {
         1.0 - depth

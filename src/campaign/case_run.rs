@@ -215,12 +215,12 @@ fn schedule_of(case: &Case, course: Course) -> Schedule {
     }
 }
 
-/// Seconds that this thread has worked on a processor, where the system tells.
 /// The processor time of a case on so many threads: one of several has the process for itself.
 fn clock_of(threads: usize) -> fn() -> Option<f64> {
     if threads > 1 { process_seconds } else { thread_seconds }
 }
 
+/// Seconds that this thread has worked on a processor, where the system tells.
 pub fn thread_seconds() -> Option<f64> {
     #[cfg(unix)]
     return seconds_of(rustix::time::ClockId::ThreadCPUTime);

@@ -84,9 +84,6 @@ impl<'a> CaseRunner<'a> {
         case: &Case,
         store: Option<&RecordStore>,
     ) -> Result<Vec<WallSample>, ExactError> {
-        if self.study.holds_back(case) {
-            return Ok(Vec::new());
-        }
         if case.is_attached() {
             let timed = self.attached(case, store, true, &|_, _| true)?;
             return Ok(if is_stopped(&timed) { Vec::new() } else { timed.wall });

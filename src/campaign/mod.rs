@@ -5,3 +5,5 @@ pub mod case_runner;
 pub mod runner;
 pub mod shares;
 pub mod stop;
+#[cfg(test)]
+mod tests;

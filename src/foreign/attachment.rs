@@ -16,7 +16,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::Failure;
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
-use oedometer_soil::wording::{short, typed};
+use oedometer_soil::wording::{count_of, short, typed};
 use regex_lite::Regex;
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
@@ -301,7 +301,7 @@ fn record(
             about.sample = Some(result.sample);
             let more = result.notes.len().saturating_sub(MOST_TAKEN);
             about.taken = result.notes.into_iter().take(MOST_TAKEN).collect();
-            about.taken.extend((more > 0).then(|| format!("and {more} notes more")));
+            about.taken.extend((more > 0).then(|| format!("and {} more", count_of(more, "note", "notes"))));
             about.result_digest = Some(result.digest);
             let snapshot = |state| snapshot_of(case, result.sample, state);
             (Status::Ok, states.into_iter().map(snapshot).collect())

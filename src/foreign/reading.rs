@@ -299,4 +299,159 @@ mod tests {
         }
         assert_eq!(other_cells(&case, None), None, "a table shows no cells");
     }
+
+    /// A state of a column 1 m high in legacy VTK: lines of nodes over the height, with or without cells.
+    fn vtk(cells: usize, seconds: f64) -> String {
+        let lines = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+        let nodes = cells + 1;
+        format!(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {nodes} double\n{}CELLS {cells} {}\n{}\
+             CELL_TYPES {cells}\n{}FIELD f 1\nTIME 1 1 double\n{seconds}\nPOINT_DATA {nodes}\nSCALARS p double\n\
+             LOOKUP_TABLE default\n{}SCALARS u_y double\nLOOKUP_TABLE default\n{}",
+            lines(nodes, &|at| format!("0 {} 0\n", at as f64 / cells as f64)),
+            3 * cells,
+            lines(cells, &|cell| format!("2 {cell} {}\n", cell + 1)),
+            "3\n".repeat(cells),
+            "0.5\n".repeat(nodes),
+            "0\n".repeat(nodes)
+        )
+    }
+
+    /// Results in a folder for a case of four cells under 1 Pa: tables, and meshes of four and of five cells.
+    fn results() -> (tempfile::TempDir, Case) {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
+        write("a.csv", "t,y,p,u_y\n8.175,0.5,0.5,0\n");
+        write("b.csv", "t,y,p,u_y\n8.175,0.25,0.5,0\n");
+        write("cut.csv", "t,y,p,u_y\n8.175,0.5,0.5,0.1");
+        write("two.csv", "t,y,p,u_y\n8.175,0.5,0.5,0\n16.35,0.5,200.0,0\n");
+        write("nan.csv", "t,y,p,u_y\n8.175,0.5,NaN,0\n");
+        for (name, cells) in [("four-1.vtk", 4), ("five-1.vtk", 5), ("six-1.vtk", 4)] {
+            write(name, &vtk(cells, 8.175));
+        }
+        write("bare-1.vtk", &vtk(4, 8.175).replace("SCALARS p double", "SCALARS q double"));
+        let case = Case {
+            cells: 4,
+            time_factors: vec![0.1].into(),
+            ..Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi)
+        };
+        (folder, case)
+    }
+
+    /// Mappings of tables, and of arrays whose places are open, points or centres.
+    fn mappings() -> [Mapping; 4] {
+        use clap::ValueEnum;
+        let meshio = crate::study::solver::Preset::from_str("meshio", false).expect("a preset");
+        let arrays = Mapping::resolve(Some(meshio), None, false).expect("a preset");
+        let said = |sample| Mapping { sample, is_sample_open: false, ..arrays.clone() };
+        let [points, centres] = [Sample::Points, Sample::Centres].map(said);
+        [Mapping::convention(false).expect("a constant"), arrays, points, centres]
+    }
+
+    /// The kind of places, the number of states and the digest of results, or why there are none.
+    fn read_as(
+        (folder, case): &(tempfile::TempDir, Case),
+        mapping: &Mapping,
+        names: &[&str],
+    ) -> Result<(&'static str, usize, String), String> {
+        let files: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
+        match read(case, mapping, &files) {
+            Ok(found) => Ok((found.sample.name(), found.states.len(), found.digest)),
+            Err(Unread::NoFile) => Err("no file".to_owned()),
+            Err(Unread::Unreadable(why)) => Err(why.replace(&format!("{}/", folder.path().display()), "")),
+            Err(Unread::NotFinite(why)) => Err(format!("not finite: {why}")),
+        }
+    }
+
+    #[test]
+    fn a_result_that_cannot_be_that_of_its_case_is_told_why() {
+        let results = results();
+        let [table, arrays, points, centres] = mappings();
+        let cut = "cut.csv does not end with a line break, so it may be cut inside its last number: end the last line with one";
+        let stand = |kind: &str, heights: usize, most: usize| {
+            format!(
+                "at T_v = 0.1, the {kind} of the result stand at {heights} heights, and 4 cells have {most}: it is another \
+                 mesh's, or its places are no {kind} (`sample` in the mapping; `rows` chooses corners)"
+            )
+        };
+        let lacking = "there is no `p` at any time; to leave it out, call `score --without pressure`, or write `p = \"\"` to \
+                       [columns] of a mapping";
+        let several =
+            "the files hold 2 results, of different meshes or names: let the study's `result` name one";
+        for (mapping, names, told) in [
+            (&table, &["none.csv"][..], "no file"),
+            (&table, &["a.csv", "none.csv"], "no file"),
+            (&table, &["none*.csv"], "no file"),
+            (&table, &["cut.csv"], cut),
+            (&table, &["a.csv", "cut.csv"], cut),
+            (
+                &table,
+                &["two.csv"],
+                "at T_v = 0.2, a pressure is 2.000e2 Pa, more than 100 times the load of 1 Pa",
+            ),
+            (&arrays, &["four-1.vtk", "six-1.vtk"], several),
+            (&arrays, &["five-1.vtk"], &stand("nodes", 6, 5)),
+            (&centres, &["four-1.vtk"], &stand("centres", 5, 4)),
+            (&arrays, &["bare-1.vtk"], lacking),
+            // Points may stand at any number of heights, and cells are seen all the same.
+            (
+                &points,
+                &["five-1.vtk"],
+                "the mesh of the result has 5 cells over the height, and the case asks for 4",
+            ),
+        ] {
+            assert_eq!(read_as(&results, mapping, names).err().as_deref(), Some(told), "{names:?}");
+        }
+        let told = read_as(&results, &table, &["nan.csv"]).expect_err("no number");
+        assert!(told.starts_with("not finite: ") && told.contains("nan.csv:2: `NaN`"), "{told}");
+    }
+
+    #[test]
+    fn places_are_what_the_mapping_says_or_the_files_show_and_a_digest_is_of_all_files() {
+        let results = results();
+        let [table, arrays, points, _] = mappings();
+        for (mapping, names, sample) in [
+            (&table, &["a.csv"][..], "points"),
+            (&table, &["?.csv"], "points"),
+            (&arrays, &["four-1.vtk"], "nodes"),
+            (&points, &["four-1.vtk"], "points"),
+        ] {
+            let found = read_as(&results, mapping, names).map(|(sample, states, _)| (sample, states));
+            assert_eq!(found, Ok((sample, 1)), "{names:?}");
+        }
+        let digest = |names: &[&str]| read_as(&results, &table, names).expect("a result").2;
+        let both = digest(&["a.csv", "b.csv"]);
+        assert_eq!((digest(&["?.csv"]), both.len()), (both.clone(), 16));
+        std::fs::write(results.0.path().join("b.csv"), "t,y,p,u_y\n8.175,0.25,0.6,0\n").expect("a file");
+        let others = [&["a.csv", "b.csv"][..], &["b.csv", "a.csv"], &["a.csv"], &["b.csv"]].map(digest);
+        let distinct: std::collections::BTreeSet<&String> = others.iter().chain([&both]).collect();
+        assert_eq!(distinct.len(), 5, "{others:?} {both}");
+    }
+
+    #[test]
+    fn a_mapping_of_a_gate_declares_what_it_takes_and_one_of_a_run_need_not() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        std::fs::write(
+            folder.path().join("m.toml"),
+            "units.stress = 'Pa'\nsign.p = 'compression-positive'\n",
+        )
+        .expect("written");
+        let mut solver = crate::foreign::attachment::tests::solver(folder.path(), &["true"]);
+        assert_eq!(mapping_of(&solver, false).ok(), Mapping::convention(false).ok(), "without a mapping");
+        solver.mapping = Some("m.toml".to_owned());
+        assert!(mapping_of(&solver, false).is_ok());
+        solver.files = vec!["a.csv".to_owned()];
+        let path = folder.path().join("m.toml").display().to_string();
+        let told = mapping_of(&solver, false).expect_err("undeclared").to_string();
+        assert_eq!(
+            told,
+            format!(
+                "{path} does not declare the sign of `u_y`, taken as up: write it into [units] and [sign]"
+            )
+        );
+        solver.mapping = Some("none.toml".to_owned());
+        let told = mapping_of(&solver, false).expect_err("no file").to_string();
+        let start = format!("cannot read the mapping {}: ", folder.path().join("none.toml").display());
+        assert!(told.starts_with(&start), "{told}");
+    }
 }

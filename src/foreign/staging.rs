@@ -280,8 +280,24 @@ mod tests {
         assert_eq!(staged.contents(), "result.csv");
         let told = staged.without_paths(&format!("see {}/result.csv", staged.out().display()));
         assert_eq!(told, "see {out}/result.csv");
+        let [case, beside] =
+            [staged.case_file(), staged.out().with_file_name("x")].map(|path| path.display().to_string());
+        assert_eq!(staged.without_paths(&format!("{case} {beside}")), "{case} {out}/../x");
+        assert_eq!(fs::read_to_string(staged.case_file()).expect("a file"), "{}");
+        staged.keep_words("said", "wrong").expect("kept");
+        for (number, told) in [
+            (7, "0, 1, 2, 3, 4, 5, 6, result.csv"),
+            (8, "0, 1, 2, 3, 4, 5, 6, 7 and 1 more"),
+            (9, "0, 1, 2, 3, 4, 5, 6, 7 and 2 more"),
+        ] {
+            (0..number).for_each(|name| fs::write(staged.out().join(name.to_string()), "").expect("a file"));
+            assert_eq!(staged.contents(), told);
+        }
         staged.keep(false).expect("kept");
         assert_eq!(names(), [FAILED]);
+        let words = ["stdout.txt", "stderr.txt"]
+            .map(|name| fs::read_to_string(folder.path().join(FAILED).join(name)).ok());
+        assert_eq!(words, ["said", "wrong"].map(|word| Some(word.to_owned())));
         let second = Staged::new(Some(folder.path()), "{}").expect("fresh");
         assert_eq!(second.contents(), "nothing", "nothing of the first run is there");
         second.keep(true).expect("kept");
@@ -307,6 +323,23 @@ mod tests {
     fn placeholders_are_filled_once_and_other_braces_stay() {
         let filling = Filling { values: vec![("out", "/a/{cells}".to_owned()), ("cells", "10".to_owned())] };
         assert_eq!(filling.fill("{out}/x-{cells}.csv {} {a} {"), "/a/{cells}/x-10.csv {} {a} {");
+        assert_eq!(filling.fill(""), "");
+        // Every one is that of the case: 0.002 s a step, and 0.3 · 81.75 s to the last output.
+        let case = Case {
+            cells: 7,
+            points_per_cell: 3,
+            time_factors: vec![0.1, 0.3].into(),
+            time_step: oedometer_mpm::run::TimeStepRule::Seconds(0.002),
+            ..Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi)
+        };
+        let solver = solver(Path::new("/studies"), &["sh"]);
+        let filling = Filling::of(&case, &solver, Path::new("/f/case.json"), Path::new("/f/out"));
+        let filled =
+            filling.fill("{case} {out} {study} {cells} {points_per_cell} {time_step} {end_time} {times}");
+        let (words, rest) = filled.rsplit_once("0.002 ").expect("the step");
+        assert_eq!(words, "/f/case.json /f/out /studies 7 3 ");
+        let end: f64 = rest.strip_suffix(" {times}").expect("no placeholder").parse().expect("a number");
+        assert!((end - 24.525).abs() < 1e-9, "{end}");
     }
 
     #[test]
@@ -336,7 +369,7 @@ mod tests {
         let folder = tempfile::TempDir::new().expect("a folder");
         let at = |name: &str| folder.path().join(name);
         let write = |name: &str, text: &str| fs::write(at(name), text).expect("a file");
-        for one in ["code", "out", "report", "__pycache__"] {
+        for one in ["code", "out", "golden", "report", "__pycache__"] {
             fs::create_dir(at(one)).expect("a folder");
         }
         write("adapter.py", "1");
@@ -345,9 +378,14 @@ mod tests {
         let digest = || program_digest(&adapter).expect("known");
         let mut before = digest();
         assert_eq!(before.len(), DIGITS);
-        for unused in
-            ["out/record.json", "report/index.html", "__pycache__/element.pyc", ".cache", "study.toml"]
-        {
+        for unused in [
+            "out/record.json",
+            "golden/a.csv",
+            "report/index.html",
+            "__pycache__/element.pyc",
+            ".cache",
+            "study.toml",
+        ] {
             write(unused, "2");
             assert_eq!(digest(), before, "{unused}");
         }

@@ -265,3 +265,23 @@ pub fn named(all: &[Seen]) -> String {
     }
     words.join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn five_processes_are_named_without_control_characters_and_the_others_are_counted() {
+        let seen = |count: i32| {
+            (1..=count).map(|id| Seen { id, name: format!("a\u{7}b ({id})\n") }).collect::<Vec<_>>()
+        };
+        for (count, told) in [
+            (0, ""),
+            (1, "1 (ab (1))"),
+            (5, "1 (ab (1)), 2 (ab (2)), 3 (ab (3)), 4 (ab (4)), 5 (ab (5))"),
+            (7, "1 (ab (1)), 2 (ab (2)), 3 (ab (3)), 4 (ab (4)), 5 (ab (5)), 2 more"),
+        ] {
+            assert_eq!(named(&seen(count)), told);
+        }
+    }
+}

@@ -410,6 +410,9 @@ mod tests {
     fn what_has_no_partner_cannot_be_compared() {
         let missing = Difference { found: None, ..difference("a | pressure T_v=0.1", 0.1, 0.1) };
         assert_eq!(only(&[missing]).change, ParetoChange::NotComparable);
+        let from_nothing =
+            only(&[difference("a | steps", 0.0, 5.0), difference("a | pressure T_v=1", 0.2, 0.1)]);
+        assert_eq!((from_nothing.change, from_nothing.is_stale()), (ParetoChange::NotComparable, false));
         let names: Vec<String> = case_changes(&[
             difference("a | steps", 1.0, 2.0),
             difference("b | steps", 1.0, 2.0),

@@ -243,6 +243,19 @@ mod tests {
         let keys: Vec<&str> =
             found.own["MPM implicit cells=4 points=2 growth=0.05"].keys().map(String::as_str).collect();
         assert_eq!(keys, ["cells", "method"]);
+        let label = "GIMP implicit cells=8 points=2 growth=0.05";
+        let only = found.only(label);
+        assert_eq!(
+            (only.shared, only.own),
+            (found.shared.clone(), [(label.to_owned(), found.own[label].clone())].into())
+        );
+        assert_eq!(found.only("GIMP").own.len(), 0);
+        assert!(CaseInputs::of([]).is_unknown() && !found.is_unknown());
+        for (value, short) in
+            [(0.25, "0.25"), (1e6, "1e6"), (2650.0, "2650"), (1e-4, "1e-4"), (1000.0, "1e3"), (120.0, "120")]
+        {
+            assert_eq!(shortest(value), short);
+        }
     }
 
     #[test]
@@ -274,6 +287,13 @@ mod tests {
         let before = BTreeMap::from([("a", of(["1", "1", "1"])), ("b", of(["8", "8", "8"]))]);
         let after = BTreeMap::from([("c", of(["1", "1", "2"])), ("d", of(["1", "9", "9"]))]);
         assert_eq!(nearest(&before, &after), BTreeMap::from([("a", "c"), ("b", "d")]));
+        assert_eq!(nearest(&after, &before), BTreeMap::from([("c", "a"), ("d", "b")]));
+        // Too many to try.
+        let labels = |side: &str| (0..=1000).map(|number| format!("{side}{number}")).collect::<Vec<_>>();
+        let (old, new) = (labels("a"), labels("b"));
+        let [old, new] =
+            [&old, &new].map(|all| all.iter().map(|one| (one.as_str(), BTreeMap::new())).collect());
+        assert_eq!(nearest(&old, &new), BTreeMap::new());
     }
 
     #[test]

@@ -307,8 +307,21 @@ mod tests {
             let own = GoldenFile::read_or_embedded(nowhere, study).expect("inside the program");
             assert_eq!(own, GoldenFile::read(&root, study).expect("in the repository"), "{study}");
         }
-        let missing = GoldenFile::read_or_embedded(nowhere, "no-such-study");
-        assert!(matches!(missing, Err(GoldenError::Missing(_))));
+        let told = GoldenFile::read_or_embedded(nowhere, "no-such-study").expect_err("no file").to_string();
+        let what = "look at the results, then `oedometer accept` them with a reason";
+        assert_eq!(told, format!("there is no golden file nowhere/no-such-study.csv: {what}"));
+        // A file of one's own goes before the one inside, and one of another name is refused.
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let own = GoldenFile::of("terzaghi-mesh", &[], "one's own");
+        let path = own.write(folder.path()).expect("written");
+        assert_eq!(GoldenFile::read_or_embedded(folder.path(), "terzaghi-mesh").expect("read"), own);
+        let other = GoldenFile::path(folder.path(), "work-precision");
+        std::fs::rename(path, &other).expect("renamed");
+        let told =
+            GoldenFile::read_or_embedded(folder.path(), "work-precision").expect_err("refused").to_string();
+        let wanted =
+            format!("the golden file {} cannot be read: it is of study `terzaghi-mesh`", other.display());
+        assert_eq!(told, wanted);
     }
 
     #[test]
@@ -335,6 +348,39 @@ mod tests {
             ..GoldenFile::of("s", &[], "test")
         };
         assert_eq!(counted(101.0).keeping(&counted(100.0)), counted(101.0));
+    }
+
+    #[test]
+    fn values_are_of_the_whole_record_and_its_seconds_those_of_its_first_run() {
+        use crate::record::{LayerBalance, WallSample};
+        let mut records = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput = { time_factors = [0.1, 0.3], references = ['terzaghi'] }\n[[sweep]]\n\
+             method = ['MPM']\nintegrator = ['implicit']\ncells = [2, 3]\n",
+        );
+        let layers = LayerBalance {
+            pore_water: 3.0,
+            water_left: 5.0,
+            water_left_error: 7.0,
+            water_points: 11,
+            largest_pressure: Some(13.0),
+        };
+        records[1].balance[1].layers = Some(layers);
+        let values = values_of(&records);
+        let of = |record: &Record, measure: &str| {
+            values.get(&format!("{} | {measure}", record.case.label())).copied()
+        };
+        assert_eq!(of(&records[1], "water balance of pores T_v=0.3"), Some(3.0));
+        assert_eq!(of(&records[1], "water balance of what left T_v=0.3"), Some(7.0));
+        let count = records.iter().map(|record| 2 + record.errors.len() + 2).sum::<usize>();
+        assert_eq!(values.len(), count + 2, "and nothing else");
+        let wall = |seconds: &[f64]| -> Vec<WallSample> {
+            seconds.iter().map(|seconds| WallSample { seconds: *seconds, ..WallSample::default() }).collect()
+        };
+        (records[0].wall, records[1].wall) = (wall(&[3.0, 1.0]), wall(&[4.0, 9.0, 1.0]));
+        assert_eq!(seconds_of(&records), 7.0);
+        records[0].wall.clear();
+        assert_eq!(seconds_of(&records), 4.0);
+        assert_eq!(seconds_of(&[]).to_bits(), 0.0_f64.to_bits());
     }
 
     #[test]

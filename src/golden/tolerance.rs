@@ -363,4 +363,30 @@ mod tests {
             assert!((allowed / tolerance - 1.0).abs() < 1e-9, "{allowed:e} for {change:e} at {by_hand:e}");
         }
     }
+
+    #[test]
+    fn a_last_digit_is_that_of_one_input_of_every_case_and_labels_stay() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2, 3]\n";
+        let source = crate::study::file::StudySource { name: "s.toml".to_owned(), text: text.to_owned() };
+        let study = Study::check(&source).expect("sound");
+        for (digit, stiffness, conductivity) in [
+            (LastDigit::Stiffness, 1e6_f64.next_up(), 1e-4),
+            (LastDigit::Conductivity, 1e6, 1e-4_f64.next_down()),
+        ] {
+            let other = study.perturbed(digit);
+            for (before, after) in study.planned.iter().zip(&other.planned) {
+                let wanted =
+                    crate::case::Case { material: after.case.material.clone(), ..before.case.clone() };
+                assert_eq!((&after.case, after.case.label()), (&wanted, before.case.label()));
+                let soil = &after.case.material;
+                assert_eq!(
+                    (soil.youngs_modulus, soil.hydraulic_conductivity),
+                    (stiffness, conductivity),
+                    "{digit:?}"
+                );
+            }
+            assert_eq!(other.planned.len(), 2);
+        }
+    }
 }

@@ -411,6 +411,9 @@ mod tests {
         assert_eq!(first[0].series, "GIMP implicit cells=… points=2 | pressure T_v=0.1");
         let [before, after] = [&first[0].before, &first[0].after].map(|one| one.order.expect("an order"));
         assert!((before - 2.0).abs() < 1e-9 && (after - 1.0).abs() < 1e-9);
+        // Below round-off there is no order.
+        let classes = changes([4e-13, 3e-13, 1e-13]);
+        assert_eq!((classes[0].after.class, classes[0].after.order), ("exact", None));
         let lost = changes([4e-2, 1e-2, 4e-2]);
         assert!(lost[0].after.class != lost[0].before.class, "{lost:?}");
     }
@@ -465,6 +468,20 @@ mod tests {
         };
         let [arrow] = arrows(&named(1.0), &named(2.0)).try_into().unwrap_or_else(|_| panic!("one case"));
         assert_eq!((arrow.before, arrow.after), ((100.0, 3e-2), (200.0, 6e-2)));
+        // Without a pressure the last of what there is, by its size; without a counter or an error there is none.
+        for (rows, found) in [
+            (&["point updates", "settlement a T_v=0.1", "settlement a T_v=2"][..], Some((1.0, 3.0))),
+            (&["point updates", "steps", "water balance T_v=2"], None),
+            (&["steps", "settlement a T_v=2"], None),
+        ] {
+            let rows: BTreeMap<String, f64> = rows
+                .iter()
+                .zip([1.0, -2.0, -3.0])
+                .map(|(name, value)| (format!("MPM | {name}"), value))
+                .collect();
+            let told: Vec<(f64, f64)> = arrows(&rows, &rows).into_iter().map(|arrow| arrow.after).collect();
+            assert_eq!(told, found.into_iter().collect::<Vec<_>>());
+        }
     }
 
     #[test]

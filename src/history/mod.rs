@@ -6,4 +6,6 @@
 pub(crate) mod comparison;
 pub(crate) mod repository;
 pub(crate) mod state;
+#[cfg(test)]
+mod tests;
 pub(crate) mod timeline;

@@ -276,7 +276,7 @@ mod tests {
         let study = |solvers: &[&str]| {
             let solver = |name: &&str| {
                 format!(
-                    "[[solver]]\nname = \"{name}\"\ncommand = [\"old\"]\nresult = \"{{out}}/a.csv\"\nrepeats = 3\n\
+                    "[[solver]]\nname = \"{name}\"\ncommand = [\"old\"]\nresult = \"{{out}}/a.csv\"\nrepeats = 3\nwarm_up = true\n\
                      version = [\"old\", \"--version\"]\n"
                 )
             };
@@ -288,7 +288,9 @@ mod tests {
             );
             Study::check(&StudySource { name: "s.toml".to_owned(), text }).expect("sound")
         };
-        let found = with_command(&study(&["toy"]), " new  {case} {out} ").expect("one solver");
+        let mut before = study(&["toy"]);
+        before.solvers[0].files = vec!["a.csv".to_owned()];
+        let found = with_command(&before, " new  {case} {out} ").expect("one solver");
         let solver = &found.solvers[0];
         assert_eq!(solver.command, ["new", "{case}", "{out}"]);
         assert_eq!(
@@ -296,15 +298,17 @@ mod tests {
             (1, false, 0, false)
         );
         assert!(found.planned.len() == 1 && found.planned[0].case.is_attached());
+        let empty =
+            "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`";
+        let several = |count: usize| {
+            format!("s attaches {count} solvers: a command stands for the one `[[solver]]` of a study")
+        };
         for (solvers, command, told) in [
-            (&["toy"][..], " ", "the command is empty"),
-            (&["toy", "other"], "new", "attaches 2 solvers"),
-            (&[], "new", "attaches 0 solvers"),
+            (&["toy"][..], " ", empty.to_owned()),
+            (&["toy", "other"], "new", several(2)),
+            (&[], "new", several(0)),
         ] {
-            assert!(
-                with_command(&study(solvers), command).is_err_and(|error| error.contains(told)),
-                "{told}"
-            );
+            assert_eq!(with_command(&study(solvers), command).err(), Some(told));
         }
         for (path, name) in [("golden/a.csv", Some("a")), ("golden/b/a.csv", None), ("other/a.csv", None)] {
             assert_eq!(golden_name(path, "golden"), name, "{path}");

@@ -133,15 +133,21 @@ mod tests {
     #[test]
     fn what_one_state_has_all_must_have_whichever_lacks_it() {
         let when = |place: usize| format!("state {place}");
-        for (lacking, pressures) in [(0, [0, 1, 1]), (1, [1, 0, 1]), (2, [1, 1, 0])] {
+        let how =
+            "to leave it out, call `score --without pressure`, or write `p = \"\"` to [columns] of a mapping";
+        for (lacking, pressures, first) in [
+            (vec![0], [0, 1, 1], "0"),
+            (vec![1], [1, 0, 1], "1"),
+            (vec![2], [1, 1, 0], "2"),
+            (vec![0, 2], [0, 1, 0], "0 (and 1 more)"),
+            (vec![1, 2], [1, 0, 0], "1 (and 1 more)"),
+        ] {
             let states = states(pressures);
             let absent = Expected::of_states(&states).absent(&states);
-            assert_eq!(
-                absent,
-                [Absent { column: Some(Column::Pressure), states: vec![lacking], is_in_none: false }]
-            );
-            let told = absent[0].sentence(when);
-            assert!(told.starts_with(&format!("there is no `p` at state {lacking}, and other")), "{told}");
+            let wanted = Absent { column: Some(Column::Pressure), states: lacking, is_in_none: false };
+            assert_eq!(absent, [wanted]);
+            let told = format!("there is no `p` at state {first}, and other states have it; {how}");
+            assert_eq!(absent[0].sentence(when), told);
         }
         let whole = states([1, 1, 1]);
         assert_eq!(Expected::of_states(&whole).absent(&whole), []);
@@ -175,6 +181,7 @@ mod tests {
         let expected = Expected { settlement: true, ..Expected::of_states(&states) };
         let absent = expected.absent(&states);
         assert_eq!(absent, [Absent { column: None, states: vec![1, 2], is_in_none: false }]);
-        assert!(absent[0].sentence(|_| "T_v = 1".to_owned()).contains("has no T_v = 1 (and 1 more)"));
+        let told = absent[0].sentence(|place| format!("T_v = {place}"));
+        assert_eq!(told, "the settlement curve has no T_v = 1 (and 1 more), and it has other times");
     }
 }

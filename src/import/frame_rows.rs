@@ -477,4 +477,116 @@ mod tests {
             rows.iter().map(|row| [row.initial_height, row.pressure, row.volume]).collect();
         assert_eq!(told, [[0.25, 3.0, 0.5], [0.75, 5.0, 0.5]]);
     }
+
+    fn array(name: &str, on: Association, components: usize, values: &[f64]) -> Array {
+        let tuples = values.len() / components;
+        Array { name: name.to_owned(), on, components, tuples, values: values.to_vec() }
+    }
+
+    /// Two squares on each other: six nodes, two cells, and arrays on both.
+    fn squares() -> Frame {
+        let coordinates = [0.0, 1.0, 2.0].into_iter().flat_map(|y| [[0.0, y, 5.0], [3.0, y, 7.0]]).collect();
+        let cells = Cells { types: vec![9, 9], ends: vec![4, 8], connectivity: vec![0, 1, 3, 2, 2, 3, 5, 4] };
+        let arrays = vec![
+            array("p", Association::Points, 1, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            array("p", Association::Cells, 1, &[10.0, 20.0]),
+            array("u", Association::Points, 2, &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2]),
+            array("m", Association::Cells, 1, &[7.0, 8.0]),
+            array("WATER_PRESSURE", Association::Whole, 1, &[9.0]),
+        ];
+        Frame { coordinates, cells: Some(cells), arrays, ..Frame::default() }
+    }
+
+    #[test]
+    fn columns_are_found_by_their_place_component_or_alternative_and_the_first_quantity_chooses_the_rows() {
+        let body = SolvedBody { height: 2.0, length: None, seconds_per_time_factor: 1.0 };
+        let frame = squares();
+        let found = |columns: &str| {
+            let text = format!("columns = {{ {columns} }}");
+            let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+            let rows = FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body)
+                .map_err(|error| error.to_string())?;
+            let mut all = Vec::new();
+            rows.take_rows(1.0, None, &mut all).map_err(|error| error.to_string())?;
+            let [pressure, up, height] = [
+                all.iter().map(|row| row.pressure).sum::<f64>(),
+                all.iter().map(|row| row.displacement).sum::<f64>(),
+                all.iter().map(|row| row.initial_height).sum::<f64>(),
+            ];
+            let round = |value: f64| if value.is_nan() { -1.0 } else { (1e6 * value).round() / 1e6 };
+            Ok((rows.notes.join(" / "), [pressure, up, height].map(round), rows.width()))
+        };
+        let there = "the file has `p` on points, `p` on cells, `u` on points, `m` on cells, `WATER_PRESSURE` on the whole";
+        let there = there.replace("the whole", Association::Whole.name());
+        let y = "y = 'coordinates[1]'";
+        for (columns, notes, sums) in [
+            (
+                format!("{y}, p = 'p', u_y = 'u[1]'"),
+                "p = p on points, u_y = u[1] on points, y = coordinates[1]",
+                [21.0, 4.2, 6.0],
+            ),
+            (
+                format!("{y}, p = 'cells:p', u_y = ''"),
+                "p = p on cells, y = coordinates[1]",
+                [30.0, -1.0, 2.0],
+            ),
+            (
+                format!("{y}, p = 'none|m|p', u_y = ''"),
+                "p = m on cells, y = coordinates[1]",
+                [15.0, -1.0, 2.0],
+            ),
+            (
+                format!("{y}, p = 'points:m|p[0]', u_y = ''"),
+                "p = p on points, y = coordinates[1]",
+                [21.0, -1.0, 6.0],
+            ),
+            (
+                "y = 'coordinates', p = '', u_y = 'u[0]'".to_owned(),
+                "u_y = u[0] on points, y = coordinates[1]",
+                [-1.0, 3.6, 6.0],
+            ),
+        ] {
+            let told = found(&columns).unwrap_or_else(|told| panic!("{columns}: {told}"));
+            assert_eq!(told, (format!("f.vtu: {notes}"), sums, Some(3.0)), "{columns}");
+        }
+        for (columns, told) in [
+            (
+                format!("{y}, p = 'u', u_y = ''"),
+                "`u`: the array `u` has 2 components: choose one, from `u[0]` to `u[1]`".to_owned(),
+            ),
+            (
+                format!("{y}, p = 'u[2]', u_y = ''"),
+                "`u[2]`: the array `u` has 2 components: choose one, from `u[0]` to `u[1]`".to_owned(),
+            ),
+            (
+                "y = 'coordinates[3]', p = 'p', u_y = ''".to_owned(),
+                "`coordinates[3]`: places have the components 0, 1 and 2".to_owned(),
+            ),
+            (format!("{y}, p = 'q', u_y = ''"), format!("there is no array `q` for `p`; {there}")),
+            (format!("{y}, p = 'p', u_y = 'm'"), format!("there is no array `m` for `u_y`; {there}")),
+            (
+                format!("{y}, p = 'p', u_y = 'cells:m'"),
+                "`m` has 2 tuples on cells, and the rows are 6 points: take both from one of them".to_owned(),
+            ),
+        ] {
+            assert_eq!(found(&columns), Err(format!("f.vtu: {told}")), "{columns}");
+        }
+    }
+
+    #[test]
+    fn the_body_lies_along_the_axis_that_the_height_has_and_its_cells_are_counted_there() {
+        let frame = squares();
+        let body = SolvedBody { height: 3.0, length: None, seconds_per_time_factor: 1.0 };
+        for (y, width, cells) in [
+            ("coordinates[0]", Some(2.0), Some(1)),
+            ("coordinates[1]", Some(3.0), Some(2)),
+            ("coordinates[2]", Some(3.0), Some(1)),
+            ("y|coordinates[0]", Some(2.0), Some(1)),
+        ] {
+            let text = format!("columns = {{ y = '{y}', p = 'p', u_y = '' }}");
+            let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+            let rows = FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body).expect("its columns");
+            assert_eq!((rows.width(), cells_over_height(&frame, &mapping, 3.0)), (width, cells), "{y}");
+        }
+    }
 }

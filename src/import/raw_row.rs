@@ -248,4 +248,56 @@ mod tests {
         let columns = format!("columns = {{ u_y = \"u\", u_x = \"v\" }}\n{units}");
         near(of(sample(&columns, RawRow { displacement, horizontal_displacement, ..row })), [0.0003, 0.002]);
     }
+
+    #[test]
+    fn a_row_outside_the_body_or_before_its_start_is_refused_beyond_the_round_off_of_its_size() {
+        let text = "columns = { x = \"x\", p = \"p\", u_x = \"u\", u_y = \"v\" }\n".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).expect("a mapping");
+        let body = SolvedBody { height: 2.0, length: Some(8.0), seconds_per_time_factor: 1.0 };
+        let taken = |[x, y]: [f64; 2], time: f64, volume: Option<f64>, body: SolvedBody| {
+            let refused = |reason: String| ImportError::content(Path::new("a"), reason);
+            let row = RawRow { time, x: Some(x), y, volume, pressure: Some(1.0), ..RawRow::default() };
+            let found = row.sample(&mapping, body, &refused);
+            found
+                .map(|row| [row.initial_distance, row.initial_height, row.volume])
+                .map_err(|error| error.to_string())
+        };
+        let of = |place: [f64; 2]| taken(place, 0.0, None, body);
+        // The height is that of the body up to round-off; a distance stays as it is.
+        for (place, found) in [
+            ([0.0, 2.0], [0.0, 2.0]),
+            ([8.0, 0.0], [8.0, 0.0]),
+            ([1.0, 2.000_001_9], [1.0, 2.0]),
+            ([1.0, -0.000_001_9], [1.0, 0.0]),
+            ([8.000_007, 1.0], [8.000_007, 1.0]),
+            ([-0.000_007, 1.0], [-0.000_007, 1.0]),
+        ] {
+            assert_eq!(of(place), Ok([found[0], found[1], 1.0]));
+        }
+        let high = |height: &str| {
+            format!(
+                "a: the initial height {height} m is outside the column of 2 m: look at the unit and the sign of `y`, and at \
+                 whether places are initial or current"
+            )
+        };
+        let far = |distance: &str| {
+            format!(
+                "a: the initial distance {distance} m from the crest is outside the layer of 8 m: look at the unit, the sign \
+                 and the origin of `x`, and at whether places are initial or current"
+            )
+        };
+        for (place, told) in [
+            ([0.0, 2.000_003], high("2.000003")),
+            ([0.0, -0.000_003], high("-0.000003")),
+            ([8.000_009, 1.0], far("8.000009")),
+            ([-0.000_009, 1.0], far("-0.000009")),
+            ([9.0, 3.0], high("3")),
+        ] {
+            assert_eq!(of(place), Err(told));
+        }
+        let column = SolvedBody { length: None, ..body };
+        assert_eq!(taken([9.0, 1.0], 0.0, Some(0.0), column), Ok([9.0, 1.0, 0.0]), "a column has no length");
+        assert_eq!(taken([0.0, 1.0], -1e-9, None, body), Err("a: the time is negative".to_owned()));
+        assert_eq!(taken([0.0, 1.0], 0.0, Some(-1e-9), body), Err("a: the volume is negative".to_owned()));
+    }
 }

@@ -544,7 +544,12 @@ mod tests {
             let columns = FrameRows::find(&frame, &file, &mapping, BODY).expect("its columns");
             let found = reading().time_of(&step, &frame, &columns, &mapping, BODY);
             match wanted {
-                None => assert!(found.is_err(), "{declared}: {found:?}"),
+                None => {
+                    let nowhere = "its time is given nowhere: score the .pvd or .series that lists it, give --set-time-step \
+                                   SECONDS if its name has the number of a step, or write [time] into a mapping";
+                    let why = if of_step.is_some() { "its time is NaN" } else { nowhere };
+                    assert_eq!(found.expect_err("no time").to_string(), format!("a_7.vtu: {why}"));
+                }
                 Some((seconds, from)) => {
                     let found = found.expect("a time");
                     assert!(found.0 == seconds && found.1.contains(from), "{declared}: {found:?}");

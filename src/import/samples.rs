@@ -165,4 +165,57 @@ mod tests {
         let along = states_of(&[row(1.0, 0.5, 1.0, 0.0), row(2.0, 0.6, 1.0, nan)]);
         assert!(along.is_err_and(|error| error.to_string().contains("`u_x`")));
     }
+
+    #[test]
+    fn rows_of_a_height_are_by_distance_and_those_of_one_place_are_repeated_where_nothing_tells_them_apart() {
+        let nan = f64::NAN;
+        let at = |distance: f64, height: f64, others: u64| SampleRow {
+            initial_distance: distance,
+            effective_stress: 10.0 * distance,
+            others,
+            ..row(1.0, height, height, distance)
+        };
+        let found = states_of(&[
+            at(2.0, 0.5, 0),
+            at(1.0, 0.75, 0),
+            at(0.0, 0.5, 0),
+            at(1.0, 0.5, 0),
+            at(1.0, 0.25, 0),
+        ]);
+        let state = &found.expect("alike")[0];
+        assert_eq!(state.initial_distance, [1.0, 0.0, 1.0, 2.0, 1.0]);
+        assert_eq!(state.initial_height, [0.25, 0.5, 0.5, 0.5, 0.75]);
+        assert_eq!(state.effective_stress, [10.0, 0.0, 10.0, 20.0, 10.0]);
+        for (rows, repeated) in [
+            (vec![at(1.0, 0.5, 0), at(1.0, 0.5, 0), at(1.0, 0.5, 0)], 2),
+            (vec![at(1.0, 0.5, 0), at(2.0, 0.5, 0)], 0),
+            (vec![at(1.0, 0.5, 0), at(1.0, 0.6, 0)], 0),
+            (vec![at(1.0, 0.5, 0), at(1.0, 0.5, 1)], 0),
+            (vec![at(1.0, 0.5, 1), at(1.0, 0.5, 0), at(1.0, 0.5, 1)], 1),
+            (vec![at(0.0, 0.5, 0), at(-0.0, 0.5, 0)], 1),
+        ] {
+            assert_eq!(states_of(&rows).expect("alike")[0].repeated, repeated, "{rows:?}");
+        }
+        assert_eq!(states_of(&[]).expect("nothing"), []);
+        // Beyond a thousandth of a millionth of it is another time.
+        for (off, states) in [(0.9e-9, 1), (1.1e-9, 2)] {
+            let found = states_of(&[row(1000.0 * (1.0 + off), 0.5, 1.0, nan), row(1000.0, 0.5, 1.0, nan)]);
+            assert_eq!(found.expect("alike").len(), states, "{off}");
+        }
+        let lacking = |change: fn(&mut SampleRow)| {
+            let mut rows = [at(1.0, 0.5, 0), at(1.0, 0.6, 0)];
+            change(&mut rows[1]);
+            rows[0].displacement = 0.0;
+            states_of(&rows).expect_err("some lack it").to_string()
+        };
+        let told = |column: &str| {
+            format!(
+                "the result: some files have the column `{column}` and others lack it: give it in all or in none"
+            )
+        };
+        assert_eq!(lacking(|_| ()), told("u_y"));
+        assert_eq!(lacking(|row| row.effective_stress = f64::NAN), told("effective_stress"));
+        assert_eq!(lacking(|row| row.initial_distance = f64::NAN), told("x"));
+        assert_eq!(lacking(|row| row.horizontal_displacement = f64::NAN), told("u_x"));
+    }
 }

@@ -388,3 +388,37 @@ impl Record {
         self.wall.iter().filter(|sample| sample.alone).map(|sample| sample.seconds).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_finds_each_error_by_all_that_names_it_and_each_state_by_its_time() {
+        let mut record = crate::campaign::runner::records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.3]\n[[sweep]]\nmethod = ['MPM']\ncells = [2]\n\
+             integrator = ['implicit']\n",
+        )
+        .remove(0);
+        let of = |row: &ErrorRow, record: &Record| {
+            record.error(row.quantity, row.sample, row.norm, &row.reference, row.time_factor).cloned()
+        };
+        let rows = record.errors.clone();
+        for row in &rows {
+            assert_eq!(of(row, &record).as_ref(), Some(row));
+            let mut without = record.clone();
+            without.errors.retain(|one| one != row);
+            assert_eq!(of(row, &without), None, "none but that one");
+        }
+        let times = [0.1, 0.3].map(|factor| record.snapshot(factor).expect("an output").time);
+        assert!((times[0] - 8.175).abs() < 1e-9 && (times[1] - 24.525).abs() < 1e-9, "{times:?}");
+        assert!(record.snapshot(0.2).is_none());
+        record.snapshots.pop();
+        assert!(record.snapshot(0.1).is_some() && record.snapshot(0.3).is_none(), "it did not come to it");
+        assert_eq!(record.main_sample(), Sample::Points);
+        record.attached = Some(AttachedRun { sample: Some(Sample::Nodes), ..AttachedRun::default() });
+        assert_eq!(record.main_sample(), Sample::Nodes);
+        record.attached = Some(AttachedRun::default());
+        assert_eq!(record.main_sample(), Sample::Points);
+    }
+}

@@ -185,4 +185,34 @@ mod tests {
         }
         assert!(!is_whole("{}") && !is_whole(""));
     }
+
+    #[test]
+    fn a_file_is_there_whole_or_as_it_was_and_nothing_lies_beside_it() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let at = folder.path();
+        let names = |folder: &Path| {
+            let entries =
+                fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("one").file_name());
+            entries.map(|name| name.to_string_lossy().into_owned()).collect::<Vec<_>>()
+        };
+        let path = at.join("made/for/a.json");
+        write_whole(&path, b"first").expect("written");
+        write_rebuildable(&path, b"second").expect("written");
+        let half = write_streamed(&path, |file| {
+            file.write_all(b"thi")?;
+            Err(std::io::Error::other("no more"))
+        });
+        let told = half.expect_err("refused").to_string();
+        assert_eq!(told, format!("cannot write {}: no more", path.display()));
+        assert_eq!(fs::read_to_string(&path).expect("a file"), "second");
+        assert_eq!(names(&at.join("made/for")), ["a.json"]);
+        // A file in the place of its folder.
+        let below = path.join("b.json");
+        let told = write_whole(&below, b"x").expect_err("refused").to_string();
+        assert!(told.starts_with(&format!("cannot make the folder {}: ", path.display())), "{told}");
+        assert_eq!(folder_of(Path::new("a.json")), Path::new("."));
+        assert_eq!(folder_of(Path::new("b/a.json")), Path::new("b"));
+        assert_ne!(random_word(), random_word());
+        assert!(random_word().len() == 16 && random_word().bytes().all(|byte| byte.is_ascii_hexdigit()));
+    }
 }

@@ -265,6 +265,21 @@ mod runs {
             assert_eq!((about.repeats_differ_by, about.notes.len()), (Some(3e-3), 1), "{differences:?}");
             differences.rotate_left(1);
         }
+        // Up to round-off they are the same; those that cannot be compared have no difference.
+        let other = "its repeats do not give the same result; see `repeats_differ_by`";
+        let elsewhere = "its repeats give results at other places, or such as no one can compare";
+        for (difference, known, notes) in [
+            (0.0, Some(0.0), &[][..]),
+            (1e-12, Some(1e-12), &[]),
+            (1.1e-12, Some(1.1e-12), &[other]),
+            (f64::INFINITY, None, &[elsewhere]),
+            (f64::NAN, None, &[elsewhere]),
+        ] {
+            let mut about = AttachedRun::default();
+            note_difference(&mut about, difference);
+            assert_eq!(about.repeats_differ_by, known, "{difference}");
+            assert_eq!(about.notes, notes, "{difference}");
+        }
     }
 
     #[test]
@@ -279,6 +294,70 @@ mod runs {
                 solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
             });
             assert_eq!(record.wall[0].own_seconds, own, "{script}");
+        }
+    }
+
+    #[test]
+    fn a_version_is_the_first_line_that_says_something_and_notes_on_what_was_taken_are_six() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let long = "v".repeat(LONGEST_VERSION + 1);
+        let shout = format!("echo {long}");
+        for (script, version) in [
+            ("echo; echo '  7.1  '; echo 8; echo 6 >&2", Some("7.1")),
+            ("echo 6 >&2", Some("6")),
+            ("echo 5; exit 3", Some("5")),
+            ("true", None),
+            (shout.as_str(), Some(&long[1..])),
+        ] {
+            let mut solver = solver(folder.path(), &["true"]);
+            solver.version = ["sh", "-c", script].map(str::to_owned).to_vec();
+            let found = Attachment::new(&solver, false).version(&|| true).clone();
+            assert_eq!(found, Ok(version.map(str::to_owned)), "{script}");
+        }
+        let wish = Wish { references: &[], place: None, alone: true, is_wanted: &|| true };
+        let solver = solver(folder.path(), &["true"]);
+        let case = case(&solver);
+        for (count, last) in [(6, "note 6"), (7, "and 1 note more"), (9, "and 3 notes more")] {
+            let result = ReadResult {
+                states: Vec::new(),
+                sample: Sample::Nodes,
+                notes: (1..=count).map(|number| format!("note {number}")).collect(),
+                digest: "d".to_owned(),
+            };
+            let states = vec![state(&[[0.0, 0.0], [1.0, 0.0]], &[], None)];
+            let found = record(&case, &wish, Ok((states, result)), AttachedRun::default(), Vec::new());
+            let about = found.expect("sound").attached.expect("attached");
+            assert_eq!(
+                (about.taken.len(), about.taken.last().map(String::as_str)),
+                (7.min(count), Some(last))
+            );
+            assert_eq!((about.sample, about.result_digest.as_deref()), (Some(Sample::Nodes), Some("d")));
+        }
+    }
+
+    #[test]
+    fn a_run_that_is_not_wanted_any_more_leaves_what_an_earlier_one_left() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let place = folder.path().join("case");
+        let run = |script: &str, is_wanted: &dyn Fn() -> bool| {
+            let solver = solver(folder.path(), &["sh", "-c", script]);
+            let environment = vec![("NAME".to_owned(), "{cells} of {x}".to_owned())];
+            let solver = ExternalSolver { environment, ..solver };
+            let wish = Wish { references: &[], place: Some(&place), alone: false, is_wanted };
+            Attachment::new(&solver, false).run(&case(&solver), &wish).expect("a sound column")
+        };
+        let sound = run(&format!("echo $NAME; {ROWS} > result.csv"), &|| true);
+        assert!(sound.status == Status::Ok && !sound.wall[0].alone);
+        let said = || std::fs::read_to_string(place.join("solver/stdout.txt")).ok();
+        assert_eq!(said().as_deref(), Some("2 of {x}\n"), "its environment is filled in");
+        // Before it begins, and while it goes on.
+        for looks in [0, 2] {
+            let looked = std::cell::Cell::new(0);
+            let stopped = run("exec sleep 60", &|| looked.replace(looked.get() + 1) < looks);
+            assert_eq!(stopped.status.failure().map(|failure| failure.kind), Some(FailureKind::Stopped));
+            assert_eq!(stopped.wall.len(), usize::from(looks > 0));
+            assert_eq!(said().as_deref(), Some("2 of {x}\n"));
+            assert_eq!(std::fs::read_dir(&place).expect("a folder").count(), 1);
         }
     }
 

@@ -111,6 +111,11 @@ fn signals_wrong_programs_and_a_word_from_outside_are_told_apart() {
     let timeout = Duration::from_secs(60);
     let order = Order { words: &words, environment: &[], folder: &folder, timeout };
     assert!(matches!(run(&order, &|| true).ending, Ending::NotStarted(_)));
+    let nothing = run(&Order { words: &[], ..order }, &|| true);
+    assert!(
+        matches!(&nothing.ending, Ending::NotStarted(error) if error.to_string() == "the command is empty")
+    );
+    assert_eq!((nothing.seconds, nothing.cpu_seconds, nothing.peak_memory), (0.0, None, None));
     assert!(matches!(shell_while("sleep 600", 600.0, &|| false).ending, Ending::Stopped));
 }
 
@@ -137,5 +142,6 @@ fn the_end_of_a_long_talk_is_kept_and_no_more() {
 fn last_lines_are_few_short_and_without_control_characters() {
     let text = "one\n\ntwo\u{1b}[31m\u{7}\n  \nthree is long\n";
     assert_eq!(last_lines(text, 2, 8), ["two[31m", "three is…"]);
+    assert_eq!(last_lines("eight ab\r\nnine abcd \n", 3, 8), ["eight ab", "nine abc…"]);
     assert!(last_lines("", 3, 8).is_empty());
 }

@@ -453,3 +453,25 @@ fn damage_is_told_by_its_first_byte_and_its_length() {
         assert_eq!(Damage { pack: "p.gz".into(), from, to, is_cut }.to_string(), wanted);
     }
 }
+
+#[test]
+fn a_store_is_packed_from_the_sixty_fifth_case_on_and_stays_so() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let of = |name: &str, count: usize| RecordStore::for_cases(folder.path(), name, count);
+    let counts = [0, 1, 64, 65, 1000];
+    assert_eq!(counts.map(|count| of("s", count).is_packed()), [false, false, false, true, true]);
+    let (first, second) = (case(1), case(2));
+    let written = |store: &RecordStore, case: &Case| {
+        store.write(&record(case, 1, &[0.5], CaseEnd::Ok)).expect("written");
+        store.folder_of(&case.hash()).join("record.json").is_file()
+    };
+    assert!(written(&of("s", 64), &first) && !of("s", 1).is_packed());
+    assert!(!written(&of("s", 65), &second) && of("s", 1).is_packed(), "a small run finds packs");
+    let mut hashes = vec![first.hash(), second.hash()];
+    hashes.sort();
+    let store = of("s", 1);
+    assert_eq!((store.hashes(), store.folder()), (hashes, folder.path().join("s").as_path()));
+    assert!(!written(&store, &case(3)), "what goes on goes on in packs");
+    written(&store, &first);
+    assert_eq!(store.hashes().len(), 3, "a case of both is one");
+}
