@@ -3,6 +3,7 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
+use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::labels::{DrawnPaths, drawn, first_measure, grouped};
 use crate::render::report::{StudyResults, labels};
@@ -225,7 +226,7 @@ fn captions(summaries: &[SeriesSummary<'_>], labels: &[String]) -> String {
     let said = summaries.iter().zip(labels).map(|(summary, label)| {
         let class = &summary.classification;
         let order = class.order.filter(|_| shows_orders(summary.path.axis, &summary.measure.reference));
-        let order = order.map_or(String::new(), |order| format!(" (order {order:.2})"));
+        let order = order.map_or(String::new(), |order| format!(" (order {})", number::order(order)));
         (class.class.name(), format!("{label}{order}"))
     });
     let parts = grouped(said).into_iter().map(|(class, series)| format!("*{class}*: {}", series.join("; ")));
@@ -306,7 +307,7 @@ fn orders_row(
         let pairs: Vec<String> = summary
             .pairs
             .iter()
-            .map(|order| order.as_ref().map_or("–".to_owned(), |order| format!("{order:.2}")))
+            .map(|order| order.as_ref().map_or("–".to_owned(), |order| number::order(*order)))
             .collect();
         row.push(pairs.join(", ").into());
         row.push(summary.slope.as_ref().map_or_else(
