@@ -135,7 +135,8 @@ mod tests {
         let order = [Exit::Pass, Exit::VerdictFailed, Exit::Usage, Exit::CaseFailed, Exit::NothingSelected];
         assert!(order.is_sorted() && order[4] < Exit::Golden && Exit::Golden < Exit::IncompleteMerge);
         let told = "Exit codes: 0 pass, 1 a verdict failed, 2 usage or bad study file, 3 a case failed or timed out, \
-                    4 nothing selected, 5 golden missing or stale, 6 incomplete merge";
+                    4 nothing selected, 5 golden missing or stale, 6 cases missing (an incomplete merge, an \
+                    interrupted run, solvers that may not start)";
         assert_eq!(HELP, told);
     }
 

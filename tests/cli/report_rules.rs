@@ -256,7 +256,7 @@ fn a_sweep_of_poisson_s_ratio_in_the_plane_says_who_locks_and_from_where() {
     let front = fs::read_to_string(folder.path().join("made/README.md")).expect("a page");
     let answer = front.split("## Who locks?").nth(1).expect(&front);
     assert!(
-        answer.contains("1 keep displacement and pressure within 10 % up to ν = 0.4999: `GIMP-Bbar-patch`"),
+        answer.contains("1 keeps displacement and pressure within 10 % up to ν = 0.4999: `GIMP-Bbar-patch`"),
         "{answer}"
     );
     assert!(answer.contains("lost from ν = 0.25 on (off by up to "), "{answer}");

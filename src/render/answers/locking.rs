@@ -219,7 +219,7 @@ mod tests {
         let all: Vec<&SweepRow> = rows.iter().collect();
         assert_eq!(
             sentence(&sweep, &all, 0.1),
-            "Of 4 methods on 4 cells, at T_v = 0.1, 1 keep displacement and pressure within 10 % up to ν = 0.49: `GIMP`; \
+            "Of 4 methods on 4 cells, at T_v = 0.1, 1 keeps displacement and pressure within 10 % up to ν = 0.49: `GIMP`; \
              lost from ν = 0.4 on (off by up to 50.0 %): `MPM`, `VP`; lost from ν = 0.49 on (off by up to 5 times the \
              exact value): `GIMP-SRI`."
         );
