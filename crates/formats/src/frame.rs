@@ -260,4 +260,27 @@ mod tests {
         let bare = Frame { arrays: Vec::new(), ..part(2.0) };
         assert!(whole.append(bare).is_err());
     }
+
+    #[test]
+    fn a_joined_file_adds_what_has_another_name_or_stands_elsewhere() {
+        let array = |name: &str, on: Association, value: f64| Array {
+            name: name.to_owned(),
+            on,
+            components: 1,
+            tuples: 1,
+            values: vec![value],
+        };
+        let frame = |arrays: Vec<Array>| Frame { coordinates: vec![[0.0; 3]], arrays, ..Frame::default() };
+        let mut own = frame(vec![array("p", Association::Points, 1.0)]);
+        let other = [
+            array("p", Association::Points, 2.0),
+            array("p", Association::Cells, 3.0),
+            array("u", Association::Points, 4.0),
+        ];
+        own.join(frame(other.to_vec())).expect("the same points");
+        let values: Vec<f64> = own.arrays.iter().map(|array| array.values[0]).collect();
+        assert_eq!(values, [1.0, 3.0, 4.0], "an array that is there stays as it is");
+        let elsewhere = Frame { coordinates: vec![[1.0; 3]], ..Frame::default() };
+        assert!(own.join(elsewhere).is_err());
+    }
 }

@@ -231,4 +231,12 @@ mod tests {
         let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
         assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
     }
+
+    #[test]
+    fn a_mode_that_grows_is_told_by_its_growth_per_second() {
+        let told = GrowingMode { step: 2e-3, growth: 1.5 }.to_string();
+        let wanted = "no limit is known: under steps of 2.00e-3 s too something grows by 2.50e2 1/s, by the eigenvalues of \
+                      the step";
+        assert_eq!(told, wanted);
+    }
 }

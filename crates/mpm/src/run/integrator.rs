@@ -117,3 +117,26 @@ impl IntegratorKind {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_explicit_steps_leapfrog_with_centred_drag_alone_is_of_second_order() {
+        for scheme in [Scheme::ForwardEuler, Scheme::Leapfrog] {
+            for drag in [Drag::Explicit, Drag::Implicit, Drag::Centred] {
+                let settings = ExplicitSettings { scheme, drag, ..ExplicitSettings::default() };
+                let order = |integrator: IntegratorKind| integrator.order_in_time(&settings);
+                let is_second = (scheme, drag) == (Scheme::Leapfrog, Drag::Centred);
+                assert_eq!(
+                    order(IntegratorKind::Explicit),
+                    if is_second { 2.0 } else { 1.0 },
+                    "{scheme:?} {drag:?}"
+                );
+                assert_eq!(order(IntegratorKind::SemiImplicit), 1.0);
+                assert_eq!(order(IntegratorKind::Implicit), 2.0);
+            }
+        }
+    }
+}

@@ -203,6 +203,11 @@ pub fn steps_for(duration: f64, step: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
     use proptest::prelude::*;
 
     proptest! {
@@ -253,5 +258,31 @@ mod tests {
         }
         // Levels of a root of two from the first: the last below 7e-3 is 5.66e-3.
         assert!(largest <= 7e-3 && largest > 5e-3, "{largest:e}");
+    }
+
+    #[test]
+    fn courant_steps_of_layers_are_those_of_the_fastest_waves_wherever_they_run() {
+        let soil = Material { water_bulk_modulus: 1e5, ..Material::default() };
+        let method = Method::named("GIMP").expect("known");
+        let layer = |youngs_modulus: f64| SoilLayer {
+            thickness: 0.5,
+            youngs_modulus: Some(youngs_modulus),
+            ..SoilLayer::default()
+        };
+        let speed_of = |layer: SoilLayer| {
+            let soil = layer.soil(&soil);
+            formula::fastest_wave_speed(&soil, soil.porosity)
+        };
+        let (soft, stiff) = (layer(1e6), layer(4e9));
+        for layers in [[soft, stiff], [stiff, soft]] {
+            let column = Column { soils: SoilLayers::of(&layers).expect("two"), ..Column::default() };
+            let problem =
+                column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
+            let step = TimeStepRule::Courant(0.5).step(&problem, 1.0);
+            assert!((step * speed_of(stiff) / (0.5 * 0.25) - 1.0).abs() < 1e-12, "{step:e}");
+        }
+        assert!(
+            speed_of(stiff) > 1.5 * speed_of(soft).max(formula::fastest_wave_speed(&soil, soil.porosity))
+        );
     }
 }

@@ -204,4 +204,24 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn the_floor_against_xie_and_leo_is_put_down_to_what_the_equations_drop() {
+        use oedometer_soil::continuity::Continuity::{Conservative, ConstantPorosityGradient};
+        for (continuity, law, cause) in [
+            (Conservative, Law::LogLinear, "the water's storage"),
+            (Conservative, Law::PorosityDependent, "the modulus in the rate form"),
+            (ConstantPorosityGradient, Law::LogLinear, "the dropped porosity gradient"),
+            (
+                ConstantPorosityGradient,
+                Law::PorosityDependent,
+                "the dropped porosity gradient and the modulus in the rate form",
+            ),
+        ] {
+            let soil = Material { continuity, law, ..Material::default() };
+            let told = |reference| (XIE_LEO.model_difference)(reference, &soil);
+            assert_eq!(told(ReferenceKind::XieLeo), Some(cause), "{law:?} {continuity:?}");
+            assert_eq!(told(LARGE_STRAIN), None);
+        }
+    }
 }

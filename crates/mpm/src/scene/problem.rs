@@ -291,4 +291,15 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_soil_yields_at_what_its_preconsolidation_is_over_the_initial_stress() {
+        let scene = SceneKind::YieldFront;
+        let soil = Material { law: scene.default_law(), preconsolidation: 5.0, ..Material::default() };
+        let column = Column { initial_stress: 2.0, load: 10.0, ..scene.default_column() };
+        let method = Method::named("GIMP").expect("known");
+        let problem = column_problem::<1>(scene, &column, &soil, method, 3, 2).expect("a column");
+        let yields: Vec<f64> = problem.points.history.iter().map(|history| history.yield_stress).collect();
+        assert_eq!(yields, [3.0; 6]);
+    }
 }
