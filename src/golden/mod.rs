@@ -325,6 +325,32 @@ mod tests {
     }
 
     #[test]
+    fn values_spreads_and_inputs_of_a_renamed_case_are_all_under_its_label_of_now() {
+        // Labels tell the number of cells, which is that of now in a label and that of then in the inputs.
+        let inputs = |now: [u32; 3], then: [u32; 3]| {
+            let case = |place: usize| {
+                let inputs = [("cells".to_owned(), then[place].to_string())].into();
+                (format!("cells={}", now[place]), inputs)
+            };
+            let shared = [("scene".to_owned(), "terzaghi".to_owned())].into();
+            CaseInputs { shared, own: [case(0), case(1), case(2)].into() }
+        };
+        let file = |now: [u32; 3], then: [u32; 3]| {
+            let of = |measure: &str| {
+                let named = now.iter().zip([1.0, 2.0, 3.0]);
+                named.map(|(cells, value)| (format!("cells={cells} | {measure}"), value)).collect()
+            };
+            let (values, spread) = (of("pressure points l2 terzaghi T_v=0.1"), of("pressure T_v=0.1"));
+            GoldenFile { values, spread, inputs: inputs(now, then), ..GoldenFile::of("s", &[], "test") }
+        };
+        let then = [4, 8, 16];
+        for (now, changes) in [([5, 8, 16], 1), ([4, 9, 16], 1), ([4, 8, 17], 1), (then, 0)] {
+            let (found, pairing) = file(then, then).beside(&inputs(now, now));
+            assert_eq!((found, pairing.changes.len()), (file(now, then), changes));
+        }
+    }
+
+    #[test]
     fn what_agrees_stays_as_it_was_written_and_what_moved_is_taken_with_its_spread() {
         let name =
             |cells: u32, norm: &str| format!("MPM cells={cells} | pressure points {norm} terzaghi T_v=0.1");

@@ -234,6 +234,11 @@ mod tests {
         for name in &errors {
             *golden.values.get_mut(name).expect("there") *= 1.5;
         }
+        // Labels that begin or end like that of the case are of others.
+        let label = records[0].case.label();
+        for other in [format!("{label} (E = 5e6)"), format!("{label}5"), format!("VP, {label}")] {
+            golden.values.insert(format!("{other} | steps"), 1.0);
+        }
         let (differences, agreeing) = differences_of(&records[0], &golden);
         assert_eq!((2 * differences.len(), differences.len() + agreeing), (errors.len(), of_first));
         assert!(!differences.is_empty() && agreeing > 0);

@@ -439,5 +439,12 @@ mod tests {
         assert!(!absent.holds_all(|_| false), "what selects nothing must fail");
         let told = absent.warnings();
         assert!(told.len() == 1 && told[0].contains("MPM: 1 cases were skipped"), "{told:?}");
+        // Golden values of others stay, however alike their labels are.
+        let [skipped, run] = [0, 1].map(|place: usize| records[place].case.label());
+        let name = |label: &str| format!("{label} | steps");
+        let kept = [name(&run), name(&format!("{skipped}5")), name(&format!("VP, {skipped}"))];
+        let mut golden = GoldenFile::of("t", &[], "test");
+        golden.values = kept.iter().chain([&name(&skipped)]).map(|name| (name.clone(), 1.0)).collect();
+        assert_eq!(absent.without(golden).values, kept.map(|name| (name, 1.0)).into());
     }
 }

@@ -360,7 +360,42 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::LayerBalance;
+    use oedometer_mpm::method::Method;
     use oedometer_mpm::run::results::outcome::Failure;
+
+    #[test]
+    fn a_pressure_may_reach_what_fronts_or_waves_make_of_the_load_and_is_not_judged_where_methods_lock() {
+        use SceneKind::{
+            AtRest, CosineLayer, DynamicColumn, Footing, Mandel, ManufacturedBox, Terzaghi, XieLeo,
+        };
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                    integrator = ['implicit']\ncells = [2]\n";
+        let mut record = records_of(text).remove(0);
+        let locks = Err("methods lock under a load that keeps the volume");
+        let (little, more, usual) = (LITTLE_INERTIA, 1.001 * LITTLE_INERTIA, 0.25);
+        for (scene, method, inertia, ratio, bound) in [
+            (Terzaghi, "GIMP", 0.0, usual, Ok(1.6)),
+            (Terzaghi, "GIMP", little, 0.499, Ok(1.6)),
+            (Terzaghi, "GIMP", more, usual, Ok(3.0)),
+            (XieLeo, "GIMP", 1.0, usual, Ok(3.0)),
+            (Mandel, "GIMP", little, usual, Ok(1.6)),
+            (DynamicColumn, "GIMP", 0.0, usual, Ok(3.0)),
+            (DynamicColumn, "GIMP", more, usual, Ok(3.0)),
+            (CosineLayer, "GIMP-SRI", little, LOCKING, Ok(1.6)),
+            (CosineLayer, "GIMP-SRI", more, LOCKING, Ok(3.0)),
+            (CosineLayer, "GIMP-SRI", little, 0.496, locks),
+            (CosineLayer, "GIMP", little, usual, locks),
+            (Footing, "GIMP-SRI", more, 0.499, Ok(20.0)),
+            (Footing, "GIMP", little, usual, locks),
+            (AtRest, "GIMP", more, usual, Err("the pressures are those of the weight")),
+            (ManufacturedBox, "GIMP-SRI", more, usual, Err("body forces make the pressure")),
+        ] {
+            record.case.scene = scene;
+            record.case.method = Method::named(method).expect("a method").into();
+            (record.groups.inertia, record.case.material.poissons_ratio) = (inertia, ratio);
+            assert_eq!(most_pressure(&record), bound, "{scene:?} {method} {inertia} {ratio}");
+        }
+    }
 
     #[test]
     fn the_water_that_may_be_missing_is_that_of_the_discretisation_and_the_storage() {

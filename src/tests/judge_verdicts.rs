@@ -184,6 +184,31 @@ fn a_strict_known_failure_must_fail() {
 }
 
 #[test]
+fn a_known_failure_excuses_no_error_that_is_missing_and_no_series_without_a_class() {
+    let context = Context { round_off: Some(1e-13), ..Context::default() };
+    let outcome = |series: &ErrorSeries| {
+        [true, false].map(|strict| {
+            judge(&known(strict, &second_order()), series, &context, &Beside::default()).outcome
+        })
+    };
+    // Round-off has a class; an error of zero beside it is none that was measured.
+    let round_off = |zero: &[usize]| {
+        let mut levels = series(|_| 1e-14).levels().to_vec();
+        for place in zero {
+            levels[*place].error = Some(0.0);
+        }
+        ErrorSeries::new(levels)
+    };
+    assert_eq!(outcome(&round_off(&[])), [VerdictOutcome::KnownFailure; 2]);
+    for zero in [&[0][..], &[3], &[5], &[0, 1, 2, 3, 4, 5]] {
+        assert_eq!(outcome(&round_off(zero)), [VerdictOutcome::Failed; 2], "{zero:?}");
+    }
+    // Every error is there, and too few for a class.
+    let levels = series(|h| h).levels().to_vec();
+    assert_eq!(outcome(&ErrorSeries::new(levels[..2].to_vec())), [VerdictOutcome::Failed; 2]);
+}
+
+#[test]
 fn oscillation_is_judged_where_asked() {
     let expectation = SeriesDemand { oscillation_below: Some(0.05), ..second_order() };
     let of = |oscillation| {

@@ -261,8 +261,11 @@ impl Scored {
     fn note_absences(&mut self, case: &Case) {
         let has = |quantity: Quantity| self.score.errors.iter().any(|row| row.quantity == quantity);
         let [displacement, settlement] = [Quantity::Displacement, Quantity::Settlement].map(has);
+        // It was compared with nothing, or is left out on purpose.
+        let is_known = self.run.without.contains(&Quantity::Settlement)
+            || self.score.unresolved.iter().any(|one| one.quantity == Quantity::Settlement);
         let is_plane = case.scene.has_plane_fields();
-        if displacement && !settlement {
+        if displacement && !settlement && !is_known {
             let why = if case.scene.has_plates() {
                 "it is that of the plate, where no sample lies: give a curve by [settlement] in the mapping"
             } else if is_plane {
@@ -285,6 +288,9 @@ impl Scored {
 mod tests {
     use super::*;
     use crate::case::{Norm, Sample, Task};
+    use crate::import::mapping::preset::CONVENTION;
+    use crate::judge::score::tests::state;
+    use crate::study::file::StudySource;
     use oedometer_mpm::scene::SceneKind;
 
     #[test]
@@ -298,6 +304,52 @@ mod tests {
         let missing = ScoreError::NoTime("there is no T_v = 0.1".to_owned()).to_string();
         let told = "no time is one of the requested ones: there is no T_v = 0.1; --time-tolerance sets how near is near";
         assert_eq!(missing, told);
+    }
+
+    #[test]
+    fn what_is_left_out_is_neither_judged_nor_listed_as_vanishing_nor_noted_as_absent() {
+        use Quantity::{Displacement, Pressure, Settlement};
+        let text = CONVENTION.to_owned();
+        let mapping = Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).expect("a mapping");
+        let case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+        let comparison = Comparison {
+            case: &case,
+            parameters: ColumnParameters::default(),
+            mapping: &mapping,
+            references: &[ReferenceKind::TerzaghiIncompressible],
+            requested: &[],
+            tolerance: 1e-3,
+            are_cells_found: true,
+        };
+        // What has an error at the first time, and what has none because its exact value vanishes at the second.
+        let judged = |times: [f64; 2], without: &[Quantity]| {
+            let states = times.map(|time| state(20, time, |_| 0.0)).to_vec();
+            let mut one = Scored { run: Run { states, ..Run::default() }, ..Scored::default() };
+            one.run.leave_out(without);
+            one.assess(&comparison, &comparison.parameters).expect("a score");
+            assert!(
+                !one.run.notes.iter().any(|note| note.starts_with("no settlement")),
+                "{:?}",
+                one.run.notes
+            );
+            let all = [Pressure, Displacement, Settlement];
+            let errors = all.map(|quantity| one.score.errors.iter().any(|row| row.quantity == quantity));
+            let vanished =
+                all.map(|quantity| one.score.unresolved.iter().any(|row| row.quantity == quantity));
+            [errors, vanished]
+        };
+        let (at_first, late) = ([0.1, 0.0], [0.1, 50.0]);
+        for (times, without, left) in [
+            (at_first, &[][..], [[true; 3], [false, true, true]]),
+            (at_first, &[Pressure], [[false, true, true], [false, true, true]]),
+            (at_first, &[Settlement], [[true, true, false], [false, true, false]]),
+            (at_first, &[Settlement, Pressure], [[false, true, false], [false, true, false]]),
+            (at_first, &[Displacement], [[true, false, false], [false; 3]]),
+            (late, &[], [[true; 3], [true, false, false]]),
+            (late, &[Pressure], [[false, true, true], [false; 3]]),
+        ] {
+            assert_eq!(judged(times, without), left, "{times:?} {without:?}");
+        }
     }
 
     #[test]

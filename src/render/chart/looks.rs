@@ -243,6 +243,21 @@ mod tests {
     }
 
     #[test]
+    fn markers_are_full_for_seven_slots_and_hollow_for_the_next_seven() {
+        let drawn = |slot: usize| {
+            let marker = |area: &Area<'_>| draw_marker(area, (10.0, 10.0), slot, 4.0, COLOURS[0]);
+            layer((20.0, 20.0), marker).expect("a marker")
+        };
+        for slot in 0..7 {
+            let [full, hollow] = [drawn(slot), drawn(slot + 7)];
+            let hole = hollow.strip_prefix(&full).expect("the full marker with a hole in it");
+            assert_eq!((full.matches("/>").count(), hole.matches("/>").count()), (2, 1), "{hollow}");
+            assert!(hole.contains("#FFFFFF"), "{hole}");
+            assert_eq!([drawn(slot + 14), drawn(slot + 21)], [full, hollow], "and from the first again");
+        }
+    }
+
+    #[test]
     fn zero_is_near_white_and_the_ends_are_blue_and_red() {
         let ends = [-1.0, 0.0, 99.0].map(field_colour);
         assert_eq!(ends, [FIELD_COLOURS[0], FIELD_COLOURS[4], FIELD_COLOURS[8]]);

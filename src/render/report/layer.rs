@@ -209,8 +209,8 @@ fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Ta
     Table::of(format!("{}, T_v = {time_factor}", subject(showing).0), columns, rows).notes(note)
 }
 
-/// Curves on the finest mesh that every method has run, the first run of each method, all kept undrained as in the study's
-/// first case; empty for other scenes.
+/// Curves on the finest of the meshes that most methods have run, the first run of each method, all kept undrained as in the
+/// study's first case; empty for other scenes.
 pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
     let Some(first) = results.records.first() else { return Vec::new() };
     let undrained = first.case.column.footing.undrained;
@@ -221,8 +221,10 @@ pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
     };
     let sound = results.records.iter().filter(is_drawn);
     let of_methods = grouped(sound.map(|record| (record.case.method, record)));
-    let finest = |own: &[&Record]| own.iter().map(|record| record.case.cells).max();
-    let Some(cells) = of_methods.iter().filter_map(|(_, own)| finest(own)).min() else { return Vec::new() };
+    let has = |own: &[&Record], cells: usize| own.iter().any(|record| record.case.cells == cells);
+    let methods_on = |cells: usize| of_methods.iter().filter(|(_, own)| has(own, cells)).count();
+    let meshes = of_methods.iter().flat_map(|(_, own)| own.iter().map(|record| record.case.cells));
+    let Some(cells) = meshes.max_by_key(|cells| (methods_on(*cells), *cells)) else { return Vec::new() };
     let mut chart = Chart::new(
         "Load and settlement of the plate",
         ChartAxis::linear("settlement over the width u/B (–)"),
@@ -251,11 +253,13 @@ pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::{solved, study_of};
+    use crate::campaign::runner::{failed_at, records_of, solved, study_of};
     use crate::case::Solver;
     use crate::case::planned::Tier;
     use crate::judge::comparison::stiffness_sweep::SweepRow;
+    use crate::record::HistoryRow;
     use oedometer_mpm::method::Method;
+    use oedometer_mpm::scene::column::Undrained;
 
     #[test]
     fn fields_share_the_reach_of_the_exact_one_and_say_what_lies_beyond() {
@@ -353,6 +357,65 @@ mod tests {
                 );
                 assert_eq!(table.notes.len(), usize::from(is_ratio));
             }
+        }
+    }
+
+    #[test]
+    fn load_and_settlement_are_drawn_on_the_finest_mesh_of_most_methods() {
+        let text = |scene: &str| {
+            format!(
+                "title = 't'\nscene = '{scene}'\n[[sweep]]\nmethod = ['GIMP']\nintegrator = ['implicit']\ncells = [2]\n"
+            )
+        };
+        let [study, column] = ["footing", "terzaghi"].map(|scene| study_of("s", &text(scene)));
+        let one = records_of(&(text("terzaghi").replace("[[", "output.time_factors = [0.1]\n[["))).remove(0);
+        // Each curve ends at the settlement of its number of cells.
+        let run = |(name, cells): &(&str, usize)| {
+            let mut record = one.clone();
+            (record.case.method, record.case.cells) = (Method::named(name).expect("a method").into(), *cells);
+            let row = |time_factor: f64, load_factor: Option<f64>| HistoryRow {
+                time_factor,
+                degree_of_consolidation: 0.0,
+                load_factor,
+            };
+            record.history = vec![row(0.5, Some(3.0)), row(9.0, None), row(*cells as f64, Some(5.0))];
+            record
+        };
+        let drawn = |study: &_, records: &[Record]| {
+            let blocks = load_settlement(&StudyResults::new(study, records, Tier::Full));
+            let Some(Block::Figures(figures)) = blocks.get(1) else { return (String::new(), Vec::new()) };
+            let curve = |one: &Series| (one.name.clone(), one.points.last().map_or(0.0, |last| last.0));
+            (figures[0].caption.clone(), figures[0].chart.series.iter().map(curve).collect())
+        };
+        let told = |runs: &[(&str, usize)]| drawn(&study, &runs.iter().map(run).collect::<Vec<_>>());
+        let (a, b, c) = ("GIMP", "MPM", "VP");
+        for (runs, cells, methods) in [
+            (&[(a, 4), (a, 8), (b, 8), (b, 16), (c, 8)][..], 8, &[a, b, c][..]),
+            (&[(b, 16), (b, 8), (a, 8), (a, 4), (c, 4), (c, 8)], 8, &[b, a, c]),
+            (&[(a, 4), (b, 4), (b, 16), (c, 4), (c, 8)], 4, &[a, b, c]),
+            (&[(a, 4), (a, 16), (b, 4), (b, 8)], 4, &[a, b]),
+            (&[(a, 4), (b, 8), (c, 8)], 8, &[b, c]),
+            (&[(a, 4), (b, 8)], 8, &[b]),
+            (&[(a, 4)], 4, &[a]),
+        ] {
+            let (caption, curves) = told(runs);
+            assert!(
+                caption.starts_with(&format!("{cells} cells under the plate, undrained by total stress.")),
+                "{caption}"
+            );
+            let wanted = methods.iter().chain([&"2 + π"]).map(|name| ((*name).to_owned(), f64::from(cells)));
+            assert_eq!(curves, wanted.collect::<Vec<_>>(), "{runs:?}");
+        }
+        // Neither what failed nor what is undrained otherwise counts; of several runs the first is drawn.
+        let mut records = [(a, 4), (a, 8), (b, 4), (b, 8), (b, 4)].map(|one| run(&one)).to_vec();
+        records[1].status = failed_at(1);
+        records[3].case.column.footing.undrained = Undrained::TwoPhase;
+        records[4].history.clear();
+        let (caption, curves) = drawn(&study, &records);
+        assert!(caption.starts_with("4 cells") && curves.len() == 3, "{caption} {curves:?}");
+        assert!(curves.iter().all(|(_, end)| *end == 4.0), "{curves:?}");
+        for (study, records) in [(&study, &[][..]), (&study, &records[1..2]), (&column, &records)] {
+            assert_eq!(load_settlement(&StudyResults::new(study, records, Tier::Full)), []);
         }
     }
 }
