@@ -87,12 +87,8 @@ fn pair(relation: Relation, mut base: Options, numbers: &mut Numbers) -> Option<
             "GIMP".clone_into(&mut base.method);
             "GIMP-SRI".clone_into(&mut other.method);
             // In a cell that an interface cuts, points of several soils differ.
-            let is_one_soil = base.value("column.soils").is_none();
-            is_small
-                && is_line
-                && is_lattice
-                && is_one_soil
-                && (has_same_steps || base.scene != "yield-front")
+            let fits = is_line && is_lattice && base.value("column.soils").is_none();
+            is_small && fits && (has_same_steps || base.scene != "yield-front")
         }
         Relation::Dimensions => {
             let height: f64 = base.number("column.height").unwrap_or(1.0);
