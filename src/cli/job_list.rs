@@ -163,6 +163,15 @@ mod tests {
         ] {
             assert_eq!(quoted(word), expected);
         }
+        // Every other sign there is, by itself and at either end of a word.
+        let plain = "-_./=+:,@%";
+        let signs = (0_u8..128).map(char::from).filter(|sign| !sign.is_ascii_alphanumeric() && *sign != '\'');
+        for sign in signs {
+            for word in [sign.to_string(), format!("{sign}a"), format!("a{sign}")] {
+                let expected = if plain.contains(sign) { word.clone() } else { format!("'{word}'") };
+                assert_eq!(quoted(&word), expected, "{word:?}");
+            }
+        }
     }
 
     #[test]

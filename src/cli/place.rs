@@ -242,10 +242,13 @@ mod tests {
         ] {
             std::fs::write(at.join(name), text).expect("a file");
         }
+        // What cannot be read is named, so that somebody is told of it.
+        std::fs::write(at.join("bytes.toml"), b"\xff").expect("a file");
+        std::fs::create_dir(at.join("folder.toml")).expect("a folder");
         let names = |found: Vec<PathBuf>| -> Vec<String> {
             found.iter().map(|path| name_of(&path.to_string_lossy()).to_owned()).collect()
         };
-        let here = ["terzaghi-mesh", "at-rest", "aa", "zz"];
+        let here = ["terzaghi-mesh", "at-rest", "aa", "bytes", "folder", "zz"];
         assert_eq!(names(studies_in(at)), here);
         // An empty `studies/` hides nothing, and one with a study hides what is beside it.
         std::fs::create_dir(at.join(STUDIES)).expect("a folder");

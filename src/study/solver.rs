@@ -141,6 +141,13 @@ mod tests {
     fn placeholders_are_words_in_braces_and_nothing_else() {
         let found: Vec<&str> = placeholders_of("a{case}/{out}/x{}{1}{ \"a\": 1 }{end_time").collect();
         assert_eq!(found, ["case", "out"]);
+        let known = PLACEHOLDERS.map(|(name, _)| name);
+        let text = known.map(|name| format!("{{{name}}}")).join("-");
+        assert_eq!(placeholders_of(&text).collect::<Vec<_>>(), known);
+        // A word with a slip in it is one too, wherever its underscore stands, and is complained of.
+        let found: Vec<&str> =
+            placeholders_of("{end_tme} {_end} {end_} {_} {End} {a-b} {a b} {x2}").collect();
+        assert_eq!(found, ["end_tme", "_end", "end_", "_"]);
     }
 
     #[test]

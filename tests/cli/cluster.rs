@@ -25,7 +25,11 @@ struct Cluster {
 impl Cluster {
     /// A cluster with what it says of its configuration and of a job that is over, and what a submission does.
     fn new(size: u64, state: &str, submitted: &str) -> Self {
-        let folder = folder_with(STUDY);
+        Self::of(STUDY, size, state, submitted)
+    }
+
+    fn of(study: &str, size: u64, state: &str, submitted: &str) -> Self {
+        let folder = folder_with(study);
         let (bin, asked) = (folder.path().join("bin"), folder.path().join("asked").display().to_string());
         fs::create_dir(&bin).expect("a folder");
         let scontrol = format!(
@@ -100,6 +104,22 @@ fn a_campaign_is_run_merged_and_ends_as_its_cases_do() {
         told.err
     );
     assert_eq!(cluster.asked().len(), 2, "nothing was submitted again");
+}
+
+#[test]
+fn failures_that_the_study_expects_are_none_of_a_campaign() {
+    for (expected, code) in [
+        ("status = \"unstable\"\ntime_step = { stable = 1.3 }\n", 0),
+        ("status = \"unstable\"\ncells = 3\ntime_step = { stable = 1.3 }\n", 3),
+        ("status = \"timed-out\"\n", 3),
+    ] {
+        let cluster = Cluster::of(&format!("{STUDY}[[expect_case]]\n{expected}"), 4, "COMPLETED", AT_ONCE);
+        let end = "4 of 4 cases, 2 failed".to_owned();
+        assert_eq!(cluster.said(&[]), (code, vec![submitted(101), end]), "{expected}");
+        // So it is without a cluster.
+        let told = call_with(cluster.folder.path(), &[], &["run", "short.toml", "--out", "own"]);
+        assert_eq!(told.code, code, "{expected}: {}", told.err);
+    }
 }
 
 #[test]

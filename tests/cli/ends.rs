@@ -83,6 +83,18 @@ fn ten_of_the_holes_of_a_merge_are_named_and_the_others_counted() {
     let told = call(folder.path(), &["merge", "short.toml", "empty", "two"]);
     let table = "short: 2 of 12 cases, out/short/short.csv\n".to_owned();
     assert_eq!((told.code, told.err), (6, table + &holes[2..].concat()));
+    // Holes of one study are not filled by those that are whole, before it or behind it.
+    for name in ["one.toml", "other.toml"] {
+        let whole = STUDY.replace("cells = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]", "cells = [2]");
+        fs::write(folder.path().join(name), whole).expect("a file");
+        assert_eq!(call(folder.path(), &["run", name, "--out", "two"]).code, 0);
+    }
+    let studies = ["short.toml", "one.toml", "other.toml"];
+    for order in [[0, 1, 2], [1, 0, 2], [1, 2, 0]] {
+        let told = call(folder.path(), &[&["merge", "two"][..], &order.map(|place| studies[place])].concat());
+        assert_eq!(told.code, 6, "{order:?}: {}", told.err);
+    }
+    assert_eq!(call(folder.path(), &["merge", "two", "one.toml", "other.toml"]).code, 0);
 }
 
 #[test]

@@ -165,6 +165,34 @@ fn history_marks_the_step_and_compare_tells_it() {
 }
 
 #[test]
+fn inside_a_hook_of_another_repository_the_one_of_the_folder_is_read() {
+    let (folder, other) = (repository(), TempDir::new().expect("a folder"));
+    git(other.path(), &["init", "-q"]);
+    fs::write(other.path().join("README"), "another\n").expect("written");
+    git(other.path(), &["add", "-A"]);
+    git(other.path(), &["commit", "-q", "-m", "Begin"]);
+    let at = |name: &str| other.path().join(name).display().to_string();
+    for command in [&["history", "gate", "--format", "csv"][..], &["compare", "good", "HEAD"]] {
+        let plain = call(folder.path(), command);
+        let variables = [
+            ("GIT_DIR", at(".git")),
+            ("GIT_WORK_TREE", at("")),
+            ("GIT_INDEX_FILE", at(".git/index")),
+            ("GIT_COMMON_DIR", at(".git")),
+            ("GIT_OBJECT_DIRECTORY", at(".git/objects")),
+        ];
+        let differs = |(_, told): &(&str, Told)| {
+            (told.code, &told.out, &told.err) != (plain.code, &plain.out, &plain.err)
+        };
+        let found = variables
+            .map(|(variable, value)| (variable, call_with(folder.path(), &[(variable, &value)], command)));
+        let misled: Vec<&str> =
+            found.iter().filter(|one| differs(one)).map(|(variable, _)| *variable).collect();
+        assert_eq!(misled, [""; 0], "{command:?}");
+    }
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused_in_sentences() {
     let folder = repository();
     let refused = |at: &Path, arguments: &[&str], part: &str| {

@@ -532,6 +532,20 @@ fn a_reference_that_refuses_fails_its_case_and_no_other() {
     assert!(told.err.contains("refusing: 2 cases (0 from disk, 1 failed)"), "{}", told.err);
     assert!(told.err.contains("short: 8 cases (0 from disk, 0 failed)"), "{}", told.err);
     assert!(at.join("out/refusing/refusing.csv").is_file() && at.join("out/short/short.csv").is_file());
+    // Wherever the study stands, and though nothing else is left to run.
+    fs::write(at.join("other.toml"), STUDY).expect("a file");
+    let (refusing, sound) = ("refusing.toml", ["short.toml", "other.toml"]);
+    let orders =
+        [[refusing, sound[0], sound[1]], [sound[0], refusing, sound[1]], [sound[0], sound[1], refusing]];
+    for studies in orders {
+        for (command, code) in
+            [(&["run", "--resume"][..], 3), (&["report"], 3), (&["report", "--from-records"], 0)]
+        {
+            let told = call(at, &[command, &studies].concat());
+            assert_eq!(told.code, code, "{command:?} {studies:?}: {}", told.err);
+        }
+    }
+    assert_eq!(call(at, &["report", sound[0], sound[1]]).code, 0);
 }
 
 /// The same without the program, for a reference that refuses at once: Xie & Leo's for a load that grows.

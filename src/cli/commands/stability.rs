@@ -68,7 +68,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_data(&json_of(&rows)?)?;
         }
     }
-    let failed = report.records.iter().find_map(|record| Some((record, record.status.failure()?)));
+    end_of(&report.records)
+}
+
+/// The end of a command: that of the first record that failed, that has no limit, or that does not agree.
+///
+/// # Errors
+/// A sentence on the first case that failed, else on the first without a known limit.
+fn end_of(records: &[Record]) -> anyhow::Result<Exit> {
+    let failed = records.iter().find_map(|record| Some((record, record.status.failure()?)));
     if let Some((record, failure)) = failed {
         let label = record.case.label();
         return Err(Ended::with(
@@ -77,11 +85,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         ));
     }
     let unknown =
-        report.records.iter().find_map(|record| Some((record, record.stability.as_ref()?.unknown.as_ref()?)));
+        records.iter().find_map(|record| Some((record, record.stability.as_ref()?.unknown.as_ref()?)));
     if let Some((record, sentence)) = unknown {
         return Err(Ended::with(Exit::VerdictFailed, format!("{}: {sentence}", record.case.label())));
     }
-    let agree = report.records.iter().filter_map(|record| record.stability.as_ref()).all(agrees);
+    let agree = records.iter().filter_map(|record| record.stability.as_ref()).all(agrees);
     Ok(if agree { Exit::Pass } else { Exit::VerdictFailed })
 }
 
@@ -152,37 +160,64 @@ fn rows_of(record: &Record) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Status;
     use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    fn failure() -> Failure {
+        Failure { kind: FailureKind::Unstable, step: 7, time: 1.0, growth: None, reason: "why".to_owned() }
+    }
+
+    fn found(observed: Option<f64>) -> CriticalStep {
+        let probe = |share: f64| Probe {
+            share,
+            step: 2.0 * share,
+            steps: 7,
+            reaches_end: false,
+            predicted_growth: None,
+            failure: (share > 1.0).then(failure),
+        };
+        CriticalStep {
+            predicted: 2.0,
+            creeping_from: None,
+            unknown: None,
+            observed,
+            wave_limit: 4.0,
+            drag_limit: 8.0,
+            combined_limit: 3.0,
+            probes: vec![probe(0.97), probe(1.03)],
+            asymmetry: None,
+        }
+    }
+
+    #[test]
+    fn one_case_that_fails_has_no_limit_or_does_not_agree_is_the_end_of_all_wherever_it_stands() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [2, 3, 4]\n";
+        let mut all = crate::campaign::runner::records_of(text);
+        for record in &mut all {
+            record.stability = Some(found(Some(2.0)));
+        }
+        assert_eq!(end_of(&all).expect("no error"), Exit::Pass);
+        let told =
+            |records: &[Record]| end_of(records).map_err(|error| (Exit::of(&error), error.to_string()));
+        for place in 0..3 {
+            let mut records = all.clone();
+            let label = records[place].case.label();
+            records[place].stability = Some(found(Some(1.0)));
+            assert_eq!(told(&records), Ok(Exit::VerdictFailed), "{place}");
+            let unknown = Some("no limit".to_owned());
+            records[place].stability = Some(CriticalStep { unknown, ..found(None) });
+            assert_eq!(told(&records), Err((Exit::VerdictFailed, format!("{label}: no limit"))));
+            // What failed is told of before what has no limit.
+            let last = (place + 1) % 3;
+            records[last].status = Status::Failed(failure());
+            let label = records[last].case.label();
+            assert_eq!(told(&records), Err((Exit::CaseFailed, format!("{label}: unstable: why"))));
+        }
+    }
 
     #[test]
     fn an_observed_step_agrees_within_two_per_cent_on_either_side() {
-        let found = |observed: Option<f64>| {
-            let probe = |share: f64| Probe {
-                share,
-                step: 2.0 * share,
-                steps: 7,
-                reaches_end: false,
-                predicted_growth: None,
-                failure: (share > 1.0).then(|| Failure {
-                    kind: FailureKind::Unstable,
-                    step: 7,
-                    time: 1.0,
-                    growth: None,
-                    reason: String::new(),
-                }),
-            };
-            CriticalStep {
-                predicted: 2.0,
-                creeping_from: None,
-                unknown: None,
-                observed,
-                wave_limit: 4.0,
-                drag_limit: 8.0,
-                combined_limit: 3.0,
-                probes: vec![probe(0.97), probe(1.03)],
-                asymmetry: None,
-            }
-        };
         for (share, agree) in
             [(0.5, false), (0.979, false), (0.981, true), (1.0, true), (1.019, true), (1.021, false)]
         {

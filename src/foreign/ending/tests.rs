@@ -70,6 +70,31 @@ fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
 }
 
 #[test]
+fn the_length_of_a_layer_is_its_own_and_not_its_height() {
+    let seed = Case::seed(Task::Solve, SceneKind::CosineLayer);
+    for (length, reached, told) in [
+        (0.5, 6, None),
+        (0.5, 4, Some("the distances 0.3 m and 0.5 m")),
+        (2.0, 21, None),
+        (2.0, 20, Some("the distances 1.9 m and 2 m")),
+        (2.0, 11, Some("the distances 1 m and 2 m")),
+    ] {
+        let column = seed.column.clone().with_extent(length);
+        let case = Case { cells: 10, time_factors: vec![0.1].into(), column: column.into(), ..seed.clone() };
+        let (along, up) = (lattice(reached, 0.0, 0.1), lattice(11, 0.0, 0.1));
+        let (initial_distance, initial_height) =
+            along.iter().flat_map(|x| up.iter().map(move |y| (*x, *y))).unzip();
+        let time = 0.1 * case.seconds_per_time_factor();
+        let state = SampledState { time, initial_distance, initial_height, ..SampledState::default() };
+        let found = states_at_outputs(&case, &[state]).err();
+        match told {
+            None => assert_eq!(found, None, "{length} m, {reached} nodes"),
+            Some(told) => assert!(found.as_ref().is_some_and(|found| found.contains(told)), "{found:?}"),
+        }
+    }
+}
+
+#[test]
 fn missing_times_and_uneven_ones_are_told() {
     let mut all = states(&lattice(11, 0.0, 0.1));
     let late = all.remove(1);

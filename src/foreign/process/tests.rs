@@ -128,6 +128,22 @@ fn work_counts_as_processor_time_and_sleep_does_not() {
     assert!(worked.cpu_seconds.expect("told on Unix") > cpu + 0.01, "{worked:?}");
 }
 
+/// The shell tells the time of itself and that of its children, each of the program's own work and of the system's for it.
+#[test]
+fn processor_time_is_that_of_a_program_and_its_children_and_of_the_system_for_them() {
+    let count = "i=0; while [ $i -lt 50000 ]; do i=$((i+1)); done";
+    let copy = "dd if=/dev/zero of=/dev/null bs=1 count=500000 2>/dev/null";
+    let found = shell(&format!("{count}; {copy}; times"), 600.0);
+    let seconds = |told: &str| -> Option<f64> {
+        let (minutes, seconds) = told.strip_suffix('s')?.split_once('m')?;
+        Some(60.0 * minutes.parse::<f64>().ok()? + seconds.parse::<f64>().ok()?)
+    };
+    let times: Vec<f64> = found.output.split_whitespace().filter_map(seconds).collect();
+    let cpu = found.cpu_seconds.expect("told on Unix");
+    // Rounded to ticks of a hundredth, and the end of the shell comes on top.
+    assert!(times.len() == 4 && (cpu - times.iter().sum::<f64>()).abs() <= 0.06, "{times:?}, {found:?}");
+}
+
 #[test]
 fn the_end_of_a_long_talk_is_kept_and_no_more() {
     let talk = "x".repeat(3 * KEPT_BYTES) + "the end";
