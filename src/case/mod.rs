@@ -4,6 +4,7 @@ pub mod contender;
 pub mod keys;
 pub mod label;
 pub mod limits;
+pub mod method_words;
 pub mod planned;
 pub mod quantity;
 pub mod solver;

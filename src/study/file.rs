@@ -163,6 +163,10 @@ pub struct ColumnTable {
 pub struct OutputTable {
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: Typed<Vec<Placed<f64>>>,
+    /// Outputs as times, s, beside `time_factors`.
+    #[serde(default)]
+    #[schemars(schema_with = "times")]
+    pub times: Typed<Vec<Placed<f64>>>,
     /// Exact solutions to compare with.
     #[schemars(schema_with = "references")]
     #[serde(default)]
@@ -186,6 +190,10 @@ pub struct SweepTable {
     pub inputs: Inputs,
     /// Outputs `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factors: Typed<Vec<Placed<f64>>>,
+    /// Outputs as times, s, beside `time_factors`.
+    #[serde(default)]
+    #[schemars(schema_with = "times")]
+    pub times: Typed<Vec<Placed<f64>>>,
     /// Lists that are tied instead of multiplied out.
     #[serde(default)]
     #[schemars(schema_with = "axes")]
@@ -211,6 +219,9 @@ pub struct ExpectTable {
     pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
+    /// Time of an output, s, instead of `time_factor`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
+    pub time: Typed<f64>,
     /// Exact solution.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
@@ -281,6 +292,9 @@ pub struct ExpectCaseTable {
     pub sample: Typed<Sample>,
     /// `T_v = c_v t/H²`, with the drained `c_v`.
     pub time_factor: Typed<f64>,
+    /// Time of an output, s, instead of `time_factor`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
+    pub time: Typed<f64>,
     /// Exact solution.
     #[serde(default)]
     #[schemars(schema_with = "reference")]
@@ -294,9 +308,11 @@ pub struct ExpectCaseTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RangeTable {
-    /// Lower bound.
+    /// Lower bound: a number, or a percentage like `"1 %"`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "%"))]
     pub above: Option<f64>,
-    /// Upper bound.
+    /// Upper bound: a number, or a percentage like `"1 %"`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "%"))]
     pub below: Option<f64>,
 }
 
@@ -326,9 +342,11 @@ pub struct LevelTable {
     /// Bulk modulus of the water, Pa.
     #[schemars(extend("type" = ["number", "string"], "unit" = "Pa"))]
     pub water_bulk_modulus: Option<f64>,
-    /// Upper bound.
+    /// Upper bound: a number, or a percentage like `"1 %"`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "%"))]
     pub below: Option<f64>,
-    /// Lower bound.
+    /// Lower bound: a number, or a percentage like `"1 %"`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "%"))]
     pub above: Option<f64>,
 }
 
@@ -336,7 +354,8 @@ pub struct LevelTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BelowTable {
-    /// Upper bound.
+    /// Upper bound: a number, or a percentage like `"1 %"`.
+    #[schemars(extend("type" = ["number", "string"], "unit" = "%"))]
     pub below: f64,
 }
 
@@ -431,6 +450,10 @@ fn reference(_: &mut SchemaGenerator) -> Schema {
 
 fn references(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "array", "items": { "enum": names_of_references() } })
+}
+
+fn times(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "array", "items": { "type": ["number", "string"], "unit": "s" } })
 }
 
 fn axes(_: &mut SchemaGenerator) -> Schema {

@@ -31,6 +31,9 @@ const USUAL: [&str; 24] = [
     "cm/s", "m/day", "m/year", "kg/m³", "g/cm³", "kN/m³", "m/s²", "rad", "rad/s",
 ];
 
+/// The unit of a key that is a share of something: a plain number, or a percentage in quotes.
+pub const SHARE: &str = "%";
+
 /// What a unit is of, and how large it is in SI units: `10^tens · up / down`.
 #[derive(Clone, Copy, PartialEq)]
 struct Unit {
@@ -95,6 +98,9 @@ impl Unit {
 pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
     let number = leading_number(text);
     let symbol = text[number.len()..].trim();
+    if si == SHARE {
+        return share(text, number, symbol);
+    }
     let wanted = Unit::read(si).map(|unit| unit.dimension);
     let fits = |name: &&str| Unit::read(name).map(|unit| unit.dimension) == wanted;
     let usual: Vec<&str> = USUAL.into_iter().filter(fits).collect();
@@ -116,14 +122,28 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
         return Err((format!("`{symbol}` is not a unit of what is measured in {si}"), help(example)));
     }
     let value = number.parse::<f64>().unwrap_or(f64::NAN) * unit.up / unit.down;
-    let scaled = format!("{value:e}");
-    let shifted = scaled.split_once('e').and_then(|(digits, exponent)| {
-        format!("{digits}e{}", exponent.parse::<i32>().ok()? + unit.tens).parse::<f64>().ok()
-    });
-    match shifted {
+    match shifted(value, unit.tens) {
         Some(value) if value.is_finite() => Ok(value),
         _ => Err((format!("`{text}` is not a finite number"), help(example))),
     }
+}
+
+/// The share that a percentage is: `1 %` is `0.01`.
+fn share(text: &str, number: &str, symbol: &str) -> Result<f64, (String, String)> {
+    let help =
+        "write a share as a plain number, like 0.01, or a percentage in quotes, like \"1 %\"".to_owned();
+    let value = number.parse::<f64>().ok().filter(|_| symbol == SHARE).and_then(|value| shifted(value, -2));
+    match value {
+        Some(value) if value.is_finite() => Ok(value),
+        _ => Err((format!("`{text}` is not a percentage"), help)),
+    }
+}
+
+/// A number with its decimal point moved: nothing is rounded.
+fn shifted(value: f64, tens: i32) -> Option<f64> {
+    let scaled = format!("{value:e}");
+    let (digits, exponent) = scaled.split_once('e')?;
+    format!("{digits}e{}", exponent.parse::<i32>().ok()? + tens).parse().ok()
 }
 
 /// The number that a text begins with.
@@ -165,6 +185,8 @@ mod tests {
             ("2.65 g/cm³", "kg/m³", 2650.0),
             ("9.81 m/s^2", "m/s²", 9.81),
             ("180 deg", "rad", PI),
+            ("1 %", "%", 0.01),
+            ("0.7%", "%", 0.007),
         ] {
             assert_eq!(in_si(text, si), Ok(value), "{text}");
         }
@@ -180,6 +202,9 @@ mod tests {
             ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),
             ("5", "s", "`5` is not a number with a unit", "\"10 s\""),
             ("1e400 kPa", "Pa", "is not a finite number", ""),
+            ("1 kPa", "%", "`1 kPa` is not a percentage", "\"1 %\""),
+            ("%", "%", "`%` is not a percentage", "0.01"),
+            ("5 %", "Pa", "the unit `%` is not known", "\"10 kPa\""),
             ("5 m^99999999999", "m", "is not known", ""),
             ("5 m^-2147483648", "m", "is not known", ""),
         ] {

@@ -1,5 +1,6 @@
 //! `oedometer list`: the names of scenes, methods, integrators, references and shipped studies.
 
+use crate::case::method_words::parts;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::print_data;
 use crate::study::diagnostic::nearest;
@@ -13,24 +14,15 @@ use std::fmt::Write;
 /// Arguments of `list`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Print the file of a shipped study
-    #[arg(long, value_name = "STUDY")]
+    /// Explain a method in words, or print the file of a shipped study
+    #[arg(long, value_name = "METHOD|STUDY")]
     show: Option<String>,
 }
 
-/// Prints all names, or the file of one shipped study.
+/// Prints all names, a method in words, or the file of a shipped study.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some(name) = &arguments.show {
-        let Some(study) = shipped_study(name) else {
-            let names = shipped_names();
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let near = nearest(name, names.iter().copied());
-            let help = near
-                .map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
-            return Err(Ended::usage(format!("no shipped study is called `{name}`: {help}")));
-        };
-        print_data(&study.text)?;
-        return Ok(Exit::Pass);
+        return show(name);
     }
     let mut out = String::new();
     writeln!(out, "scenes")?;
@@ -60,4 +52,34 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     print_data(&out)?;
     Ok(Exit::Pass)
+}
+
+/// Prints a method part by part with its sources, or the file of a shipped study.
+fn show(name: &str) -> anyhow::Result<Exit> {
+    if let Some(method) = Method::named(name) {
+        print_data(&in_words(name, &method))?;
+        return Ok(Exit::Pass);
+    }
+    if let Some(study) = shipped_study(name) {
+        print_data(&study.text)?;
+        return Ok(Exit::Pass);
+    }
+    let names: Vec<String> = shipped_names().into_iter().chain(Method::names()).collect();
+    let near = nearest(name, names.iter().map(String::as_str));
+    let help =
+        near.map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
+    Err(Ended::usage(format!("no method and no shipped study is called `{name}`: {help}")))
+}
+
+/// A method in words: a line for each of its parts, and how to write it in a study.
+fn in_words(name: &str, method: &Method) -> String {
+    let parts = parts(method);
+    let lines = parts.iter().map(|part| {
+        let source = if part.source.is_empty() { String::new() } else { format!(" [{}]", part.source) };
+        format!("  {:<14} {:<12} {}{source}\n", part.choice, part.word, part.description)
+    });
+    let lines: String = lines.collect();
+    let keys = parts.iter().filter(|part| !part.word.is_empty());
+    let keys: Vec<String> = keys.map(|part| format!("{} = \"{}\"", part.choice, part.word)).collect();
+    format!("{name}\n\n{lines}\nin a study: method = [\"{name}\"], or its parts: {{ {} }}\n", keys.join(", "))
 }

@@ -56,8 +56,13 @@ impl Checker<'_> {
             None => Some(self.expected_reference(table.reference.as_ref(), table.span(), subject)?),
         };
         self.own_words_fit(table, subject.scene, sample, own_word);
-        let time_factor = self.time_factor_of(table.time_factor.as_ref(), table.span())?;
         let selection = self.selection(&table.inputs, subject.scene);
+        let time_factor = self.expected_time_factor(
+            [&table.time_factor, &table.time],
+            table.span(),
+            (&selection, table.axis.name()),
+            subject.planned,
+        )?;
         let height = self.height_of(&selection, table.span(), subject.height)?;
         let size = |cells: usize| match subject.plate_width {
             Some(width) => width / (cells + 1) as f64,
@@ -126,7 +131,8 @@ impl Checker<'_> {
             );
         }
         let selection = self.selection(&table.inputs, subject.scene);
-        let error = table.error.as_ref().and_then(|range| self.error_range(table, range, subject));
+        let error =
+            table.error.as_ref().and_then(|range| self.error_range(table, range, &selection, subject));
         let bound = |c: &mut Self, typed: &Typed<f64>, name: &str| {
             typed.as_ref().map(|typed| c.positive(Some(typed), name, "", 1e-12))
         };
@@ -154,8 +160,8 @@ impl Checker<'_> {
         if let Some(cases) = self.selected(&table.inputs, &selection, "", table.span(), subject.planned)
             && let Some(error) = &demand.error
         {
-            let place = table.time_factor.as_ref().map_or(table.span(), Placed::span);
-            self.time_is_kept(&cases, error.measure.time_factor, place);
+            let typed = table.time_factor.as_ref().or(table.time.as_ref());
+            self.time_is_kept(&cases, error.measure.time_factor, typed.map_or(table.span(), Placed::span));
         }
         let line = self.line_of(table);
         let expectation = CaseExpectation { selection, demand, tier: table.tier, line };
@@ -166,13 +172,6 @@ impl Checker<'_> {
     fn line_of<T>(&self, block: &Placed<T>) -> usize {
         let start = block.span().start.min(self.source.text.len());
         self.source.text[..start].matches('\n').count() + 1
-    }
-
-    fn time_factor_of(&mut self, typed: Option<&Placed<f64>>, place: Range<usize>) -> Option<f64> {
-        if typed.is_none() {
-            self.complain(place, "the expectation names no time factor", "add `time_factor = 0.1`");
-        }
-        typed.map(|typed| **typed)
     }
 
     /// Height by which the levels of an expectation are sized: the one that it names, or that all cases have.
@@ -363,11 +362,17 @@ impl Checker<'_> {
         &mut self,
         table: &Placed<ExpectCaseTable>,
         range: &Placed<RangeTable>,
+        selection: &Selection,
         subject: &Subject<'_>,
     ) -> Option<ErrorRange> {
         let (sample, norm) = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref())?;
         let reference = self.expected_reference(table.reference.as_ref(), range.span(), subject)?;
-        let time_factor = self.time_factor_of(table.time_factor.as_ref(), range.span())?;
+        let time_factor = self.expected_time_factor(
+            [&table.time_factor, &table.time],
+            range.span(),
+            (selection, ""),
+            subject.planned,
+        )?;
         let bounds = self.bounds(&table.error)?;
         let reference = reference.name().to_owned();
         let measure = Measure { quantity: table.quantity, sample, norm, reference, time_factor, probe: None };
@@ -403,8 +408,8 @@ impl Checker<'_> {
         let Some(cases) = self.selected(&table.inputs, selection, axis, table.span(), planned) else {
             return;
         };
-        let place = table.time_factor.as_ref().map_or(table.span(), Placed::span);
-        self.time_is_kept(&cases, time_factor, place);
+        let typed = table.time_factor.as_ref().or(table.time.as_ref());
+        self.time_is_kept(&cases, time_factor, typed.map_or(table.span(), Placed::span));
         self.series_is_long_enough(table, selection, time_factor, planned);
         let wanted = table.at.as_ref().and_then(|level| level.cells.as_ref());
         let Some(wanted) = wanted.filter(|_| table.axis == Axis::Cells) else { return };

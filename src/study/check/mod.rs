@@ -2,19 +2,20 @@
 
 mod expectations;
 mod geometry;
+mod outputs;
 pub mod solvers;
 mod sweeps;
 mod values;
 
-use crate::case::{Case, Key, PlannedCase, Planner, Shared, Solver, Task, Tier, Value};
+use crate::case::{Case, Key, PlannedCase, Planner, Solver, Task, Tier, Value};
 use crate::record::Record;
 use crate::study::check::expectations::Subject;
 use crate::study::check::geometry::load_of;
+use crate::study::check::outputs::Outputs;
 use crate::study::check::sweeps::{start_of, tell_apart};
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{CaseExpectation, SeriesExpectation};
 use crate::study::file::{OutputTable, StudyFile, StudySource};
-use crate::study::reading::Placed;
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
@@ -32,8 +33,6 @@ pub enum Purpose {
     Theory,
 }
 
-/// Time factor before which nothing has moved and steps no longer advance the time.
-const LEAST_TIME_FACTOR: f64 = 1e-15;
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
 
@@ -191,10 +190,8 @@ impl Checker<'_> {
             base.column.load = load_of(strain, &base);
         }
         base.column.soils = self.soils(&file, &base);
-        let time_factors = Shared::from(match &file.output.time_factors {
-            Some(list) => self.time_factors(list),
-            None => scene.default_time_factors().to_vec(),
-        });
+        let outputs = self.outputs(&file.output.time_factors, &file.output.times);
+        let outputs = outputs.unwrap_or_else(|| Outputs::at_factors(scene.default_time_factors().to_vec()));
         let references = self.references(&file.output, scene, &base.column);
         let given = self.attach_results(&file);
         if file.sweep.is_empty() && file.result.is_empty() {
@@ -209,10 +206,8 @@ impl Checker<'_> {
         let mut planner = Planner::default();
         for table in &file.sweep {
             let start = start_of(table);
-            base.time_factors = match &table.time_factors {
-                Some(list) => self.time_factors(list).into(),
-                None => time_factors.clone(),
-            };
+            let swept = self.outputs(&table.time_factors, &table.times);
+            let outputs = swept.as_ref().unwrap_or(&outputs);
             let loaded = |case: Case| {
                 let mut case = case.for_attached();
                 case.column.points.name_water_points(case.points_per_cell);
@@ -222,22 +217,27 @@ impl Checker<'_> {
                     // What the soil bears is what pressures are measured by.
                     case.column.load = case.material.undrained_strength;
                 }
+                case.time_factors = outputs.of_case(&case);
                 case
             };
             self.for_each_entry(table, |checker, entry| {
                 let before = checker.diagnostics.len();
                 let Some(mut sweep) = checker.sweep(table, &start, &common, &base, entry) else { return };
                 checker.default_integrator((table, &start), &common, &base, &mut sweep);
-                checker.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(loaded));
+                checker.times_are_possible(outputs, sweep.cases(&base).map(&loaded));
+                checker.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(&loaded));
                 // What cannot be fails the study, or is left out of a race.
                 let is_kept = entry.is_none() || checker.diagnostics.len() == before;
                 planner.reserve(sweep.count().unwrap_or(0));
-                for case in sweep.cases(&base).map(loaded).filter(|_| is_kept) {
+                for case in sweep.cases(&base).map(&loaded).filter(|_| is_kept) {
                     planner.put(case, table.tier);
                 }
             });
         }
-        base.time_factors = time_factors;
+        base.time_factors = outputs.of_case(&base);
+        if !given.is_empty() {
+            self.times_are_possible(&outputs, std::iter::once(base.clone()));
+        }
         for meshes in given {
             for case in meshes.cases(&base) {
                 planner.put(case, meshes.tier);
@@ -288,33 +288,6 @@ impl Checker<'_> {
             given.extend(Key::named("formulation", "integrator").map(|key| (key, waves)));
         }
         Common { seed, given }
-    }
-
-    fn time_factors(&mut self, list: &Placed<Vec<Placed<f64>>>) -> Vec<f64> {
-        if list.is_empty() {
-            self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
-        }
-        let mut factors = Vec::new();
-        for typed in list.iter() {
-            let factor = **typed;
-            if factor == 0.0 || (LEAST_TIME_FACTOR..=100.0).contains(&factor) {
-                factors.push(factor + 0.0);
-                continue;
-            }
-            let help = if factor > 0.0 && factor < 1.0 {
-                format!(
-                    "nothing has moved by then and steps no longer advance the time: 0, or {LEAST_TIME_FACTOR:e} and later"
-                )
-            } else {
-                "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
-            };
-            let is_short = (1e-6..1e16).contains(&factor.abs());
-            let size = if is_short { factor.to_string() } else { format!("{factor:?}") };
-            self.complain(typed.span(), format!("a time factor of {size}"), help);
-        }
-        factors.sort_by(f64::total_cmp);
-        factors.dedup();
-        factors
     }
 
     /// The references that runs are compared with, in the order of the scene, whose own comes first.

@@ -1,0 +1,268 @@
+//! Checks when results are kept and judged: time factors, and times in units of the clock.
+
+use crate::case::{Case, PlannedCase, Shared};
+use crate::study::check::Checker;
+use crate::study::expectation::Selection;
+use crate::study::reading::{Placed, Typed};
+use oedometer_soil::wording::typed;
+use std::ops::{Range, RangeInclusive};
+
+/// Least time factor beside the undrained start: of shorter times steps no longer advance the sum.
+const LEAST_TIME_FACTOR: f64 = 1e-15;
+/// Time factors that a case may reach; a column is consolidated at 2.
+const TIME_FACTORS: RangeInclusive<f64> = LEAST_TIME_FACTOR..=100.0;
+
+/// When a block of cases keeps its results.
+pub(super) struct Outputs {
+    /// `T_v = c_v t/H²`, in ascending order.
+    factors: Shared<Vec<f64>>,
+    /// Times, s, with their places; each case has time factors of its own for them.
+    times: Vec<(Range<usize>, f64)>,
+}
+
+impl Outputs {
+    /// Outputs at time factors alone.
+    pub(super) fn at_factors(factors: Vec<f64>) -> Self {
+        Self { factors: factors.into(), times: Vec::new() }
+    }
+
+    /// The time factors at which a case keeps its results.
+    pub(super) fn of_case(&self, case: &Case) -> Shared<Vec<f64>> {
+        if self.times.is_empty() {
+            return self.factors.clone();
+        }
+        let from_times = self.times.iter().map(|(_, time)| factor_of(*time, case));
+        in_order(self.factors.iter().copied().chain(from_times).collect()).into()
+    }
+}
+
+/// The time factor of a case at a time, s.
+fn factor_of(time: f64, case: &Case) -> f64 {
+    time / case.seconds_per_time_factor() + 0.0
+}
+
+fn in_order(mut factors: Vec<f64>) -> Vec<f64> {
+    factors.sort_by(f64::total_cmp);
+    factors.dedup();
+    factors
+}
+
+impl Checker<'_> {
+    /// The outputs that a table names; none where it names neither time factors nor times.
+    #[expect(clippy::ref_option, reason = "as the file of a study has it")]
+    pub(super) fn outputs(
+        &mut self,
+        factors: &Typed<Vec<Placed<f64>>>,
+        times: &Typed<Vec<Placed<f64>>>,
+    ) -> Option<Outputs> {
+        if factors.is_none() && times.is_none() {
+            return None;
+        }
+        let factors = factors.as_ref().map(|list| self.time_factors(list)).unwrap_or_default();
+        let times = times.as_ref().map(|list| self.times(list)).unwrap_or_default();
+        Some(Outputs { factors: factors.into(), times })
+    }
+
+    fn time_factors(&mut self, list: &Placed<Vec<Placed<f64>>>) -> Vec<f64> {
+        if list.is_empty() {
+            self.complain(list.span(), "no time factor", "name at least one, like [0.05, 0.1, 0.2]");
+        }
+        let mut factors = Vec::new();
+        for typed in list.iter() {
+            let factor = **typed;
+            if factor == 0.0 || TIME_FACTORS.contains(&factor) {
+                factors.push(factor + 0.0);
+                continue;
+            }
+            let help = if factor > 0.0 && factor < 1.0 {
+                format!(
+                    "nothing has moved by then and steps no longer advance the time: 0, or {LEAST_TIME_FACTOR:e} and later"
+                )
+            } else {
+                "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
+            };
+            let is_short = (1e-6..1e16).contains(&factor.abs());
+            let size = if is_short { factor.to_string() } else { format!("{factor:?}") };
+            self.complain(typed.span(), format!("a time factor of {size}"), help);
+        }
+        in_order(factors)
+    }
+
+    fn times(&mut self, list: &Placed<Vec<Placed<f64>>>) -> Vec<(Range<usize>, f64)> {
+        if list.is_empty() {
+            self.complain(list.span(), "no time", "name at least one, like [\"30 days\", \"1 year\"]");
+        }
+        let mut times = Vec::new();
+        for time in list.iter() {
+            if **time >= 0.0 && time.is_finite() {
+                times.push((time.span(), **time));
+            } else {
+                let message = format!("a time of {} s", typed(**time));
+                self.complain(time.span(), message, "0 is the undrained start, later times are positive");
+            }
+        }
+        times
+    }
+
+    /// Complains of times that lie before or beyond what a case can reach; of each once.
+    pub(super) fn times_are_possible(&mut self, outputs: &Outputs, cases: impl Iterator<Item = Case>) {
+        let mut left: Vec<&(Range<usize>, f64)> =
+            outputs.times.iter().filter(|(_, time)| *time > 0.0).collect();
+        for case in cases {
+            if left.is_empty() {
+                return;
+            }
+            left.retain(|(place, time)| {
+                let factor = factor_of(*time, &case);
+                let is_possible = TIME_FACTORS.contains(&factor);
+                if !is_possible {
+                    let unit = case.seconds_per_time_factor();
+                    let message = format!("{} s is T_v = {factor:.3e}", typed(*time));
+                    let help = format!(
+                        "T_v = c_v t/H² lies between 0 and 100, and T_v = 1 is {unit:.3e} s for this soil and height"
+                    );
+                    self.complain(place.clone(), message, help);
+                }
+                is_possible
+            });
+        }
+    }
+
+    /// The time factor that an expectation names, by itself or by a time; none, with a complaint, where it names
+    /// neither, both, or a time that is several time factors.
+    #[expect(clippy::ref_option, reason = "as the file of a study has it")]
+    pub(super) fn expected_time_factor(
+        &mut self,
+        [factor, time]: [&Typed<f64>; 2],
+        place: Range<usize>,
+        (selection, axis): (&Selection, &str),
+        planned: &[PlannedCase],
+    ) -> Option<f64> {
+        let time = match (factor, time) {
+            (Some(factor), None) => return Some(**factor),
+            (None, Some(time)) => time,
+            (None, None) => {
+                let help = "add `time_factor = 0.1`, or a time like `time = \"30 days\"`";
+                self.complain(place, "the expectation names no time factor", help);
+                return None;
+            }
+            (Some(_), Some(time)) => {
+                self.complain(
+                    time.span(),
+                    "the expectation names a time beside a time factor",
+                    "name one of them",
+                );
+                return None;
+            }
+        };
+        let cases = planned.iter().map(|planned| &planned.case);
+        let cases = cases.filter(|case| selection.fits_along(axis, case));
+        let factors = in_order(cases.map(|case| factor_of(**time, case)).collect());
+        match factors.as_slice() {
+            [factor] => Some(*factor),
+            // That no case is named has a complaint of its own.
+            [] => Some(f64::NAN),
+            [first, .., last] => {
+                self.complain(
+                    time.span(),
+                    format!(
+                        "{} s is T_v = {first:.3e} to {last:.3e} in the cases of this expectation",
+                        typed(**time)
+                    ),
+                    "name the soil and the height that it is about, or its `time_factor`",
+                );
+                None
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study::Study;
+    use crate::study::file::StudySource;
+
+    /// A study with an output table, a sweep and the rest of the file.
+    fn checked(output: &str, sweep: &str, rest: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = 't'\nscene = 'terzaghi'\n[material]\nhydraulic_conductivity = '1e-9 m/s'\n[output]\n{output}\n\
+             [[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [5, 10, 20]\n{sweep}\n{rest}"
+        );
+        let source = StudySource { name: "t.toml".to_owned(), text };
+        Study::check(&source).map_err(|error| {
+            error
+                .diagnostics
+                .iter()
+                .map(|one| format!("{}; {}\n", one.message, one.help.clone().unwrap_or_default()))
+                .collect()
+        })
+    }
+
+    #[test]
+    fn times_are_time_factors_of_each_soil() {
+        // c_v = k E_oed/γ_w of E = 1 MPa, ν = 0.25: 1.2e6/9810 k.
+        let per_day = 86_400.0 * 1e-9 * 1.2e6 / 9810.0;
+        let study = checked("times = ['30 days', 86400]\ntime_factors = [0, 0.5]", "", "").expect("a study");
+        let factors = study.planned[0].case.time_factors.to_vec();
+        for (factor, right) in factors.iter().zip([0.0, per_day, 30.0 * per_day, 0.5]) {
+            assert!((factor - right).abs() <= 1e-14 * right, "{factors:?}");
+        }
+        assert_eq!(factors.len(), 4);
+        let study =
+            checked("times = ['1 day']", "hydraulic_conductivity = [1e-9, 2e-9]", "").expect("a study");
+        let mut factors: Vec<f64> =
+            study.planned.iter().flat_map(|planned| planned.case.time_factors.to_vec()).collect();
+        factors.dedup();
+        assert!(factors.len() == 2 && (factors[1] / factors[0] - 2.0).abs() < 1e-14, "{factors:?}");
+        let study = checked("time_factors = [0.3]", "times = ['1 d']", "").expect("a study");
+        assert!((study.planned[0].case.time_factors[0] - per_day).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_expectation_names_its_time_and_an_error_in_per_cent() {
+        let at = "[[expect]]\nmethod = 'MPM'\ntime = '30 days'\nat = { cells = 20, below = '2.5 %' }";
+        let study = checked("times = ['30 days']", "", at).expect("a study");
+        let expectation = &study.expectations[0];
+        assert!(study.planned[0].case.time_factors.contains(&expectation.measure.time_factor));
+        assert_eq!(expectation.demand.at.map(|bound| bound.below), Some(0.025));
+    }
+
+    #[test]
+    fn times_that_cannot_be_are_refused_with_what_would_be_right() {
+        let expect = |time: &str| format!("[[expect]]\nmethod = 'MPM'\n{time}\norder = {{ value = 1.0 }}");
+        for (output, sweep, rest, said) in [
+            ("times = []", "", String::new(), "no time; name at least one"),
+            ("times = ['30 kPa']", "", String::new(), "is not a unit of what is measured in s"),
+            ("times = [-5.0]", "", String::new(), "a time of -5 s; 0 is the undrained start"),
+            (
+                "times = ['9000 years']",
+                "",
+                String::new(),
+                "T_v = 3.474e4; T_v = c_v t/H² lies between 0 and 100",
+            ),
+            ("times = ['1 day']", "", expect("time = '2 days'"), "no case keeps its state at T_v"),
+            (
+                "times = ['1 day']",
+                "",
+                expect("time = '1 day'\ntime_factor = 0.1"),
+                "names a time beside a time factor",
+            ),
+            ("times = ['1 day']", "", expect(""), "names no time factor; add `time_factor = 0.1`, or a time"),
+            (
+                "times = ['1 day']",
+                "hydraulic_conductivity = [1e-9, 2e-9]",
+                expect("time = '1 day'"),
+                "name the soil",
+            ),
+            (
+                "time_factors = [0.1]",
+                "",
+                expect("time_factor = 0.1\nat = { cells = 20, below = '1 kPa' }"),
+                "not a percentage",
+            ),
+        ] {
+            let complaints = checked(output, sweep, &rest).map(|_| ()).expect_err(output);
+            assert!(complaints.contains(said), "{output} {sweep} {rest}: {complaints}");
+        }
+    }
+}
