@@ -223,7 +223,7 @@ impl Checker<'_> {
             self.for_each_entry(table, |checker, entry| {
                 let before = checker.diagnostics.len();
                 let Some(mut sweep) = checker.sweep(table, &start, &common, &base, entry) else { return };
-                checker.default_integrator((table, &start), &common, &base, &mut sweep);
+                checker.default_integrator((table, &start), &common, (&base, &loaded), &mut sweep);
                 checker.times_are_possible(outputs, sweep.cases(&base).map(&loaded));
                 checker.cases_are_possible(&file, (table, &start), sweep.cases(&base).map(&loaded));
                 // What cannot be fails the study, or is left out of a race.

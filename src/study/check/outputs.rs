@@ -212,6 +212,7 @@ mod tests {
             checked("times = ['1 day']", "hydraulic_conductivity = [1e-9, 2e-9]", "").expect("a study");
         let mut factors: Vec<f64> =
             study.planned.iter().flat_map(|planned| planned.case.time_factors.to_vec()).collect();
+        factors.sort_by(f64::total_cmp);
         factors.dedup();
         assert!(factors.len() == 2 && (factors[1] / factors[0] - 2.0).abs() < 1e-14, "{factors:?}");
         let study = checked("time_factors = [0.3]", "times = ['1 d']", "").expect("a study");

@@ -220,7 +220,7 @@ impl Checker<'_> {
         &mut self,
         (table, start): (&SweepTable, &Range<usize>),
         common: &Common,
-        base: &Case,
+        (base, complete): (&Case, &dyn Fn(Case) -> Case),
         sweep: &mut Sweep,
     ) {
         // Who says how steps are taken has chosen.
@@ -232,8 +232,9 @@ impl Checker<'_> {
         let Case { task, scene, .. } = *base;
         let key = Key::named("integrator", "sweep").filter(|_| task == Task::Solve && !scene.has_waves());
         let Some(key) = key.filter(|_| !is_chosen && self.purpose == Purpose::Solving) else { return };
-        let slowest =
-            |sweep: &Sweep| sweep.cases(base).map(|case| estimated_seconds(&case)).fold(0.0, f64::max);
+        let slowest = |sweep: &Sweep| {
+            sweep.cases(base).map(|case| estimated_seconds(&complete(case))).fold(0.0, f64::max)
+        };
         let explicit = slowest(sweep);
         if explicit < LONGEST_BY_DEFAULT {
             return;
