@@ -70,11 +70,11 @@
 //!
 //! | step | place |
 //! | :-- | :-- |
-//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:map_masses_and_velocities` |
-//! | 2, accelerations | `crates/mpm/src/explicit/points_to_nodes.rs:map_forces`, `crates/mpm/src/explicit/mod.rs:nodal_accelerations` |
+//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:build_basis_and_sum_points` |
+//! | 2, accelerations | `crates/mpm/src/explicit/mod.rs:nodal_accelerations`, `crates/mpm/src/explicit/points_to_nodes.rs:take_forces` |
 //! | 3, nodal velocities | `crates/mpm/src/explicit/mod.rs:nodal_velocities` |
-//! | 4, points | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points` |
-//! | 5, mapping back | `crates/mpm/src/explicit/points_to_nodes.rs:map_velocities` |
+//! | 4, points | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points_and_sum_momenta` |
+//! | 5, mapping back | `crates/mpm/src/explicit/points_to_nodes.rs:take_velocities` |
 //! | 6, effective stress | `crates/mpm/src/explicit/stresses.rs:update_effective_stress` |
 //! | 7, pressure | `crates/mpm/src/explicit/mod.rs:update_pressure`, `crates/mpm/src/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `crates/mpm/src/run/driver.rs:solve` |

@@ -386,10 +386,7 @@ impl<const D: usize> Body<D> {
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
-        if self.splines_end_at_surface {
-            self.support = self.surface.end_splines(&self.grid, &self.points);
-            self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
-        }
+        self.end_splines();
         if let Some(domains) = &self.domains {
             build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
         } else {
@@ -403,6 +400,34 @@ impl<const D: usize> Body<D> {
         }
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
+        }
+        self.apply_loads();
+    }
+
+    /// Ends splines at a surface that moves through the grid.
+    fn end_splines(&mut self) {
+        if self.splines_end_at_surface {
+            self.support = self.surface.end_splines(&self.grid, &self.points);
+            self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
+        }
+    }
+
+    /// Brings an explicit step's operators up to the points' places, sums what the points give to the nodes in the same
+    /// pass, and puts the load on the surface. The rows of gradient and recovery are left to the passes that take them.
+    pub(crate) fn follow_moved_points(&mut self) {
+        self.end_splines();
+        self.build_basis_and_sum_points();
+        if self.method.strain.is_composite() {
+            self.cells.find_reached(&self.grid, &self.points);
+        }
+        if self.strain.carrier().is_some() {
+            self.strain.build(&self.grid, &self.cells, &self.points.half_length);
+        }
+        if self.recovers_by_soils() {
+            self.recovery.build(&self.grid, &self.cells);
+            self.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
+        } else {
+            self.recovery.look_around(&self.grid, &self.cells);
         }
         self.apply_loads();
     }

@@ -29,9 +29,9 @@ impl<const D: usize> Body<D> {
             let volume = points.volume(point);
             forced.forces()[point].map(|force| force.map(|component| volume * component))
         };
-        self.basis.sum_values(self.grid.node_stride(), given, &mut nodes.sums.phases);
+        self.basis.sum_values(self.grid.node_stride(), given, &mut nodes.sums.forces);
         for &node in &nodes.active {
-            let [mixture, water] = nodes.sums.phases[node];
+            let [mixture, water] = nodes.sums.forces[node];
             for d in 0..D {
                 nodes.mixture_force[node][d] += mixture[d];
                 nodes.water_force[node][d] += water[d];

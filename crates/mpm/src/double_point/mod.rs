@@ -194,9 +194,9 @@ impl<const D: usize> DoublePoint<D> {
         let momentum = |point: usize| {
             [water.velocity[point].map(|velocity| water.mass_inside(point) * velocity), [0.0; D]]
         };
-        self.basis.sum_values(self.body.grid.node_stride(), momentum, &mut nodes.sums.phases);
+        self.basis.sum_values(self.body.grid.node_stride(), momentum, &mut nodes.sums.momenta);
         for node in 0..nodes.len() {
-            let [momentum, _] = nodes.sums.phases[node];
+            let [momentum, _] = nodes.sums.momenta[node];
             for d in (0..D).filter(|d| nodes.sliding[node][*d] == 0.0) {
                 nodes.water_velocity[node][d] = if nodes.water_mass[node] > 0.0 {
                     momentum[d] * (nodes.water_free[node][d] * nodes.per_water_mass[node])
@@ -226,10 +226,10 @@ impl<const D: usize> DoublePoint<D> {
         for point in 0..self.water.len() {
             let at_point = |field: &[Vector<D>]| self.basis.value(stride, point, field);
             let rate = at_point(&nodes.water_acceleration);
-            let nodal = || at_point(&nodes.water_velocity);
-            motion.accelerate(&mut self.water.velocity[point], &rate, nodal);
+            let nodal = at_point(&nodes.water_velocity);
+            motion.accelerate(&mut self.water.velocity[point], &rate, &nodal);
             if moves {
-                motion.carry(&mut self.water.position[point], &nodal());
+                motion.carry(&mut self.water.position[point], &nodal);
             }
         }
     }

@@ -127,9 +127,9 @@ impl<const D: usize> DoublePoint<D> {
             let pressure = water.volume_inside(point) * water.pressure[point];
             std::array::from_fn(|e| [std::array::from_fn(|d| if d == e { pressure } else { 0.0 }); 2])
         };
-        self.basis.sum_gradients(self.body.grid.node_stride(), given, &mut nodes.sums.phases);
+        self.basis.sum_gradients(self.body.grid.node_stride(), given, &mut nodes.sums.forces);
         for &node in &nodes.active {
-            let [force, _] = nodes.sums.phases[node];
+            let [force, _] = nodes.sums.forces[node];
             for d in 0..D {
                 nodes.mixture_force[node][d] += force[d];
                 nodes.water_force[node][d] += force[d];

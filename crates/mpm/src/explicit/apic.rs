@@ -43,7 +43,7 @@ impl<const D: usize> Body<D> {
                     let gradient: &Tensor<D> = gradient;
                     for d in 0..D {
                         let beside: f64 = (0..D).map(|e| gradient[d][e] * (at[e] - place[e])).sum();
-                        self.nodes.sums.phases[node][phase][d] += value * volumes[phase] * beside;
+                        self.nodes.sums.momenta[node][phase][d] += value * volumes[phase] * beside;
                     }
                 }
             });

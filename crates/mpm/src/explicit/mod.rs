@@ -28,9 +28,12 @@ impl<const D: usize> Body<D> {
         self.reset_grid(settings); // step 1
         self.nodal_accelerations(kick, settings.drag); // step 2
         self.nodal_velocities(kick, dt); // step 3
-        self.advance_points(Motion { kick, dt, flip: settings.flip }); // step 4
+        let motion = Motion { kick, dt, flip: settings.flip };
         if settings.mapping_back {
-            self.map_velocities(); // step 5
+            self.advance_points_and_sum_momenta(motion); // step 4
+            self.take_velocities(); // step 5
+        } else {
+            self.advance_points(motion); // step 4
         }
         self.update_effective_stress(dt); // step 6
         self.update_pressure(dt); // step 7, and step 8 is the next one
@@ -39,20 +42,29 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Step 1: shape functions, masses and velocities at the points' places. Where nothing moves all of it
-    /// stands, but for velocities that the last step has not mapped back.
+    /// Step 1: shape functions, masses and velocities at the points' places, and in the same pass the sums of step 2's
+    /// forces. Where nothing moves all but these stands, and velocities that the last step has not mapped back do not.
     fn reset_grid(&mut self, settings: &ExplicitSettings) {
-        self.follow_places();
-        if self.configuration.deforms() {
-            self.map_masses_and_velocities();
-        } else if !settings.mapping_back {
-            self.map_velocities();
+        if !self.configuration.deforms() {
+            if !settings.mapping_back {
+                self.map_velocities();
+            }
+            self.sum_points::<false, false, true>();
+            return;
         }
+        if self.configuration.moves_points() {
+            self.follow_moved_points();
+        } else {
+            self.follow_places();
+            self.sum_points::<true, true, true>();
+        }
+        self.take_masses();
+        self.take_velocities();
     }
 
     /// Step 2: accelerations of water and skeleton at the nodes.
     fn nodal_accelerations(&mut self, kick: f64, drag: Drag) {
-        self.map_forces();
+        self.take_forces();
         let water_density = self.material.water_density;
         self.accelerate_nodes(kick, drag, |volume, _| water_density * volume);
         if let Some(plate) = &self.plate {
@@ -68,39 +80,61 @@ impl<const D: usize> Body<D> {
         level: Drag,
         water_inertia: impl Fn(f64, usize) -> f64,
     ) {
-        let nodes = &mut self.nodes;
+        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
+        let [volume, water_mass, per_solid_mass, drag] =
+            [&nodes.volume, &nodes.water_mass, &nodes.per_solid_mass, &nodes.drag]
+                .map(|field| &field[..count]);
+        let [free, water_free] = [&nodes.free, &nodes.water_free].map(|field| &field[..count]);
+        let velocity = [&nodes.solid_velocity, &nodes.water_velocity].map(|field| &field[..count]);
+        let force = [&nodes.mixture_force, &nodes.water_force].map(|field| &field[..count]);
+        let [solid_acceleration, water_acceleration] =
+            [&mut nodes.solid_acceleration, &mut nodes.water_acceleration].map(|field| &mut field[..count]);
         for &node in &nodes.active {
-            let inertia = water_inertia(nodes.volume[node], node);
-            let share = nodes.water_mass[node] * nodes.per_solid_mass[node];
-            let drag = NodalDrag::of(level, kick, nodes.drag[node], share, inertia);
+            let inertia = water_inertia(volume[node], node);
+            let share = water_mass[node] * per_solid_mass[node];
+            let drag = NodalDrag::of(level, kick, drag[node], share, inertia);
             for d in 0..D {
-                let (free, water_free) = (nodes.free[node][d], nodes.water_free[node][d]);
+                let (free, water_free) = (free[node][d], water_free[node][d]);
                 let balance = NodalBalance {
-                    per_solid_mass: free * nodes.per_solid_mass[node],
+                    per_solid_mass: free * per_solid_mass[node],
                     water_share: free * share,
                     per_water_inertia: water_free / drag.inertia(inertia, free * share),
                     drag,
                 };
-                let velocity = [nodes.solid_velocity[node][d], nodes.water_velocity[node][d]];
-                let force = [nodes.mixture_force[node][d], nodes.water_force[node][d]];
+                let [force, velocity] = [force, velocity].map(|[one, other]| [one[node][d], other[node][d]]);
                 let [solid, water] = balance.accelerations(force[0], force[1], velocity);
-                nodes.solid_acceleration[node][d] = solid;
-                nodes.water_acceleration[node][d] = water;
+                (solid_acceleration[node][d], water_acceleration[node][d]) = (solid, water);
             }
         }
     }
 
     /// Step 3: nodal velocities by forward Euler.
     pub(crate) fn nodal_velocities(&mut self, kick: f64, dt: f64) {
-        let nodes = &mut self.nodes;
+        let (count, nodes) = (self.nodes.len(), &mut self.nodes);
+        let [solid_velocity, water_velocity, displacement, water_acceleration] = [
+            &mut nodes.solid_velocity,
+            &mut nodes.water_velocity,
+            &mut nodes.displacement,
+            &mut nodes.water_acceleration,
+        ]
+        .map(|field| &mut field[..count]);
+        let [solid_acceleration, sliding] =
+            [&nodes.solid_acceleration, &nodes.sliding].map(|field| &field[..count]);
+        let motion = &mut nodes.motion[..count];
         for &node in &nodes.active {
             for d in 0..D {
-                nodes.solid_velocity[node][d] += kick * nodes.solid_acceleration[node][d];
-                nodes.water_velocity[node][d] += kick * nodes.water_acceleration[node][d];
-                nodes.displacement[node][d] += dt * nodes.solid_velocity[node][d];
+                solid_velocity[node][d] += kick * solid_acceleration[node][d];
+                water_velocity[node][d] += kick * water_acceleration[node][d];
+                displacement[node][d] += dt * solid_velocity[node][d];
                 // What slides along the base is the node's alone: the points have no part in it.
-                nodes.water_acceleration[node][d] *= 1.0 - nodes.sliding[node][d];
+                water_acceleration[node][d] *= 1.0 - sliding[node][d];
             }
+            motion[node] = [
+                solid_velocity[node],
+                solid_acceleration[node],
+                water_velocity[node],
+                water_acceleration[node],
+            ];
         }
         self.take_velocity_gradients();
     }

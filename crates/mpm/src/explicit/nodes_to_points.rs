@@ -3,6 +3,7 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::body::Body;
+use crate::explicit::points_to_nodes::{Given, ToNodes, scaled};
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::state::points::Points;
 use crate::wide::wide;
@@ -23,17 +24,11 @@ impl Motion {
     /// Takes a point's velocity through the step, m/s: by the acceleration that the nodes have there, and for what is
     /// not `flip`, to the velocity that they have there.
     #[inline(always)]
-    pub fn accelerate<const D: usize>(
-        self,
-        velocity: &mut Vector<D>,
-        rate: &Vector<D>,
-        nodal: impl FnOnce() -> Vector<D>,
-    ) {
+    pub fn accelerate<const D: usize>(self, velocity: &mut Vector<D>, rate: &Vector<D>, nodal: &Vector<D>) {
         for d in 0..D {
             velocity[d] += self.kick * rate[d];
         }
         if self.flip < 1.0 {
-            let nodal = nodal();
             for d in 0..D {
                 velocity[d] = self.flip * velocity[d] + (1.0 - self.flip) * nodal[d];
             }
@@ -53,33 +48,68 @@ impl<const D: usize> Body<D> {
     /// Step 4: velocities and places of the points.
     pub(crate) fn advance_points(&mut self, motion: Motion) {
         let basis = std::mem::take(&mut self.basis);
-        with_stencils!(&basis, stencils => wide!(self.advance_points_by(stencils, motion)));
+        with_stencils!(&basis, stencils => wide!(self.advance_points_by::<_, false>(stencils, motion)));
+        self.basis = basis;
+    }
+
+    /// Step 4, and the pass of step 5 with it: the points give their new momenta to the same nodes.
+    pub(crate) fn advance_points_and_sum_momenta(&mut self, motion: Motion) {
+        let basis = std::mem::take(&mut self.basis);
+        with_stencils!(&basis, stencils => wide!(self.advance_points_by::<_, true>(stencils, motion)));
         self.basis = basis;
     }
 
     #[inline(always)]
-    fn advance_points_by<const W: usize>(&mut self, stencils: &Stencils<D, W>, motion: Motion) {
+    fn advance_points_by<const W: usize, const BACK: bool>(
+        &mut self,
+        stencils: &Stencils<D, W>,
+        motion: Motion,
+    ) {
         let (stride, moves) = (*self.grid.node_stride(), self.configuration.moves_points());
-        let (nodes, carrier) = (&self.nodes, self.strain.carrier());
-        let Points { position, displacement, solid_velocity, water_velocity, .. } = &mut self.points;
-        let fields =
-            [&nodes.solid_velocity[..], &nodes.solid_acceleration[..], &nodes.water_acceleration[..]];
-        for (point, (stencil, solid)) in stencils.all().zip(solid_velocity).enumerate() {
-            let [mut carrying, solid_rate, water_rate] = stencil.values(&stride, fields);
-            motion.accelerate(solid, &solid_rate, || carrying);
+        let (nodes, carrier) = (&mut self.nodes, self.strain.carrier());
+        let (nodal_motion, nodal_velocity) = (&nodes.motion[..], &nodes.solid_velocity[..]);
+        let count = self.points.len();
+        let Points {
+            position,
+            displacement,
+            solid_velocity,
+            water_velocity,
+            grain_volume,
+            initial_volume,
+            volume_ratio,
+            ..
+        } = &mut self.points;
+        let [position, displacement, solid_velocity] =
+            [position, displacement, solid_velocity].map(|field| &mut field[..count]);
+        let [grain_volume, initial_volume, volume_ratio] =
+            [grain_volume, initial_volume, volume_ratio].map(|field| &field[..count]);
+        let mut sums = ToNodes::<D, W, false, BACK, false>::new(&mut nodes.sums, stride);
+        let stencils = stencils.slices(count);
+        for point in 0..count {
+            let stencil = stencils.of_point(point);
+            let [mut carrying, solid_rate, water_carrying, water_rate] =
+                stencil.values_of(&stride, nodal_motion);
+            let solid = &mut solid_velocity[point];
+            motion.accelerate(solid, &solid_rate, &carrying);
+            let mut momenta = [*solid, [0.0; D]];
             // None where the water has points of its own.
             if let Some(water) = water_velocity.get_mut(point) {
-                motion.accelerate(water, &water_rate, || {
-                    stencil.values(&stride, [&nodes.water_velocity[..]])[0]
-                });
+                motion.accelerate(water, &water_rate, &water_carrying);
+                momenta[1] = *water;
             }
             if let Some(ends) = carrier {
-                [carrying] = ends.of_point(point).values(&stride, [&nodes.solid_velocity[..]]);
+                [carrying] = ends.of_point(point).values(&stride, [nodal_velocity]);
             }
             motion.carry(&mut displacement[point], &carrying);
             if moves {
                 motion.carry(&mut position[point], &carrying);
             }
+            if BACK {
+                let grains = grain_volume[point];
+                let volumes = [grains, initial_volume[point] * volume_ratio[point] - grains];
+                sums.add(stencil, &Given { momenta: scaled(&momenta, volumes), ..Given::NOTHING });
+            }
         }
+        sums.close();
     }
 }

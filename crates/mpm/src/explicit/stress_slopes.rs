@@ -71,7 +71,7 @@ impl<const D: usize> Body<D> {
         let Some(mut planes) = self.stress_planes.take() else { return };
         planes.fit(&self.grid, &self.cells, &self.points);
         let (stride, points, cell_size) = (*self.grid.node_stride(), &self.points, self.grid.cell_size);
-        let sums = &mut self.nodes.sums.phases;
+        let sums = &mut self.nodes.sums.forces;
         with_stencils!(&self.basis, stencils => for (point, in_cells) in self.cells.place.iter().enumerate() {
             let place = in_cells.map(|coordinate| (coordinate - GHOST_LAYERS as f64) * cell_size);
             let half = points.half_length[point].map(|length| (length / cell_size).min(0.5));

@@ -5,12 +5,12 @@
 use crate::body::Body;
 use crate::method::Configuration;
 use crate::operators::stencil::{Stencils, with_stencils};
-use crate::operators::strain_gradient::StrainOperator;
+use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
 use crate::wide::wide;
 use oedometer_soil::elementary;
-use oedometer_soil::law::{History, StrainIncrement};
+use oedometer_soil::law::{History, StrainIncrement, StressLaw};
 use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
 
 /// What follows the deformation of the points beside their volumes.
@@ -22,6 +22,21 @@ struct Following {
     inverse: bool,
 }
 
+/// How a step strains points.
+#[derive(Clone, Copy)]
+struct Straining<'a> {
+    laws: &'a [StressLaw],
+    /// Volumetric rates at the points, 1/s, where the method is B-bar.
+    dilation_rates: &'a [f64],
+    following: Following,
+    deforms: bool,
+    /// Whether gradients are pushed forward from the initial configuration.
+    is_total: bool,
+    is_forced: bool,
+    /// Duration, s.
+    dt: f64,
+}
+
 impl<const D: usize> Body<D> {
     /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
     /// domain.
@@ -29,71 +44,39 @@ impl<const D: usize> Body<D> {
         if self.method.strain.is_bbar() {
             self.recover_dilation_rates();
         }
-        let (basis, strain) = (std::mem::take(&mut self.basis), std::mem::take(&mut self.strain));
-        match &strain {
-            StrainOperator::Basis => {
-                with_stencils!(&basis, stencils => wide!(self.strain_points(stencils, dt)));
+        let straining = Straining {
+            laws: &self.stress_laws,
+            dilation_rates: &self.dilation_rates,
+            following: self.following(),
+            deforms: self.configuration.deforms(),
+            is_total: self.configuration == Configuration::Total,
+            is_forced: self.forcing.is_some(),
+            dt,
+        };
+        let (stride, field) = (*self.grid.node_stride(), &self.nodes.solid_velocity[..]);
+        let (grid, cells, points) = (&self.grid, &self.cells, &mut self.points);
+        let count = points.len();
+        match &self.strain {
+            StrainOperator::Basis => with_stencils!(&self.basis, stencils => {
+                wide!(straining.strain_by(points, stencils, stride, field));
+            }),
+            // Of points that move each row is taken once: right where it is made.
+            StrainOperator::Composite(_) if self.configuration.moves_points() => wide!({
+                let rows = CompositeRows::new(grid, cells, count);
+                straining.strain_points(
+                    points,
+                    #[inline(always)]
+                    |point| rows.block(point).stencil().gradient(&stride, field),
+                );
+            }),
+            StrainOperator::Composite(stencils) => {
+                wide!(straining.strain_by(points, stencils, stride, field));
             }
-            StrainOperator::Composite(stencils) => wide!(self.strain_points(stencils, dt)),
-            StrainOperator::BetweenEnds(stencils) => wide!(self.strain_points(stencils, dt)),
+            StrainOperator::BetweenEnds(stencils) => {
+                wide!(straining.strain_by(points, stencils, stride, field));
+            }
         }
-        (self.basis, self.strain) = (basis, strain);
         self.turn_domains();
-    }
-
-    #[inline(always)]
-    fn strain_points<const W: usize>(&mut self, stencils: &Stencils<D, W>, dt: f64) {
-        let (stride, laws, following) = (*self.grid.node_stride(), &self.stress_laws[..], self.following());
-        let (deforms, is_total) = (self.configuration.deforms(), self.configuration == Configuration::Total);
-        let (has_dilation, is_forced) = (self.method.strain.is_bbar(), self.forcing.is_some());
-        let (field, dilation_rates) = (&self.nodes.solid_velocity[..], &self.dilation_rates[..]);
-        let Points {
-            volume_ratio, half_length, inverse_deformation, effective_stress, history, soil, ..
-        } = &mut self.points;
-        let kinematics = volume_ratio.iter_mut().zip(half_length).zip(inverse_deformation);
-        let states = kinematics.zip(effective_stress.iter_mut().zip(&*soil));
-        let mut none = History::default();
-        for (point, (stencil, (((ratio, half_length), back), (stress, soil)))) in
-            stencils.all().zip(states).enumerate()
-        {
-            let mut gradient = stencil.gradient(&stride, field);
-            if is_total {
-                gradient = product(&gradient, back);
-            }
-            let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-            // A motion compared with exact fields is followed at the middle of the step, to second order.
-            if is_forced {
-                gradient = middle_gradient(&gradient, dt);
-            }
-            let mut increment = gradient;
-            for rate in increment.as_flattened_mut() {
-                *rate *= dt;
-            }
-            let before = *ratio;
-            if deforms {
-                following.deform(&increment, ratio, half_length, back);
-            }
-            let mut dilation = 0.0;
-            if has_dilation {
-                // Of the kinematics only the volume goes the way of the water's.
-                dilation = dt * (dilation_rates[point] - trace);
-                for d in 0..D {
-                    increment[d][d] += dilation / D as f64;
-                }
-                if deforms {
-                    *ratio *= stretch_of(dilation);
-                }
-            }
-            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio: [before, *ratio] };
-            if deforms {
-                *stress = rotated(stress, &increment);
-            }
-            let history = history.get_mut(point).unwrap_or(&mut none);
-            laws[usize::from(*soil)].update(stress, history, &strain, || {
-                let (deformation, per_volume) = inverse(back);
-                if has_dilation { assumed(&deformation, *ratio * per_volume) } else { deformation }
-            });
-        }
     }
 
     /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
@@ -114,6 +97,79 @@ impl<const D: usize> Body<D> {
         Following {
             domain: moves && self.method.domains_follow(),
             inverse: self.configuration == Configuration::Total || moves && is_whole,
+        }
+    }
+}
+
+impl Straining<'_> {
+    /// Strains points by the gradients of a nodal field with stencils that stand.
+    #[inline(always)]
+    fn strain_by<const D: usize, const W: usize>(
+        self,
+        points: &mut Points<D>,
+        stencils: &Stencils<D, W>,
+        stride: [usize; D],
+        field: &[Vector<D>],
+    ) {
+        let stencils = stencils.slices(points.len());
+        self.strain_points(
+            points,
+            #[inline(always)]
+            |point| stencils.of_point(point).gradient(&stride, field),
+        );
+    }
+
+    /// Strains points by the velocity gradients of a step.
+    #[inline(always)]
+    fn strain_points<const D: usize>(self, points: &mut Points<D>, gradient_of: impl Fn(usize) -> Tensor<D>) {
+        let (count, dt) = (points.len(), self.dt);
+        let has_dilation = !self.dilation_rates.is_empty();
+        let volume_ratio = &mut points.volume_ratio[..count];
+        let half_length = &mut points.half_length[..count];
+        let inverse_deformation = &mut points.inverse_deformation[..count];
+        let effective_stress = &mut points.effective_stress[..count];
+        let soil = &points.soil[..count];
+        let mut none = History::default();
+        for point in 0..count {
+            let (ratio, back) = (&mut volume_ratio[point], &mut inverse_deformation[point]);
+            let mut gradient = gradient_of(point);
+            if self.is_total {
+                gradient = product(&gradient, back);
+            }
+            let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+            // A motion compared with exact fields is followed at the middle of the step, to second order.
+            if self.is_forced {
+                gradient = middle_gradient(&gradient, dt);
+            }
+            let mut increment = gradient;
+            for rate in increment.as_flattened_mut() {
+                *rate *= dt;
+            }
+            let before = *ratio;
+            if self.deforms {
+                self.following.deform(&increment, ratio, &mut half_length[point], back);
+            }
+            let mut dilation = 0.0;
+            if has_dilation {
+                // Of the kinematics only the volume goes the way of the water's.
+                dilation = dt * (self.dilation_rates[point] - trace);
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                if self.deforms {
+                    *ratio *= stretch_of(dilation);
+                }
+            }
+            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio: [before, *ratio] };
+            let stress = &mut effective_stress[point];
+            if self.deforms {
+                *stress = rotated(stress, &increment);
+            }
+            let history = points.history.get_mut(point).unwrap_or(&mut none);
+            self.laws[usize::from(soil[point])].update(stress, history, &strain, || {
+                let (deformation, per_volume) = inverse(back);
+                if has_dilation { assumed(&deformation, *ratio * per_volume) } else { deformation }
+            });
         }
     }
 }

@@ -89,6 +89,39 @@ pub trait ShapeFunction<const W: usize> {
     fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
 }
 
+/// Evaluates an expression with the shape function of a [`Basis`] and with [`Stencils`] of its width, under names.
+macro_rules! with_shape {
+    ($basis:expr, $point_stencils:expr, $shape:ident, $name:ident => $result:expr) => {{
+        use $crate::method::Basis;
+        use $crate::operators::basis as shapes;
+        use $crate::operators::stencil::PointStencils;
+        match ($basis, $point_stencils) {
+            (Basis::Hat, PointStencils::Two($name)) => {
+                type $shape = shapes::Hat;
+                $result
+            }
+            (Basis::Ugimp | Basis::Cpgimp, PointStencils::Three($name)) => {
+                type $shape = shapes::Gimp;
+                $result
+            }
+            (Basis::Cpdi, PointStencils::Three($name)) => {
+                type $shape = shapes::DomainEnds;
+                $result
+            }
+            (Basis::Bspline2, PointStencils::Three($name)) => {
+                type $shape = shapes::QuadraticSpline;
+                $result
+            }
+            (Basis::Bspline3, PointStencils::Four($name)) => {
+                type $shape = shapes::CubicSpline;
+                $result
+            }
+            _ => unreachable!("stencils of another basis"),
+        }
+    }};
+}
+pub(crate) use with_shape;
+
 impl Basis {
     /// Room for the stencils of `points` points.
     pub fn stencils<const D: usize>(self, points: usize) -> PointStencils<D> {
@@ -109,22 +142,7 @@ impl Basis {
         support: &Support<D>,
         points: [&[Vector<D>]; 2],
     ) {
-        match (self, stencils) {
-            (Self::Hat, PointStencils::Two(stencils)) => build::<D, 2, Hat>(stencils, grid, support, points),
-            (Self::Ugimp | Self::Cpgimp, PointStencils::Three(stencils)) => {
-                build::<D, 3, Gimp>(stencils, grid, support, points);
-            }
-            (Self::Cpdi, PointStencils::Three(stencils)) => {
-                build::<D, 3, DomainEnds>(stencils, grid, support, points);
-            }
-            (Self::Bspline2, PointStencils::Three(stencils)) => {
-                build::<D, 3, QuadraticSpline>(stencils, grid, support, points);
-            }
-            (Self::Bspline3, PointStencils::Four(stencils)) => {
-                build::<D, 4, CubicSpline>(stencils, grid, support, points);
-            }
-            _ => unreachable!("stencils of another basis"),
-        }
+        with_shape!(self, stencils, S, stencils => build::<D, _, S>(stencils, grid, support, points));
     }
 
     /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are not nodal values.
@@ -191,7 +209,19 @@ fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     place: &Vector<D>,
     half_length: &Vector<D>,
 ) -> [Row<W>; D] {
-    let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
+    rows_in::<D, W, S>(grid, support, &grid.cell_at(place), place, half_length)
+}
+
+/// The same where the index of the cell is known.
+#[inline(always)]
+pub(crate) fn rows_in<const D: usize, const W: usize, S: ShapeFunction<W>>(
+    grid: &Grid<D>,
+    support: &Support<D>,
+    cell: &[usize; D],
+    place: &Vector<D>,
+    half_length: &Vector<D>,
+) -> [Row<W>; D] {
+    let per_cell = grid.inverse_cell_size();
     let mut rows = [Row { first: 0, values: [0.0; W], gradients: [0.0; W] }; D];
     for d in 0..D {
         let row = S::row(place[d], cell[d], half_length[d] * per_cell);

@@ -13,7 +13,7 @@ use oedometer_soil::tensor::{Tensor, Vector};
 
 /// Values of a point's shape functions along one direction and their gradients, 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Line<const W: usize> {
+pub struct Line<const W: usize> {
     values: [f64; W],
     gradients: [f64; W],
 }
@@ -65,7 +65,11 @@ impl<const D: usize, const W: usize> Run<D, W> {
 
     /// Adds what a point gives to the nodes of the run, times its shape functions.
     #[inline(always)]
-    fn add_values<const N: usize, const M: usize>(&self, given: &[[f64; M]; N], sums: &mut [[[f64; M]; N]]) {
+    pub fn add_values<const N: usize, const M: usize>(
+        &self,
+        given: &[[f64; M]; N],
+        sums: &mut [[[f64; M]; N]],
+    ) {
         let mut scaled = *given;
         for number in scaled.as_flattened_mut() {
             *number *= self.across[0];
@@ -81,7 +85,7 @@ impl<const D: usize, const W: usize> Run<D, W> {
 
     /// Adds what a point gives to the nodes of the run, times the gradients of its shape functions, `[direction]`.
     #[inline(always)]
-    fn add_gradients<const N: usize>(&self, given: &[[Vector<D>; N]; D], sums: &mut [[Vector<D>; N]]) {
+    pub fn add_gradients<const N: usize>(&self, given: &[[Vector<D>; N]; D], sums: &mut [[Vector<D>; N]]) {
         let mut scaled = *given;
         for d in 0..D {
             for number in scaled[d].as_flattened_mut() {
@@ -117,16 +121,20 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Sets a block from one row a direction.
     #[inline(always)]
     pub fn set(&mut self, grid: &Grid<D>, block: usize, rows: &[Row<W>; D]) {
-        let mut first = 0;
-        for (d, row) in rows.iter().enumerate() {
-            first += row.first * grid.node_stride()[d];
-            let line = &mut self.lines[block][d];
-            line.values = row.values;
-            for k in 0..W {
-                line.gradients[k] = row.gradients[k] * grid.inverse_cell_size();
-            }
-        }
-        self.first[block] = first;
+        self.put(block, &Block::new(grid, rows));
+    }
+
+    /// Sets a block.
+    #[inline(always)]
+    pub fn put(&mut self, number: usize, block: &Block<D, W>) {
+        self.first[number] = block.first;
+        self.lines[number] = block.lines;
+    }
+
+    /// Lowest nodes and lines of so many points of one block each, to be set.
+    #[inline(always)]
+    pub fn blocks_mut(&mut self, points: usize) -> (&mut [usize], &mut [[Line<W>; D]]) {
+        (&mut self.first[..points], &mut self.lines[..points])
     }
 
     /// Stencils of all points in turn.
@@ -136,6 +144,15 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         let parts = if D == 1 { 1 } else { self.parts };
         let blocks = self.first.chunks_exact(parts).zip(self.lines.chunks_exact(parts));
         blocks.map(|(first, lines)| Stencil { first, lines })
+    }
+
+    /// Lowest nodes and lines as slices, for a loop over the numbers of so many points: an iterator's `next` is a function
+    /// of its own, which the compiler may leave to narrow registers.
+    #[inline(always)]
+    pub fn slices(&self, points: usize) -> StencilSlices<'_, D, W> {
+        // On a line a point has one block, and the compiler knows.
+        let parts = if D == 1 { 1 } else { self.parts };
+        StencilSlices { first: &self.first[..points * parts], lines: &self.lines[..points * parts], parts }
     }
 
     /// Stencil of a point.
@@ -156,6 +173,71 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
                 |run| add(run, &given),
             );
         }
+    }
+}
+
+/// [`Stencils`] of so many points as slices.
+#[derive(Clone, Copy)]
+pub struct StencilSlices<'a, const D: usize, const W: usize> {
+    first: &'a [usize],
+    lines: &'a [[Line<W>; D]],
+    parts: usize,
+}
+
+impl<'a, const D: usize, const W: usize> StencilSlices<'a, D, W> {
+    /// Stencil of a point.
+    #[inline(always)]
+    pub fn of_point(&self, point: usize) -> Stencil<'a, D, W> {
+        if self.parts == 1 {
+            return Stencil {
+                first: std::slice::from_ref(&self.first[point]),
+                lines: std::slice::from_ref(&self.lines[point]),
+            };
+        }
+        let blocks = point * self.parts..(point + 1) * self.parts;
+        Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
+    }
+}
+
+/// Lowest node and lines of a block.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<const D: usize, const W: usize> {
+    /// Flat index of the lowest node.
+    pub first: usize,
+    /// One line a direction.
+    pub lines: [Line<W>; D],
+}
+
+impl<const D: usize, const W: usize> Block<D, W> {
+    /// The block of one row a direction.
+    #[inline(always)]
+    pub fn new(grid: &Grid<D>, rows: &[Row<W>; D]) -> Self {
+        let (mut first, mut lines) = (0, [[[0.0; W]; 2]; D]);
+        for d in 0..D {
+            first += rows[d].first * grid.node_stride()[d];
+            lines[d] = [rows[d].values, rows[d].gradients];
+        }
+        Self::from_lines(first, &lines, grid.inverse_cell_size())
+    }
+
+    /// The block of a lowest node, and of values and gradients, 1/cell, along each direction; `per_cell` in 1/m.
+    #[inline(always)]
+    pub fn from_lines(first: usize, rows: &[[[f64; W]; 2]; D], per_cell: f64) -> Self {
+        let mut lines = [Line { values: [0.0; W], gradients: [0.0; W] }; D];
+        for d in 0..D {
+            let [values, gradients] = &rows[d];
+            lines[d].values = *values;
+            for k in 0..W {
+                lines[d].gradients[k] = gradients[k] * per_cell;
+            }
+        }
+        Self { first, lines }
+    }
+
+    /// The shape functions of a point that has this block alone.
+    #[inline(always)]
+    pub fn stencil(&self) -> Stencil<'_, D, W> {
+        Stencil { first: std::slice::from_ref(&self.first), lines: std::slice::from_ref(&self.lines) }
     }
 }
 
@@ -202,6 +284,33 @@ impl<const D: usize, const W: usize> Stencil<'_, D, W> {
                 }
             },
         );
+    }
+
+    /// Values at the point of nodal vectors that lie side by side: `Σ N f`.
+    #[inline(always)]
+    pub fn values_of<const N: usize>(self, stride: &[usize; D], nodal: &[[Vector<D>; N]]) -> [Vector<D>; N] {
+        let mut values = [[0.0; D]; N];
+        self.visit_runs(
+            stride,
+            #[inline(always)]
+            |run| {
+                let nodes = &nodal[run.first..run.first + W];
+                let mut sums = [[0.0; D]; N];
+                for k in 0..W {
+                    for i in 0..N {
+                        for d in 0..D {
+                            sums[i][d] += run.values[k] * nodes[k][i][d];
+                        }
+                    }
+                }
+                for i in 0..N {
+                    for d in 0..D {
+                        values[i][d] += run.across[0] * sums[i][d];
+                    }
+                }
+            },
+        );
+        values
     }
 
     /// Values of nodal vector fields at the point: `Σ N f`.
@@ -338,27 +447,6 @@ impl<const D: usize> PointStencils<D> {
             given,
             #[inline(always)]
             |run, given| run.add_values(given, sums),
-        )));
-    }
-
-    /// Sums two kinds of what each point gives, in one pass.
-    pub fn sum_both<const N: usize, const M: usize, const O: usize, const P: usize>(
-        &self,
-        stride: &[usize; D],
-        given: impl Fn(usize) -> ([[f64; M]; N], [[f64; P]; O]),
-        sums: &mut [[[f64; M]; N]],
-        other_sums: &mut [[[f64; P]; O]],
-    ) {
-        sums.fill([[0.0; M]; N]);
-        other_sums.fill([[0.0; P]; O]);
-        with_stencils!(self, stencils => wide!(stencils.give(
-            stride,
-            given,
-            #[inline(always)]
-            |run, (given, other)| {
-                run.add_values(given, sums);
-                run.add_values(other, other_sums);
-            },
         )));
     }
 

@@ -4,9 +4,11 @@
 //! interpolant through the nodes of the cell and its neighbours (composite MPM), or of that interpolant between
 //! the ends of the point's domain.
 
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
 use crate::method::StrainGradient;
 use crate::operators::basis::Row;
-use crate::operators::stencil::{PointStencils, Stencils};
+use crate::operators::stencil::{Block, PointStencils, Stencils};
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, cell_below};
 use crate::wide::wide;
@@ -45,20 +47,11 @@ impl<const D: usize> StrainOperator<D> {
         let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
         match self {
             Self::Basis => {}
-            Self::Composite(stencils) => wide!(for (point, place) in places {
-                let cell = grid.cell_at(place);
-                let home = cells.of_point[point];
-                let mut rows = [composite(place[0], cell[0], [false; 2]); D];
-                for d in 0..D {
-                    let stride = grid.cell_stride()[d];
-                    let sides = [cells.is_reached(home - stride), cells.is_reached(home + stride)];
-                    rows[d] = composite(place[d], cell[d], sides);
+            Self::Composite(stencils) => wide!({
+                let rows = CompositeRows::new(grid, cells, half_length.len());
+                for point in 0..half_length.len() {
+                    stencils.put(point, &rows.block(point));
                 }
-                if D == 1 {
-                    // Values are factors of the gradients of other directions: on a line there are none.
-                    rows[0].values = [0.0; 4];
-                }
-                stencils.set(grid, point, &rows);
             }),
             Self::BetweenEnds(stencils) => {
                 for (point, place) in places {
@@ -71,7 +64,8 @@ impl<const D: usize> StrainOperator<D> {
                             home[d] = cell_below(at - side * INSET).clamp(cell[d] - 1, cell[d] + 1);
                             let (flat, stride) = (grid.flat_cell(&home), grid.cell_stride()[d]);
                             let sides = [cells.is_reached(flat - stride), cells.is_reached(flat + stride)];
-                            composite(at, home[d], sides)
+                            let [values, gradients] = composite(at - home[d] as f64, sides);
+                            Row { first: home[d] - 1, values, gradients }
                         };
                         Row::between(&end(-1.0), &end(1.0), 2.0 * half)
                     });
@@ -116,15 +110,56 @@ impl<const D: usize> StrainOperator<D> {
     }
 }
 
+/// What the rows of the composite gradient are made of, as slices of one length.
+#[derive(Clone, Copy)]
+pub(crate) struct CompositeRows<'a, const D: usize> {
+    cells: &'a [usize],
+    within: &'a [Vector<D>],
+    sides: &'a [[[bool; 2]; D]],
+    first_nodes: &'a [usize],
+    /// From the lowest node of a row's nodes to that of its cell.
+    below: usize,
+    per_cell: f64,
+}
+
+impl<'a, const D: usize> CompositeRows<'a, D> {
+    /// Of so many points that have been found in their cells.
+    #[inline(always)]
+    pub fn new(grid: &Grid<D>, cells: &'a Cells<D>, points: usize) -> Self {
+        Self {
+            cells: &cells.of_point[..points],
+            within: &cells.within[..points],
+            sides: cells.reached_sides(),
+            first_nodes: cells.first_nodes(),
+            below: grid.node_stride().iter().sum(),
+            per_cell: grid.inverse_cell_size(),
+        }
+    }
+
+    /// Gradients of a point's nodes.
+    #[inline(always)]
+    pub fn block(&self, point: usize) -> Block<D, 4> {
+        let (cell, within) = (self.cells[point], &self.within[point]);
+        let sides = &self.sides[cell];
+        let mut rows = [[[0.0; 4]; 2]; D];
+        for d in 0..D {
+            rows[d] = composite(within[d], sides[d]);
+            if D == 1 {
+                // Values are factors of the gradients of other directions: on a line there are none.
+                rows[d][0] = [0.0; 4];
+            }
+        }
+        Block::from_lines(self.first_nodes[cell] - self.below, &rows, self.per_cell)
+    }
+}
+
 /// Lagrange interpolation through the nodes of a cell and of its neighbours, where those are there, for the composite
 /// MPM (González Acosta, Vardon & Hicks 2017): cubic with both neighbours, quadratic with the lower or the upper one,
-/// linear with none. Always written as four nodes from the one below the cell.
+/// linear with none. Values and gradients at a place within the cell, in cells, always of four nodes from the one below
+/// the cell.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "the innermost loops of the step")]
-fn composite(place: f64, cell: usize, neighbours: [bool; 2]) -> Row<4> {
-    // Local coordinate with the cell's own nodes at 0 and 1.
-    let x = place - cell as f64;
-    let [values, gradients] = match neighbours {
+fn composite(x: f64, neighbours: [bool; 2]) -> [[f64; 4]; 2] {
+    match neighbours {
         [true, true] => [
             [
                 -SIXTH * x * (x - 1.0) * (x - 2.0),
@@ -148,8 +183,7 @@ fn composite(place: f64, cell: usize, neighbours: [bool; 2]) -> Row<4> {
             [0.0, x - 1.5, 2.0 - 2.0 * x, x - 0.5],
         ],
         [false, false] => [[0.0, 1.0 - x, x, 0.0], [0.0, -1.0, 1.0, 0.0]],
-    };
-    Row { first: cell - 1, values, gradients }
+    }
 }
 
 #[cfg(test)]
@@ -163,7 +197,11 @@ mod tests {
         fn a_row_between_ends_adds_up_to_the_field(low in 3.0..8.0f64, length in 0.05..0.9f64) {
             // Cubic fields are met exactly at both ends, so their difference is too.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test range")]
-            let row_at = |x: f64| composite(x, x as usize, [true, true]);
+            let row_at = |x: f64| {
+                let cell = x as usize;
+                let [values, gradients] = composite(x - cell as f64, [true, true]);
+                Row { first: cell - 1, values, gradients }
+            };
             let row = Row::between::<6>(&row_at(low), &row_at(low + length), length);
             let cubic = |x: f64| x * x * x - 4.0 * x;
             let (mean, slope) = moments(&row, cubic);
@@ -173,7 +211,8 @@ mod tests {
 
         #[test]
         fn composite_gradient_is_exact_for_its_degree(x in 0.0..1.0f64, lower: bool, upper: bool) {
-            let row = composite(5.0 + x, 5, [lower, upper]);
+            let [values, gradients] = composite(x, [lower, upper]);
+            let row = Row { first: 4, values, gradients };
             let degree = 1 + i32::from(lower) + i32::from(upper);
             for power in 0..=degree {
                 let (value, gradient) = moments(&row, |node| (node - 5.0).powi(power));

@@ -1,5 +1,7 @@
 //! Cell centres: occupancy, porosity and the divergence of selective reduced integration.
 
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
 use crate::state::grid::{GHOST_LAYERS, Grid};
 use crate::state::points::Points;
 use crate::wide::wide;
@@ -23,10 +25,12 @@ pub struct Cells<const D: usize> {
     /// Lowest node of the cell whose divergence each cell takes: its own, but for those beyond the end of
     /// splines at a free surface, where the field goes on as a line.
     divergence_node: Vec<usize>,
-    /// Points in each cell.
-    point_count: Vec<usize>,
+    /// Whether each cell holds a point.
+    holds: Vec<bool>,
     /// Whether a point's domain reaches into each cell.
     reached: Vec<bool>,
+    /// Whether a point's domain reaches into the lower and the upper neighbour of each occupied cell along each direction.
+    reached_sides: Vec<[[bool; 2]; D]>,
     /// Occupied cells in index order.
     occupied: Vec<usize>,
     /// Current volume of each cell's points, m^D.
@@ -52,8 +56,9 @@ impl<const D: usize> Cells<D> {
             within: vec![[0.0; D]; points],
             divergence_node: first_node.clone(),
             first_node,
-            point_count: vec![0; count],
+            holds: vec![false; count],
             reached: vec![false; count],
+            reached_sides: vec![[[false; 2]; D]; count],
             occupied: Vec::with_capacity(count),
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
@@ -64,26 +69,40 @@ impl<const D: usize> Cells<D> {
 
     /// Finds the cell of every point and sums volumes over each cell's points.
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, soils: &[Material]) {
-        let found = self.of_point.iter_mut().zip(self.place.iter_mut().zip(&mut self.within));
-        wide!(for (position, (cell, (place, within))) in points.position.iter().zip(found) {
-            *place = grid.held_in_cells(position);
-            let index = grid.cell_at(place);
-            *cell = grid.flat_cell(&index);
-            *within = grid.within_cell(&index, place);
+        let mut locating = self.begin_locating(points.len());
+        wide!(for point in 0..points.len() {
+            locating.locate(grid, point, &points.position[point], points.volumes_of_phases(point));
         });
-        self.point_count.fill(0);
-        for cell in &self.of_point {
-            self.point_count[*cell] += 1;
+        self.end_locating(points, soils);
+    }
+
+    /// Forgets where the points were, to find each of so many in turn.
+    #[inline(always)]
+    pub(crate) fn begin_locating(&mut self, points: usize) -> Locating<'_, D> {
+        self.holds.fill(false);
+        self.volume.fill(0.0);
+        self.porosity.fill(0.0);
+        Locating {
+            cells: &mut self.of_point[..points],
+            place: &mut self.place[..points],
+            within: &mut self.within[..points],
+            holds: &mut self.holds,
+            volume: &mut self.volume,
+            pore_volume: &mut self.porosity,
         }
+    }
+
+    /// Lists the cells that the points were found in, and makes means of sums over them.
+    pub(crate) fn end_locating(&mut self, points: &Points<D>, soils: &[Material]) {
         self.list_occupied();
-        self.sum_volumes(points, soils);
+        self.take_means(points, soils);
     }
 
     /// Lists the cells that hold points.
     fn list_occupied(&mut self) {
-        let counts = self.point_count.iter().enumerate();
+        let holding = self.holds.iter().enumerate();
         self.occupied.clear();
-        self.occupied.extend(counts.filter(|(_, count)| **count > 0).map(|(cell, _)| cell));
+        self.occupied.extend(holding.filter(|(_, holds)| **holds).map(|(cell, _)| cell));
     }
 
     /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
@@ -95,12 +114,12 @@ impl<const D: usize> Cells<D> {
         holders: &Self,
         is_closed: impl Fn(usize) -> bool,
     ) {
-        self.point_count.clone_from(&holders.point_count);
+        self.holds.clone_from(&holders.holds);
         self.volume.clone_from(&holders.volume);
         self.porosity.clone_from(&holders.porosity);
         for cell in &holders.occupied {
             if is_closed(*cell) {
-                self.point_count[*cell] = 0;
+                self.holds[*cell] = false;
             }
         }
         self.of_point.truncate(positions.len());
@@ -127,10 +146,10 @@ impl<const D: usize> Cells<D> {
     /// Keeps of the cells those in which points were located, with the volumes of these, m^D: `volumes` times
     /// `shares`.
     pub fn keep_located(&mut self, volumes: &[f64], shares: &[f64]) {
-        self.point_count.fill(0);
+        self.holds.fill(false);
         self.volume.fill(0.0);
         for (cell, (volume, share)) in self.of_point.iter().zip(volumes.iter().zip(shares)) {
-            self.point_count[*cell] += 1;
+            self.holds[*cell] = true;
             self.volume[*cell] += volume * share;
         }
         self.list_occupied();
@@ -147,6 +166,11 @@ impl<const D: usize> Cells<D> {
             // n V = V − (1 − n_0) V_0
             self.porosity[*cell] += volume - grains;
         }
+        self.take_means(points, soils);
+    }
+
+    /// Porosities of the cells from the sums of their pores, and in layers their storage.
+    fn take_means(&mut self, points: &Points<D>, soils: &[Material]) {
         for cell in &self.occupied {
             self.porosity[*cell] /= self.volume[*cell];
         }
@@ -165,11 +189,14 @@ impl<const D: usize> Cells<D> {
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        for (reached, count) in self.reached.iter_mut().zip(&self.point_count) {
-            *reached = *count > 0;
-        }
+        self.reached.clone_from(&self.holds);
+        self.look_at_sides(grid);
         let per_cell = grid.inverse_cell_size();
+        let all_reached = [[true; 2]; D];
         for (point, home) in self.of_point.iter().enumerate() {
+            if self.reached_sides[*home] == all_reached {
+                continue;
+            }
             for d in 0..D {
                 let stride = grid.cell_stride()[d];
                 if grid.cells[d] == 1 || self.reached[home - stride] && self.reached[home + stride] {
@@ -187,6 +214,28 @@ impl<const D: usize> Cells<D> {
                 }
             }
         }
+        self.look_at_sides(grid);
+    }
+
+    /// Takes note of which neighbours of the occupied cells are reached.
+    fn look_at_sides(&mut self, grid: &Grid<D>) {
+        let stride = grid.cell_stride();
+        for &cell in &self.occupied {
+            self.reached_sides[cell] =
+                stride.map(|stride| [self.reached[cell - stride], self.reached[cell + stride]]);
+        }
+    }
+
+    /// Which neighbours of each occupied cell are reached, `[cell][direction][lower and upper]`.
+    #[inline]
+    pub fn reached_sides(&self) -> &[[[bool; 2]; D]] {
+        &self.reached_sides
+    }
+
+    /// Lowest node of each cell.
+    #[inline]
+    pub fn first_nodes(&self) -> &[usize] {
+        &self.first_node
     }
 
     /// Whether a cell holds a point, or the edge of one's domain.
@@ -212,7 +261,7 @@ impl<const D: usize> Cells<D> {
     /// Whether a cell holds a point.
     #[inline]
     pub fn is_occupied(&self, cell: usize) -> bool {
-        self.point_count[cell] > 0
+        self.holds[cell]
     }
 
     /// Current volume of a cell's points, m^D.
@@ -293,6 +342,40 @@ impl<const D: usize> Cells<D> {
     }
 }
 
+/// Points on their way into cells.
+pub(crate) struct Locating<'a, const D: usize> {
+    cells: &'a mut [usize],
+    place: &'a mut [Vector<D>],
+    within: &'a mut [Vector<D>],
+    holds: &'a mut [bool],
+    volume: &'a mut [f64],
+    pore_volume: &'a mut [f64],
+}
+
+impl<const D: usize> Locating<'_, D> {
+    /// Finds the cell of a point at a position, m, and adds its volumes of grains and pores, m^D. The index of the cell and
+    /// the place in cells.
+    #[inline(always)]
+    pub fn locate(
+        &mut self,
+        grid: &Grid<D>,
+        point: usize,
+        position: &Vector<D>,
+        [grains, pores]: [f64; 2],
+    ) -> ([usize; D], Vector<D>) {
+        let place = grid.held_in_cells(position);
+        let index = grid.cell_at(&place);
+        let cell = grid.flat_cell(&index);
+        self.cells[point] = cell;
+        self.place[point] = place;
+        self.within[point] = grid.within_cell(&index, &place);
+        self.holds[cell] = true;
+        self.volume[cell] += grains + pores;
+        self.pore_volume[cell] += pores;
+        (index, place)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -340,7 +423,7 @@ mod tests {
                 cells.find_reached(&grid, &points);
             }
             assert_eq!(again.of_point, first.of_point, "step {step}");
-            assert_eq!((&again.point_count, &again.occupied), (&first.point_count, &first.occupied));
+            assert_eq!((&again.holds, &again.occupied), (&first.holds, &first.occupied));
             assert_eq!((&again.volume, &again.porosity), (&first.volume, &first.porosity), "step {step}");
             assert_eq!(again.reached, first.reached, "step {step}");
             for cell in first.occupied() {

@@ -43,6 +43,9 @@ pub struct Nodes<const D: usize> {
     pub water_acceleration: Vec<Vector<D>>,
     /// `v_s + n (v_w − v_s)` with the nodal porosity, m/s: its divergence drives the pressure.
     pub flux: Vec<Vector<D>>,
+    /// What carries the points through a step, side by side: velocity and acceleration of the skeleton, velocity and
+    /// acceleration of the water.
+    pub motion: Vec<[Vector<D>; 4]>,
     /// Displacement of the skeleton where the grid is frozen, m.
     pub displacement: Vec<Vector<D>>,
     /// One where a component of the skeleton's velocity is free, zero where it is fixed or nothing
@@ -70,8 +73,10 @@ pub struct Nodes<const D: usize> {
 pub struct NodalSums<const D: usize> {
     /// Volume of the grains and of the pores (m^D), drag (N s/m), and nothing.
     pub masses: Vec<[[f64; 4]; 1]>,
-    /// Volume times velocity of the grains and of the pores (m^D m/s), or forces on the mixture and on the water (N).
-    pub phases: Vec<[Vector<D>; 2]>,
+    /// Volume times velocity of the grains and of the pores, m^D m/s.
+    pub momenta: Vec<[Vector<D>; 2]>,
+    /// Forces on the mixture and on the water, N.
+    pub forces: Vec<[Vector<D>; 2]>,
     /// Forces of the flow potential and of the stress, and the size of the latter, where the drag is of
     /// their ratio.
     pub chords: Vec<[f64; 3]>,
@@ -205,7 +210,8 @@ impl<const D: usize> Nodes<D> {
             drag: scalars,
             sums: NodalSums {
                 masses: vec![[[0.0; 4]; 1]; count],
-                phases: vec![[[0.0; D]; 2]; count],
+                momenta: vec![[[0.0; D]; 2]; count],
+                forces: vec![[[0.0; D]; 2]; count],
                 chords: vec![[0.0; 3]; count],
             },
             external_force: vectors.clone(),
@@ -216,6 +222,7 @@ impl<const D: usize> Nodes<D> {
             solid_acceleration: vectors.clone(),
             water_acceleration: vectors.clone(),
             flux: vectors.clone(),
+            motion: vec![[[0.0; D]; 4]; count],
             displacement: vectors.clone(),
             // Nothing is there yet.
             free: vectors.clone(),
@@ -242,41 +249,73 @@ impl<const D: usize> Nodes<D> {
     /// Turns the points' [`sums`](Self::sums) into masses, volumes, porosities and drag of the soil, that of layers with
     /// the porosity of the node. Nodes without mass are silenced: what they had would otherwise reach the points.
     pub fn take_masses(&mut self, soil: &Material, is_layered: bool) {
+        self.list_active(soil);
+        let count = self.len();
+        let masses = &self.sums.masses[..count];
+        let [water_mass, per_solid_mass, per_water_mass, volume, porosity, drag] = [
+            &mut self.water_mass,
+            &mut self.per_solid_mass,
+            &mut self.per_water_mass,
+            &mut self.volume,
+            &mut self.porosity,
+            &mut self.drag,
+        ]
+        .map(|field| &mut field[..count]);
+        let solid_mass = &self.solid_mass[..count];
+        for &node in &self.active {
+            let [[grain_volume, pore_volume, resistance, _]] = masses[node];
+            let mixture = grain_volume + pore_volume;
+            let share = pore_volume / mixture;
+            water_mass[node] = soil.water_density * pore_volume;
+            per_solid_mass[node] = 1.0 / solid_mass[node];
+            per_water_mass[node] = 1.0 / water_mass[node];
+            (volume[node], porosity[node]) = (mixture, share);
+            drag[node] = if is_layered { share * resistance } else { resistance };
+        }
+    }
+
+    /// Takes the masses of the grains, lists the nodes that have some, and silences those that have lost theirs.
+    fn list_active(&mut self, soil: &Material) {
         self.active.clear();
+        for (mass, [[grain_volume, ..]]) in self.solid_mass.iter_mut().zip(&self.sums.masses) {
+            *mass = soil.grain_density * grain_volume;
+        }
         for node in 0..self.len() {
-            let [[grain_volume, pore_volume, drag, _]] = self.sums.masses[node];
-            self.solid_mass[node] = soil.grain_density * grain_volume;
-            if !self.is_active(node) {
-                if self.carries[node] {
+            let is_active = self.is_active(node);
+            if is_active {
+                self.active.push(node);
+            }
+            if is_active != self.carries[node] {
+                if is_active {
+                    self.carries[node] = true;
+                    (self.free[node], self.water_free[node]) =
+                        (self.supports[node], self.water_supports[node]);
+                } else {
                     self.silence(node);
                 }
-                continue;
             }
-            if !self.carries[node] {
-                self.carries[node] = true;
-                (self.free[node], self.water_free[node]) = (self.supports[node], self.water_supports[node]);
-            }
-            self.active.push(node);
-            self.water_mass[node] = soil.water_density * pore_volume;
-            self.per_solid_mass[node] = 1.0 / self.solid_mass[node];
-            self.per_water_mass[node] = 1.0 / self.water_mass[node];
-            self.volume[node] = grain_volume + pore_volume;
-            self.porosity[node] = pore_volume / self.volume[node];
-            self.drag[node] = if is_layered { self.porosity[node] * drag } else { drag };
         }
     }
 
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held, and those that
     /// the nodes have where the water slides.
     pub fn take_velocities(&mut self, soil: &Material) {
+        let count = self.len();
+        let momenta = &self.sums.momenta[..count];
+        let [per_solid_mass, per_water_mass] =
+            [&self.per_solid_mass, &self.per_water_mass].map(|field| &field[..count]);
+        let [free, water_free, sliding] =
+            [&self.free, &self.water_free, &self.sliding].map(|field| &field[..count]);
+        let [solid_velocity, water_velocity] =
+            [&mut self.solid_velocity, &mut self.water_velocity].map(|field| &mut field[..count]);
         for &node in &self.active {
-            let [solid, water] = &self.sums.phases[node];
-            let per_grains = soil.grain_density * self.per_solid_mass[node];
-            let per_pores = soil.water_density * self.per_water_mass[node];
+            let [solid, water] = &momenta[node];
+            let per_grains = soil.grain_density * per_solid_mass[node];
+            let per_pores = soil.water_density * per_water_mass[node];
             for d in 0..D {
-                self.solid_velocity[node][d] = solid[d] * (self.free[node][d] * per_grains);
-                if self.sliding[node][d] == 0.0 {
-                    self.water_velocity[node][d] = water[d] * (self.water_free[node][d] * per_pores);
+                solid_velocity[node][d] = solid[d] * (free[node][d] * per_grains);
+                if sliding[node][d] == 0.0 {
+                    water_velocity[node][d] = water[d] * (water_free[node][d] * per_pores);
                 }
             }
         }
@@ -284,21 +323,29 @@ impl<const D: usize> Nodes<D> {
 
     /// Forces from the points' [`sums`](Self::sums) and from what acts from outside.
     pub fn take_forces(&mut self) {
+        let count = self.len();
+        let (forces, external) = (&self.sums.forces[..count], &self.external_force[..count]);
+        let [mixture_force, water_force] =
+            [&mut self.mixture_force, &mut self.water_force].map(|field| &mut field[..count]);
         for &node in &self.active {
-            let [mixture, water] = self.sums.phases[node];
+            let [mixture, water] = forces[node];
             for d in 0..D {
-                self.mixture_force[node][d] = self.external_force[node][d] + mixture[d];
+                mixture_force[node][d] = external[node][d] + mixture[d];
             }
-            self.water_force[node] = water;
+            water_force[node] = water;
         }
     }
 
     /// `v_s + n (v_w − v_s)` with the nodal porosity: what docs/theory.md, Eq. 4 takes the divergence of.
     pub fn take_flux(&mut self) {
+        let count = self.len();
+        let (flux, porosity) = (&mut self.flux[..count], &self.porosity[..count]);
+        let [solid_velocity, water_velocity] =
+            [&self.solid_velocity, &self.water_velocity].map(|field| &field[..count]);
         for &node in &self.active {
-            let (solid, water) = (&self.solid_velocity[node], &self.water_velocity[node]);
+            let (solid, water) = (&solid_velocity[node], &water_velocity[node]);
             for d in 0..D {
-                self.flux[node][d] = solid[d] + self.porosity[node] * (water[d] - solid[d]);
+                flux[node][d] = solid[d] + porosity[node] * (water[d] - solid[d]);
             }
         }
     }
@@ -306,6 +353,7 @@ impl<const D: usize> Nodes<D> {
     /// Takes everything from a node that has lost its mass.
     fn silence(&mut self, node: usize) {
         self.carries[node] = false;
+        self.motion[node] = [[0.0; D]; 4];
         let masses = [&mut self.water_mass, &mut self.per_solid_mass, &mut self.per_water_mass];
         let others = [&mut self.volume, &mut self.porosity, &mut self.drag];
         for field in masses.into_iter().chain(others) {
@@ -366,10 +414,10 @@ mod tests {
     fn water_that_slides_along_a_rough_base_keeps_the_velocity_of_its_node() {
         let (grid, soil) = (Grid::new(0.1, [3, 3]), Material::default());
         let mut nodes = Nodes::new(&grid, &Support::oedometer().on_rough_base(), 1.0);
-        for (masses, phases) in nodes.sums.masses.iter_mut().zip(&mut nodes.sums.phases) {
+        for (masses, momenta) in nodes.sums.masses.iter_mut().zip(&mut nodes.sums.momenta) {
             *masses = [[2.0, 0.5, 0.0, 0.0]];
             // Velocities 3 and 5 m/s of the skeleton, 3.25 and 7 m/s of the water.
-            *phases = [[6.0, 10.0], [1.625, 3.5]];
+            *momenta = [[6.0, 10.0], [1.625, 3.5]];
         }
         nodes.water_velocity.fill([0.25, 0.5]);
         nodes.take_masses(&soil, false);
@@ -396,7 +444,7 @@ mod tests {
             for node in [3, 4, 6] {
                 let share = if node == 4 && !has_mass { 0.0 } else { 1.0 };
                 nodes.sums.masses[node] = [[2.0 * share, share, 5.0 * share, 0.0]];
-                nodes.sums.phases[node] = [[6.0 * share], [4.0 * share]];
+                nodes.sums.momenta[node] = [[6.0 * share], [4.0 * share]];
             }
             nodes.take_masses(&soil, false);
             nodes.take_velocities(&soil);

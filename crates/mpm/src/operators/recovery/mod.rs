@@ -108,6 +108,13 @@ impl<const D: usize> RecoveryOperator<D> {
         }
     }
 
+    /// Brings the operator up to the points' places for a step that takes every row once: it is made where it is taken.
+    pub fn look_around(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
+        if let Self::Patch(rows) = self {
+            rows.look_around(grid, cells);
+        }
+    }
+
     /// Fits patches anew to the cells that hold the soil of each point, the number of which is given.
     pub fn keep_to_soils(&mut self, grid: &Grid<D>, cells: &Cells<D>, soils: &[u8]) {
         if let Self::Patch(rows) = self {
@@ -127,9 +134,7 @@ impl<const D: usize> RecoveryOperator<D> {
             Self::Own => each(out, put, |point| sites[point]),
             Self::Constant => each(out, put, |point| sites[at.cells.of_point[point]]),
             Self::Patch(rows) => {
-                wide!(for (place, value) in out.iter_mut().zip(rows.values(at.grid, sites)) {
-                    put(place, value);
-                });
+                wide!(rows.recover(at.grid, at.cells, sites, out, put));
             }
             Self::Nodal(means) => {
                 means.fit(at, sites);
@@ -156,7 +161,7 @@ impl<const D: usize> RecoveryOperator<D> {
         match self {
             Self::Own => points.map(|point| vec![(point, 1.0)]).collect(),
             Self::Constant => points.map(|point| vec![(at.cells.of_point[point], 1.0)]).collect(),
-            Self::Patch(rows) => points.map(|point| rows.row(at.grid, point)).collect(),
+            Self::Patch(rows) => points.map(|point| rows.row(at.grid, at.cells, point)).collect(),
             Self::Nodal(means) => means.rows(at),
             Self::NullSpace(_) => null_space::rows(at),
             Self::Interpolated => points.map(|point| at.around(point)).collect(),

@@ -25,6 +25,8 @@ pub struct PatchRows<const D: usize> {
     /// Which neighbours of each occupied cell are occupied, lower and upper a direction, where the occupied cells of
     /// its patch fill a rectangle.
     sides: Vec<Option<[[bool; 2]; D]>>,
+    /// Whether the rows above are of the points' places; elsewhere each is made where it is taken.
+    is_stored: bool,
 }
 
 impl<const D: usize> PatchRows<D> {
@@ -34,43 +36,43 @@ impl<const D: usize> PatchRows<D> {
             first: vec![0; points],
             shares: vec![[0.0; MOST_CELLS]; points],
             sides: vec![None; grid.cell_count()],
+            is_stored: false,
         }
     }
 
     /// Fits the rows to the points' places and to the occupied cells.
-    ///
-    /// The weights of the fit are products over the directions, and where the occupied cells fill a rectangle the
-    /// moments that the normal equations mix vanish: with the row `r` of the line through the cells along a
-    /// direction and the shares `a` of their weights, the plane's row is `r_i a_j + a_i r_j − a_i a_j`.
     #[inline(always)]
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
+        self.look_around(grid, cells);
+        self.is_stored = true;
+        let count = cells.of_point.len();
+        let (mut first, mut shares) = (std::mem::take(&mut self.first), std::mem::take(&mut self.shares));
+        let fitting = self.fitting(grid, cells, count);
+        for (point, (first, shares)) in (0..count).zip(first.iter_mut().zip(&mut shares)) {
+            (*first, *shares) = (fitting.homes[point] - fitting.to_lowest, fitting.shares(point));
+        }
+        (self.first, self.shares) = (first, shares);
+    }
+
+    /// Takes note of the occupied cells: rows are made of the points' places where they are taken.
+    pub fn look_around(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         for cell in cells.occupied() {
             self.sides[cell] = sides_of(grid, cells, cell);
         }
-        let to_lowest: usize = grid.cell_stride().iter().sum();
-        let rows = self.first.iter_mut().zip(&mut self.shares);
-        let places = cells.of_point.iter().zip(&cells.within);
-        for (point, ((first, shares), (home, within))) in rows.zip(places).enumerate() {
-            *first = home - to_lowest;
-            let Some(sides) = self.sides[*home] else {
-                fit(grid, *home, &cells.place[point], shares, |cell| cells.is_occupied(cell));
-                continue;
-            };
-            let mut lines = [LineFit { row: [0.0; BLOCK], shares: [0.0; BLOCK] }; D];
-            for d in 0..D {
-                lines[d] = LineFit::of(0.5 - within[d], sides[d], D > 1);
-            }
-            let [along, up] = [&lines[0], &lines[D - 1]];
-            if D == 1 {
-                shares[..BLOCK].copy_from_slice(&along.row);
-                continue;
-            }
-            for j in 0..BLOCK {
-                let tilt = up.row[j] - up.shares[j];
-                for i in 0..BLOCK {
-                    shares[BLOCK * j + i] = along.row[i] * up.shares[j] + along.shares[i] * tilt;
-                }
-            }
+        self.is_stored = false;
+    }
+
+    /// What rows are made of, of so many points.
+    #[inline(always)]
+    fn fitting<'a>(&'a self, grid: &'a Grid<D>, cells: &'a Cells<D>, points: usize) -> Fitting<'a, D> {
+        Fitting {
+            grid,
+            cells,
+            homes: &cells.of_point[..points],
+            within: &cells.within[..points],
+            sides: &self.sides,
+            to_lowest: grid.cell_stride().iter().sum(),
+            up: grid.cell_stride()[D - 1],
         }
     }
 
@@ -88,27 +90,118 @@ impl<const D: usize> PatchRows<D> {
         }
     }
 
-    /// Values at the points of a field given at the cells.
+    /// Puts the values at the points of a field given at the cells into their places.
     #[inline(always)]
-    pub fn values(&self, grid: &Grid<D>, field: &[f64]) -> impl Iterator<Item = f64> {
-        self.first.iter().zip(&self.shares).map(
-            #[inline(always)]
-            |(first, shares)| {
-                let mut value = 0.0;
-                for (j, shares) in shares.chunks_exact(BLOCK).take(power(BLOCK, D - 1)).enumerate() {
-                    let lowest = first + j * grid.cell_stride()[D - 1];
-                    let cells = &field[lowest..lowest + BLOCK];
-                    value += shares[0] * cells[0] + shares[1] * cells[1] + shares[2] * cells[2];
-                }
-                value
-            },
-        )
+    pub fn recover(
+        &self,
+        grid: &Grid<D>,
+        cells: &Cells<D>,
+        field: &[f64],
+        out: &mut [f64],
+        put: impl Fn(&mut f64, f64),
+    ) {
+        let fitting = self.fitting(grid, cells, out.len());
+        if self.is_stored {
+            for (place, (first, shares)) in out.iter_mut().zip(self.first.iter().zip(&self.shares)) {
+                put(place, fitting.sum(field, *first, shares));
+            }
+            return;
+        }
+        for point in 0..out.len() {
+            put(&mut out[point], fitting.value(field, point));
+        }
     }
 
     /// The cells of a point's patch with their shares.
-    pub fn row(&self, grid: &Grid<D>, point: usize) -> Vec<(usize, f64)> {
-        let cells = (0..power(BLOCK, D)).map(|block| block_cell(grid, self.first[point], block).0);
-        cells.zip(self.shares[point]).collect()
+    pub fn row(&self, grid: &Grid<D>, cells: &Cells<D>, point: usize) -> Vec<(usize, f64)> {
+        let fitting = self.fitting(grid, cells, cells.of_point.len());
+        let shares = if self.is_stored { self.shares[point] } else { fitting.shares(point) };
+        let first = fitting.homes[point] - fitting.to_lowest;
+        let cells = (0..power(BLOCK, D)).map(|block| block_cell(grid, first, block).0);
+        cells.zip(shares).collect()
+    }
+}
+
+/// What rows are made of, as slices of one length.
+#[derive(Clone, Copy)]
+struct Fitting<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    cells: &'a Cells<D>,
+    homes: &'a [usize],
+    within: &'a [Vector<D>],
+    sides: &'a [Option<[[bool; 2]; D]>],
+    /// From the lowest cell of a patch to its middle, and to the next row of cells.
+    to_lowest: usize,
+    up: usize,
+}
+
+impl<const D: usize> Fitting<'_, D> {
+    /// Lines through the cells around a point along each direction, where the occupied cells fill a rectangle.
+    #[inline(always)]
+    fn lines(&self, point: usize) -> Option<[LineFit; D]> {
+        let sides = self.sides[self.homes[point]]?;
+        let mut lines = [LineFit { row: [0.0; BLOCK], shares: [0.0; BLOCK] }; D];
+        for d in 0..D {
+            lines[d] = LineFit::of(0.5 - self.within[point][d], sides[d], D > 1);
+        }
+        Some(lines)
+    }
+
+    /// Shares of the cells around a point.
+    ///
+    /// The weights of the fit are products over the directions, and where the occupied cells fill a rectangle the
+    /// moments that the normal equations mix vanish: with the row `r` of the line through the cells along a
+    /// direction and the shares `a` of their weights, the plane's row is `r_i a_j + a_i r_j − a_i a_j`.
+    #[inline(always)]
+    fn shares(&self, point: usize) -> [f64; MOST_CELLS] {
+        let mut shares = [0.0; MOST_CELLS];
+        let Some(lines) = self.lines(point) else {
+            let is_in = |cell| self.cells.is_occupied(cell);
+            fit(self.grid, self.homes[point], &self.cells.place[point], &mut shares, is_in);
+            return shares;
+        };
+        let [along, up] = [&lines[0], &lines[D - 1]];
+        for j in 0..power(BLOCK, D - 1) {
+            let (share, tilt) = if D == 1 { (1.0, 0.0) } else { (up.shares[j], up.row[j] - up.shares[j]) };
+            for i in 0..BLOCK {
+                shares[BLOCK * j + i] = along.row[i] * share + along.shares[i] * tilt;
+            }
+        }
+        shares
+    }
+
+    /// Value at a point of a field given at the cells.
+    #[inline(always)]
+    fn value(&self, field: &[f64], point: usize) -> f64 {
+        let first = self.homes[point] - self.to_lowest;
+        let Some(lines) = self.lines(point) else { return self.sum(field, first, &self.shares(point)) };
+        let [along, up] = [&lines[0], &lines[D - 1]];
+        let sum =
+            |row: &[f64; BLOCK], cells: &[f64]| row[0] * cells[0] + row[1] * cells[1] + row[2] * cells[2];
+        if D == 1 {
+            return sum(&along.row, &field[first..first + BLOCK]);
+        }
+        let mut value = 0.0;
+        for j in 0..BLOCK {
+            let lowest = first + j * self.up;
+            let cells = &field[lowest..lowest + BLOCK];
+            value += sum(&along.row, cells) * up.shares[j];
+            value += sum(&along.shares, cells) * (up.row[j] - up.shares[j]);
+        }
+        value
+    }
+
+    /// Sum over a patch of the values of its cells times their shares.
+    #[inline(always)]
+    fn sum(&self, field: &[f64], first: usize, shares: &[f64; MOST_CELLS]) -> f64 {
+        let mut value = 0.0;
+        for j in 0..power(BLOCK, D - 1) {
+            let lowest = first + j * self.up;
+            let cells = &field[lowest..lowest + BLOCK];
+            let shares = &shares[BLOCK * j..BLOCK * j + BLOCK];
+            value += shares[0] * cells[0] + shares[1] * cells[1] + shares[2] * cells[2];
+        }
+        value
     }
 }
 
