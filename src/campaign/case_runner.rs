@@ -5,7 +5,7 @@ use crate::campaign::runner::{Progress, RunError};
 use crate::campaign::stop;
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task};
-use crate::foreign::attachment::{Attachment, Wish};
+use crate::foreign::attachment::{Attachment, Standing, Wish};
 use crate::record::{Record, RecordStore, Status, WallSample};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
@@ -55,12 +55,11 @@ impl<'a> CaseRunner<'a> {
         run_case_within(seconds, case, references, Kernel::Fastest, Cores::one(alone), observe)
     }
 
-    /// Whether a finished record of this program is what the case would give now. One of an attached solver is, where
-    /// that solver is the same too.
-    pub fn would_make(&self, record: &Record) -> bool {
+    /// What a finished record is to the programs of now. Those of this program are told apart by their sources.
+    pub fn standing(&self, record: &Record) -> Standing {
         match self.attachments.iter().find(|one| one.is_of(&record.case)) {
-            Some(attachment) => attachment.would_make(record, !self.study.holds_back(&record.case)),
-            None => true,
+            Some(attachment) => attachment.standing(record, !self.study.holds_back(&record.case)),
+            None => Standing::Proven,
         }
     }
 

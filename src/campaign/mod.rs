@@ -5,5 +5,6 @@ pub mod case_runner;
 pub mod runner;
 pub mod shares;
 pub mod stop;
+pub mod taken_over;
 #[cfg(test)]
 mod tests;

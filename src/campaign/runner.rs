@@ -4,8 +4,10 @@
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
+use crate::campaign::taken_over::TakenOver;
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::case::{Case, Tier};
+use crate::foreign::attachment::Standing;
 use crate::record::whole_file::StoreError;
 use crate::record::{Found, Origins, Provenance, Record, RecordStore, Status};
 use crate::study::check::Study;
@@ -29,6 +31,8 @@ pub struct RunOptions {
     pub shard: Option<Shard>,
     /// Whether finished records are taken up.
     pub resume: bool,
+    /// Whether those of attached solvers are taken up too that nothing proves to be of the program of now.
+    pub keep_unproven: bool,
     /// Whether records are only kept on disk and not in the report: any number of cases takes the same memory.
     pub only_on_disk: bool,
 }
@@ -36,7 +40,7 @@ pub struct RunOptions {
 impl RunOptions {
     /// A whole tier, every case anew.
     pub fn whole(tier: Tier, jobs: usize) -> Self {
-        Self { jobs, tier, shard: None, resume: false, only_on_disk: false }
+        Self { jobs, tier, shard: None, resume: false, keep_unproven: false, only_on_disk: false }
     }
 }
 
@@ -196,22 +200,32 @@ fn begun<'a>(
     };
     let (mut open, mut taken_up) = (Vec::new(), Vec::new());
     for case in cases {
-        match store.found(case) {
+        let record = match store.found(case) {
             // Whoever keeps nothing judges: a gate asks more of a record than a run that goes on.
-            Found::Finished(record)
-                if selected.is_kept || is_of_this_build(&record) && runner.would_make(&record) =>
-            {
-                report.tally.add(selected.study, &record);
-                taken_up.push(case);
-                if !options.only_on_disk {
-                    open.push((case, Some(Ok(record))));
-                }
-                continue;
+            Found::Finished(record) if selected.is_kept || is_of_this_build(&record) => Some(record),
+            Found::OfAnotherProgram => {
+                report.of_another_program += 1;
+                None
             }
-            Found::OfAnotherProgram => report.of_another_program += 1,
-            Found::Finished(_) | Found::Nothing => {}
+            Found::Finished(_) | Found::Nothing => None,
+        };
+        let standing = record.as_ref().map(|record| runner.standing(record));
+        let is_taken = match standing {
+            Some(Standing::Proven) => true,
+            Some(Standing::Unproven) => options.keep_unproven,
+            Some(Standing::Outdated) | None => false,
+        };
+        report.unproven += usize::from(standing == Some(Standing::Unproven) && !is_taken);
+        let Some(record) = record.filter(|_| is_taken) else {
+            open.push((case, None));
+            continue;
+        };
+        report.tally.add(selected.study, &record);
+        report.taken_over.extend(TakenOver::of(&record, standing == Some(Standing::Proven)));
+        taken_up.push(case);
+        if !options.only_on_disk {
+            open.push((case, Some(Ok(record))));
         }
-        open.push((case, None));
     }
     report.resumed = taken_up.len();
     report.origins = store.origins(&taken_up);
@@ -389,8 +403,12 @@ pub struct RunReport {
     pub resumed: usize,
     /// What made those.
     pub origins: Origins,
+    /// Those of them that attached solvers made.
+    pub taken_over: Vec<TakenOver>,
     /// Records of another program that were there, and whose cases were run again.
     pub of_another_program: usize,
+    /// Records of attached solvers that nothing proves to be of the program of now, and whose cases were run again.
+    pub unproven: usize,
     /// What went wrong beside failed cases; finished records are kept all the same.
     pub errors: Vec<RunError>,
 }

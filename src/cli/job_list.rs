@@ -28,6 +28,8 @@ pub struct JobList {
     pub parting: Parting,
     /// Whether the studies may start their attached solvers.
     pub allow_solvers: bool,
+    /// Whether results of attached solvers are kept that nothing proves to be of the present program.
+    pub keep_unproven: bool,
 }
 
 impl JobList {
@@ -67,6 +69,9 @@ impl JobList {
             words.push("--allow-solvers".to_owned());
         }
         words.push("--resume".to_owned());
+        if self.keep_unproven {
+            words.push("--keep-unproven".to_owned());
+        }
         words.join(" ")
     }
 
@@ -130,6 +135,7 @@ mod tests {
             tasks: 8,
             parting: Parting::Cost,
             allow_solvers: false,
+            keep_unproven: false,
         };
         assert_eq!(
             list.command("oedometer", "3"),
@@ -140,11 +146,12 @@ mod tests {
             tier: Tier::Full,
             parting: Parting::Hash,
             allow_solvers: true,
+            keep_unproven: true,
             ..list
         };
         assert_eq!(
             list.command("/a b/oedometer", "$TASK"),
-            "'/a b/oedometer' run 'my study.toml' b.toml --out out --shard $TASK/8 --allow-solvers --resume"
+            "'/a b/oedometer' run 'my study.toml' b.toml --out out --shard $TASK/8 --allow-solvers --resume --keep-unproven"
         );
     }
 
@@ -189,6 +196,7 @@ mod tests {
             tasks: 3,
             parting: Parting::Hash,
             allow_solvers: false,
+            keep_unproven: false,
         };
         let all = [(&study, records.iter().map(|record| &record.case).collect::<Vec<_>>())];
         let own = |case: &Case| case.number() % 3 + 1;

@@ -3,9 +3,10 @@
 use crate::case::{Case, Sample, Solver};
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::ending::{difference, states_at_outputs};
+use crate::foreign::identity::{Version, commit_of, digest_of_program};
 use crate::foreign::process::{Ending, Finished, Order};
 use crate::foreign::reading::{ReadResult, Unread, mapping_of, read};
-use crate::foreign::staging::{Filling, Staged, program_digest, words_of};
+use crate::foreign::staging::{Filling, Staged, words_of};
 use crate::foreign::{ending, process};
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
@@ -16,16 +17,12 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::run::results::outcome::Failure;
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
-use oedometer_soil::wording::{count_of, short, typed};
+use oedometer_soil::wording::{count_of, short};
 use regex_lite::Regex;
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// Longest time that a command may take to tell its version, s.
-const VERSION_SECONDS: f64 = 60.0;
-/// Longest version that is kept, letters.
-const LONGEST_VERSION: usize = 200;
 /// Share of the height within which a sample counts as at the surface, and of the length as under the crest.
 const RIM: f64 = 1e-6;
 /// Longest time limit, s: a century.
@@ -42,9 +39,11 @@ pub struct Attachment<'a> {
     solver: &'a ExternalSolver,
     /// What its result means, or why that cannot be told.
     mapping: Result<Mapping, String>,
-    version: OnceLock<Version>,
-    /// Digest of its program as it is when first asked.
-    program: OnceLock<Option<String>>,
+    version: OnceLock<Result<Version, String>>,
+    /// Digest of its program as it is when first asked, or why that is not known.
+    program: OnceLock<Result<String, String>>,
+    /// Commit of the repository that the study is in.
+    commit: OnceLock<Option<String>>,
     gate: Gate,
 }
 
@@ -61,8 +60,16 @@ pub struct Wish<'a> {
     pub is_wanted: &'a dyn Fn() -> bool,
 }
 
-/// What a solver says of its version, where it was asked, or why that is not known.
-type Version = Result<Option<String>, String>;
+/// What a record of an attached solver is to the program of now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It is what the program of now would give: by what the study declares that is known.
+    Proven,
+    /// Nothing says whether it is.
+    Unproven,
+    /// Another program made it, or it is read anew at no cost.
+    Outdated,
+}
 
 /// What a run left: its states at the outputs, or how it failed.
 type Left = Result<(Vec<SampledState>, ReadResult), Failure>;
@@ -76,6 +83,7 @@ impl<'a> Attachment<'a> {
             mapping,
             version: OnceLock::new(),
             program: OnceLock::new(),
+            commit: OnceLock::new(),
             gate: Gate::of(solver.at_once),
         }
     }
@@ -85,15 +93,21 @@ impl<'a> Attachment<'a> {
         Solver::Attached(self.solver.attached) == case.method
     }
 
-    /// Whether a record is what the solver would give now: its program is the same, and its version where the study asks
-    /// for one, which only a solver that may be started tells. A result that is there already is read again.
-    pub fn would_make(&self, record: &Record, may_start: bool) -> bool {
-        let Some(about) = record.attached.as_ref().filter(|_| !self.solver.is_given()) else { return false };
-        let is_version = || {
-            self.solver.version.is_empty()
-                || may_start && self.version(&|| true).as_ref().is_ok_and(|told| *told == about.version)
-        };
-        about.program_digest.is_some() && about.program_digest.as_ref() == self.program() && is_version()
+    /// What a finished record is to the program of now. Only a solver that may be started tells its version.
+    pub fn standing(&self, record: &Record, may_start: bool) -> Standing {
+        if self.solver.is_given() {
+            return Standing::Outdated;
+        }
+        let of_record = record.attached.as_ref().and_then(|about| about.program_digest.as_ref());
+        let is_told = may_start || self.solver.version.is_empty();
+        match (of_record, &self.solver.known_by) {
+            (Some(known), Some(_)) if is_told => match self.program(&|| true) {
+                Ok(present) if present == known => Standing::Proven,
+                Ok(_) => Standing::Outdated,
+                Err(_) => Standing::Unproven,
+            },
+            _ => Standing::Unproven,
+        }
     }
 
     /// Runs a case, or takes the result that is there already.
@@ -110,8 +124,7 @@ impl<'a> Attachment<'a> {
         record(case, wish, left, about, wall)
     }
 
-    /// Runs a case: once to warm up where that is asked for, then the timed runs, each in a fresh folder. The last
-    /// result is taken, and compared with the others.
+    /// Runs a case, once to warm up where that is asked for and then to be timed, and says of which program.
     fn runs(
         &self,
         case: &Case,
@@ -122,11 +135,33 @@ impl<'a> Attachment<'a> {
         let _passed = self.gate.pass();
         about.command.clone_from(&self.solver.command);
         about.warmed_up = self.solver.warm_up;
-        about.program_digest = self.program().cloned();
+        about.commit.clone_from(self.commit.get_or_init(|| commit_of(&self.solver.folder)));
         match self.version(wish.is_wanted) {
-            Ok(version) => about.version.clone_from(version),
+            Ok(version) => about.version.clone_from(&version.line),
             Err(trouble) => about.notes.push(trouble.clone()),
         }
+        let program = self.program(wish.is_wanted);
+        let left = self.all_runs(case, wish, about, wall);
+        let is_declared = self.solver.known_by.is_some();
+        // What changed while it ran may have been another program from one run to the next.
+        let is_same = |program: &String| self.identity(wish.is_wanted).is_ok_and(|end| end == *program);
+        about.program_digest =
+            program.as_ref().ok().filter(|program| !is_declared || is_same(program)).cloned();
+        let why = program.as_ref().err().map_or("its program changed while it ran", String::as_str);
+        if is_declared && about.program_digest.is_none() {
+            note(about, format!("no later run takes its results over: {why}"));
+        }
+        left
+    }
+
+    /// The runs of a case, each in a fresh folder. The last result is taken, and compared with the others.
+    fn all_runs(
+        &self,
+        case: &Case,
+        wish: &Wish<'_>,
+        about: &mut AttachedRun,
+        wall: &mut Vec<WallSample>,
+    ) -> Left {
         let mut known: Option<(Vec<SampledState>, ReadResult)> = None;
         for number in 0..self.solver.repeats + usize::from(self.solver.warm_up) {
             if !(wish.is_wanted)() {
@@ -258,33 +293,19 @@ impl<'a> Attachment<'a> {
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
-    /// Digest of the solver's files; `None` where they are too many to read.
-    fn program(&self) -> Option<&String> {
-        self.program.get_or_init(|| program_digest(self.solver)).as_ref()
-    }
-
     /// What the solver says of its version, asked once.
-    fn version(&self, is_wanted: &dyn Fn() -> bool) -> &Version {
-        self.version.get_or_init(|| self.told_version(is_wanted))
+    fn version(&self, is_wanted: &dyn Fn() -> bool) -> &Result<Version, String> {
+        self.version.get_or_init(|| Version::asked(self.solver, is_wanted))
     }
 
-    /// What the solver says of its version, within the time of a run.
-    fn told_version(&self, is_wanted: &dyn Fn() -> bool) -> Version {
-        if self.solver.version.is_empty() {
-            return Ok(None);
-        }
-        let words = words_of(self.solver, &self.solver.version, str::to_owned);
-        let seconds = self.solver.timeout.min(VERSION_SECONDS);
-        let timeout = Duration::from_secs_f64(seconds);
-        let order = Order { words: &words, environment: &[], folder: &self.solver.folder, timeout };
-        let found = process::run(&order, is_wanted);
-        if matches!(found.ending, Ending::TimedOut) {
-            let limit = typed(seconds);
-            return Err(format!("its version is not known: that command did not end within {limit} s"));
-        }
-        let mut lines = found.output.lines().chain(found.errors.lines());
-        let line = lines.find(|line| !line.trim().is_empty());
-        Ok(line.map(|line| line.trim().chars().take(LONGEST_VERSION).collect()))
+    /// Digest of its program as it was when first asked.
+    fn program(&self, is_wanted: &dyn Fn() -> bool) -> &Result<String, String> {
+        self.program.get_or_init(|| self.identity(is_wanted))
+    }
+
+    /// Digest of its program as its files are now.
+    fn identity(&self, is_wanted: &dyn Fn() -> bool) -> Result<String, String> {
+        digest_of_program(self.solver, self.version(is_wanted).as_ref().map_err(String::clone)?)
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod attachment;
 pub mod case_file;
 mod ending;
+mod identity;
 mod process;
 pub mod reading;
 mod staging;

@@ -75,6 +75,8 @@ pub struct StudyComparison {
     pub orders: Vec<OrderChange>,
     /// Processor times of the cases that both states timed, before and after. Never judged.
     pub seconds: Option<[Seconds; 2]>,
+    /// What made the values, before and after.
+    pub made_by: [Vec<String>; 2],
     /// Each case in the plane of cost and error, before and after.
     #[serde(skip)]
     pub arrows: Vec<Arrow>,
@@ -138,6 +140,7 @@ impl StudyComparison {
     pub(crate) fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
         let found = &after.golden.values;
         let seconds = Seconds::of_both(before, after);
+        let made_by = [before, after].map(|state| state.made_by.clone());
         let (before, pairing) = before.golden.clone().beside(&after.golden.inputs);
         let differences = compare(&before, found);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
@@ -160,6 +163,7 @@ impl StudyComparison {
             changes: case_changes(&differences),
             orders: order_changes(&before.values, found, &differences),
             seconds,
+            made_by,
             arrows: arrows(&before.values, found),
         }
     }

@@ -1,9 +1,10 @@
 //! Reads a git repository by the program `git`.
 
+use crate::record::git::command;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Why git gives no answer.
 #[derive(Debug, thiserror::Error)]
@@ -209,16 +210,6 @@ fn commit_of(line: &str) -> Commit {
     let mut parts = line.splitn(3, '\t').map(str::to_owned);
     let mut next = || parts.next().unwrap_or_default();
     Commit { hash: next(), date: next(), subject: next() }
-}
-
-/// A git command in a folder: what it finds does not depend on the caller's variables.
-fn command(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new("git");
-    command.arg("-C").arg(folder).args(["-c", "core.quotePath=off"]).args(words).env("LC_ALL", "C");
-    for variable in ["GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_COMMON_DIR", "GIT_OBJECT_DIRECTORY"] {
-        command.env_remove(variable);
-    }
-    command
 }
 
 /// What a git command prints, or what it says where it fails.

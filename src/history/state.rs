@@ -11,7 +11,7 @@ use crate::record::{Record, RecordStore, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_soil::wording::count_of;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A study in one state.
@@ -21,6 +21,8 @@ pub(crate) struct StudyState {
     pub golden: GoldenFile,
     /// Processor seconds of every run of each case by label, where they were measured.
     pub seconds: BTreeMap<String, Vec<f64>>,
+    /// What made the values: this program and attached ones, with their commits.
+    pub made_by: Vec<String>,
 }
 
 /// Studies in one state.
@@ -132,7 +134,8 @@ impl State {
 impl StudyState {
     /// The state of golden values, which nobody timed.
     pub fn of_golden(golden: GoldenFile) -> Self {
-        Self { golden, seconds: BTreeMap::new() }
+        let made_by = vec![golden.provenance.made_by()];
+        Self { golden, seconds: BTreeMap::new(), made_by }
     }
 
     /// The state of records.
@@ -142,7 +145,17 @@ impl StudyState {
             let runs = record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds));
             (record.case.label(), runs.collect())
         });
-        Self { golden: GoldenFile::of(study, records, "records"), seconds: seconds.collect() }
+        let of_attached = |record: &Record| {
+            let about = record.attached.as_ref()?;
+            Some(format!("`{}` by {}", record.case.method, about.made_by()))
+        };
+        let own = records.iter().map(|record| record.provenance.made_by());
+        let made_by: BTreeSet<String> = own.chain(records.iter().filter_map(of_attached)).collect();
+        Self {
+            golden: GoldenFile::of(study, records, "records"),
+            seconds: seconds.collect(),
+            made_by: made_by.into_iter().collect(),
+        }
     }
 }
 
@@ -186,7 +199,7 @@ pub(crate) fn with_command(study: &Study, command: &str) -> Result<Study, String
     }
     // Nothing of a result that is there already, one run a round, and no version of another program.
     (solver.repeats, solver.warm_up) = (1, false);
-    (solver.files, solver.version) = (Vec::new(), Vec::new());
+    (solver.files, solver.version, solver.known_by) = (Vec::new(), Vec::new(), None);
     study.planned.retain(|planned| planned.case.is_attached());
     Ok(study)
 }

@@ -2,6 +2,7 @@
 //! with the results of its attached solvers, as `score` tells it of files.
 
 use crate::campaign::runner::RunError;
+use crate::campaign::taken_over::TakenOver;
 use crate::case::{Case, Tier};
 use crate::foreign::reading::mapping_of;
 use crate::golden::compare::{
@@ -58,6 +59,8 @@ pub struct StudyCheck {
     pub changes: Vec<CaseChange>,
     /// Golden values that agree.
     pub agreeing: usize,
+    /// Results of attached solvers that were not made for this check.
+    pub taken_over: Vec<TakenOver>,
     /// Warnings, which fail nothing.
     pub warnings: Vec<String>,
 }
@@ -146,6 +149,13 @@ impl StudyCheck {
         self
     }
 
+    /// Adds the results of attached solvers that were taken over.
+    #[must_use]
+    pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
+        self.taken_over = taken_over.to_vec();
+        self
+    }
+
     /// Compares values alone.
     fn of_values(
         name: &str,
@@ -174,6 +184,7 @@ impl StudyCheck {
             groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),
             golden,
+            taken_over: Vec::new(),
             warnings: Vec::new(),
         }
     }

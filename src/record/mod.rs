@@ -4,6 +4,7 @@
 //! live solver, so that a report can be made again without solving.
 
 pub mod csv;
+pub mod git;
 pub mod pack;
 pub mod provenance;
 pub mod store;
@@ -268,10 +269,14 @@ pub struct AttachedRun {
     /// What it says of its version, where it was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
-    /// Digest of the program that the command starts and of the files in the adapter's folders; none where that is not
-    /// known, and the record is then taken for no later run.
+    /// Digest of all by which its program is known: the program that the command starts, the files that command and
+    /// environment name, those in `known_by`, and the output of the version command. None where one of them cannot be
+    /// read, or changed while it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program_digest: Option<String>,
+    /// Commit that the repository of the study was at when it was run, and whether files had changed since.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Whether it was run once before it was timed.
     #[serde(default)]
     pub warmed_up: bool,
@@ -294,6 +299,21 @@ pub struct AttachedRun {
     /// The last lines that it said, of a run that failed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub last_words: Vec<String>,
+}
+
+impl AttachedRun {
+    /// What made the result: version, program and commit, as far as they are known.
+    pub fn made_by(&self) -> String {
+        if self.command.is_empty() {
+            return "existing files".to_owned();
+        }
+        let version = self.version.as_ref().map(|version| format!("`{version}`"));
+        let program =
+            self.program_digest.as_ref().map(|digest| format!("program {}", &digest[..8.min(digest.len())]));
+        let commit = self.commit.as_ref().map(|commit| format!("at commit {commit}"));
+        let known: Vec<String> = [version, program, commit].into_iter().flatten().collect();
+        if known.is_empty() { "an unknown program".to_owned() } else { known.join(", ") }
+    }
 }
 
 /// Everything known of one case.

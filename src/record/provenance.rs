@@ -40,6 +40,16 @@ impl Provenance {
         self.compiler == other.compiler && self.target == other.target && self.profile == other.profile
     }
 
+    /// Program and commit, in words.
+    pub fn made_by(&self) -> String {
+        let commit = if self.commit.is_empty() {
+            format!("sources {}", self.sources)
+        } else {
+            format!("commit {}{}", self.commit, if self.dirty { " with changes" } else { "" })
+        };
+        format!("oedometer {} of {commit}", self.version)
+    }
+
     /// Digest of version and sources: equal for programs that compute equal values.
     pub fn program_tag(&self) -> u64 {
         tag(&[&self.version, &self.sources])

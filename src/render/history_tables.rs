@@ -10,6 +10,7 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::{input_cells, summary};
 use oedometer_soil::elementary;
 use oedometer_soil::wording::{count_of, short};
+use std::collections::BTreeMap;
 
 fn trend(trend: Trend) -> Cell {
     let mood = match trend {
@@ -40,8 +41,25 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
         table =
             summary_table(&differing, names).note(format!("{} studies are the same: {studies}.", same.len()));
     }
+    table = table.notes(origins(&found, names));
     let details = [inputs_table(&found), moved_table(&found), orders_table(&found)];
     std::iter::once(table).chain(details.into_iter().flatten()).collect()
+}
+
+/// What made the values of each state, with the number of studies where it is not all of them.
+fn origins(found: &[&StudyComparison], names: [&str; 2]) -> Vec<String> {
+    let of_state = |(state, name): (usize, &str)| {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for made_by in found.iter().flat_map(|one| &one.made_by[state]) {
+            *counts.entry(made_by).or_default() += 1;
+        }
+        let all = counts.into_iter().map(|(made_by, studies)| match studies {
+            _ if studies == found.len() => made_by.to_owned(),
+            _ => format!("{made_by} ({})", count_of(studies, "study", "studies")),
+        });
+        format!("{name} was made by {}.", all.collect::<Vec<_>>().join("; "))
+    };
+    names.into_iter().enumerate().map(of_state).collect()
 }
 
 /// One row per study, those that are the same among them, for programs.

@@ -390,6 +390,12 @@ pub struct SolverTable {
     pub preset: Typed<String>,
     /// Command that prints its version; its first line is kept in the record.
     pub version: Typed<Vec<Placed<String>>>,
+    /// `version`: results are taken over while the output of the version command and the content of the command's files
+    /// and of those in `known_by` stay the same. Left out: it is always run.
+    #[schemars(extend("enum" = ["version"]))]
+    pub reuse: Typed<String>,
+    /// Files and folders that the program is made of, from the folder of the study; with `reuse`.
+    pub known_by: Typed<Vec<Placed<String>>>,
     /// Longest wall time of one run, s; `case_seconds` of the study where it is left out.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub timeout: Typed<f64>,

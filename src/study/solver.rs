@@ -78,6 +78,9 @@ pub struct ExternalSolver {
     pub preset: Option<Preset>,
     /// Command that prints its version; empty by default.
     pub version: Vec<String>,
+    /// Files and folders that it is made of beside those of its command, as typed, where the study declares that results
+    /// may be taken over while they and the output of the version command stay the same; `None`: it is always run.
+    pub known_by: Option<Vec<String>>,
     /// Longest wall time of one run, s.
     pub timeout: f64,
     /// Runs of each case that are timed.
@@ -108,6 +111,11 @@ impl ExternalSolver {
     /// The words of its command and the values of its environment.
     pub fn words(&self) -> impl Iterator<Item = &String> {
         self.command.iter().chain(self.environment.iter().map(|(_, value)| value))
+    }
+
+    /// Where a file or folder that the study names lies.
+    pub fn place(&self, word: &str) -> PathBuf {
+        self.folder.join(word.strip_prefix("{study}/").unwrap_or(word))
     }
 
     /// The file that a word names, where one of that name is in the study's folder.

@@ -202,65 +202,6 @@ fn finished_cases_are_taken_up_failed_ones_are_run_again_and_so_are_those_of_ano
 }
 
 #[test]
-fn check_takes_the_results_of_run_until_something_changes_that_they_depend_on() {
-    let folder = TempDir::new().expect("a folder");
-    let at = folder.path();
-    let adapter = |pressure: f64| {
-        let row = |row: i32| format!("8.175,0.{row},{},0\\n", pressure * f64::from(10 - row));
-        let rows = (0..=10).map(row).collect::<Vec<_>>().concat().replace("0.10,", "1,");
-        let result = format!("printf 't,y,p,u_y\\n{rows}' > \"$1/result.csv\"\n");
-        format!("echo run >> \"$2/../runs\"\n. \"$2/law.inc\"\n{result}")
-    };
-    let study = at.join("study");
-    fs::create_dir(&study).expect("a folder");
-    let write = |name: &str, text: &str| fs::write(study.join(name), text).expect("a file");
-    write("adapter.sh", &adapter(0.09));
-    write("law.inc", "");
-    let solver = "title = \"t\"\nscene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[solver]]\nname = \"mine\"\n\
-                  command = [\"sh\", \"adapter.sh\", \"{out}\", \"{study}\"]\nresult = \"{out}/result.csv\"\n\
-                  [[sweep]]\nmethod = [\"mine\"]\ncells = [2, 5, 10]\n";
-    write("s.toml", solver);
-    let runs = || fs::read_to_string(at.join("runs")).map_or(0, |text| text.lines().count());
-    let check = |options: &[&str]| {
-        let before = runs();
-        let told = call(at, &[&["check", "study/s.toml"], options].concat());
-        let taken = told.err.contains("3 of 3 cases taken from out");
-        assert_eq!(runs() == before, taken, "{}", told.err);
-        (runs() - before, told.out)
-    };
-    let (started, fresh) = check(&[]);
-    assert_eq!(started, 3, "nothing is there yet");
-    let told = call(at, &["run", "study/s.toml"]);
-    assert_eq!(told.code, 0, "{}", told.err);
-    assert_eq!(check(&[]), (0, fresh.clone()), "the same verdicts without a run");
-    assert_eq!(check(&["--fresh"]), (3, fresh.clone()));
-    // What is judged is not what is run.
-    write(
-        "s.toml",
-        &format!(
-            "{solver}[[expect]]\nquantity = \"pressure\"\ntime_factor = 0.1\norder = {{ value = 2.0, minus = 1.0, plus = 1.0 }}\nat = {{ cells = 10, below = 0.5 }}\n"
-        ),
-    );
-    assert_eq!(check(&[]).0, 0);
-    // A file that the adapter reads and the study does not name, a new one, and the adapter itself.
-    for (name, text) in [("law.inc", "true"), ("new.inc", ""), ("adapter.sh", &adapter(0.08))] {
-        let kept = study.join(name);
-        let before = fs::read_to_string(&kept).ok();
-        write(name, text);
-        assert_eq!(check(&[]).0, 3, "{name}");
-        match before {
-            Some(before) => write(name, &before),
-            None => fs::remove_file(kept).expect("it was there"),
-        }
-        assert_eq!(check(&[]).0, 0, "{name} as it was");
-    }
-    // A failed result is run again.
-    write("adapter.sh", "echo run >> \"$2/../runs\"; exit 3\n");
-    assert_eq!(call(at, &["run", "study/s.toml"]).code, 3);
-    assert_eq!(check(&[]).0, 3);
-}
-
-#[test]
 fn repeats_are_timed_and_the_solver_says_its_version_and_its_own_time() {
     let Some(folder) = folder_with_toy() else { return };
     let more = "repeats = 3\nversion = [\"./toy\", \"--version\"]\nsolve_seconds = \"It took ([0-9.]+) s\"\n\

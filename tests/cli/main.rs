@@ -22,6 +22,7 @@ mod over_time;
 mod over_time_attached;
 mod own_answers;
 mod place;
+mod planted_bug;
 mod planted_damage;
 mod plate_and_weight;
 mod portable;

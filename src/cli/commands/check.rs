@@ -1,6 +1,7 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
 use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
+use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run};
 use crate::cli::exit::{Ended, Exit, sentence};
@@ -32,7 +33,8 @@ pub struct Arguments {
     /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Folder of results; cases that this build has solved already are taken from there
+    /// Folder of results; cases that this build has solved already are taken from there. Attached solvers always run,
+    /// unless the study declares by what they are known
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Cases at the same time [default: all cores]
@@ -108,7 +110,7 @@ fn checks_of(
     };
     let records = (!arguments.fresh).then_some(arguments.records.as_path());
     let reports = run_all(studies, jobs_of(arguments.jobs), records, &thin_alone)?;
-    let taken: usize = reports.iter().map(|report| report.resumed).sum();
+    let taken: usize = reports.iter().map(|report| report.resumed - report.taken_over.len()).sum();
     if taken > 0 {
         let all: usize = studies.iter().map(|study| study.cases(Tier::Ci).len()).sum();
         say!(
@@ -122,7 +124,7 @@ fn checks_of(
         tally.join(report.tally);
         if !(report.records.is_empty() && report.errors.is_empty()) {
             let check = StudyCheck::new(study, &report.records, Tier::Ci, golden);
-            checks.push(check.with_errors(&report.errors));
+            checks.push(check.with_errors(&report.errors).with_taken_over(&report.taken_over));
         }
     }
     Ok((checks, tally))
@@ -140,8 +142,8 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
     studies.iter().zip(run_all(studies, jobs, None, &|_, _| {})?).map(of_study).collect()
 }
 
-/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. What this build and unchanged attached
-/// solvers solved already is taken from a folder of results.
+/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. What this build solved already is taken
+/// from a folder of results, and what attached solvers did where the study declares by what they are known.
 fn run_all(
     studies: &[Study],
     jobs: usize,
@@ -205,6 +207,7 @@ struct CheckJson<'a> {
     groups: &'a [DifferenceGroup],
     differences: &'a [Difference],
     accuracy_and_cost: &'a [CaseChange],
+    taken_over: &'a [TakenOver],
     warnings: &'a [String],
 }
 
@@ -240,6 +243,7 @@ impl<'a> CheckJson<'a> {
             groups: &check.groups,
             differences: check.differences(),
             accuracy_and_cost: &check.changes,
+            taken_over: &check.taken_over,
             warnings: &check.warnings,
         }
     }
@@ -308,7 +312,7 @@ mod tests {
             "unsound_records": [{ "case": "unsound", "sentence": "unsound is odd" }],
             "golden_values_that_agree": 17, "golden_problem": null, "proposed_expectations": ["proposed"],
             "inputs_that_differ": [{ "key": "porosity", "before": "before", "after": "after", "cases": 3 }],
-            "groups": [], "differences": [], "accuracy_and_cost": [], "warnings": ["warned"],
+            "groups": [], "differences": [], "accuracy_and_cost": [], "taken_over": [], "warnings": ["warned"],
         });
         assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
         let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");

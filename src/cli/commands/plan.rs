@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "tasks")]
     balance: bool,
+    /// Have the commands reuse results of attached solvers that nothing proves to be of the present program
+    #[arg(long, requires = "tasks")]
+    keep_unproven: bool,
     /// Folder for the results of the commands; by default that of `--missing`
     #[arg(long, value_name = "DIR", requires = "tasks")]
     out: Option<PathBuf>,
@@ -80,6 +83,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             tier,
             tasks,
             allow_solvers: false,
+            keep_unproven: arguments.keep_unproven,
             parting: if arguments.balance { Parting::Cost } else { Parting::Hash },
         };
         list.tell_of_balance(&all);

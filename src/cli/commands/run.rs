@@ -4,6 +4,7 @@ use crate::campaign::case_runner::time_study;
 use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, Tally, run_studies};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
+use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
@@ -52,6 +53,9 @@ pub struct Arguments {
     /// Reuse finished records of the same version and sources, from any build
     #[arg(long)]
     resume: bool,
+    /// With `--resume`: reuse results of attached solvers too that nothing proves to be of the present program
+    #[arg(long, requires = "resume")]
+    keep_unproven: bool,
     /// Write the tables as STUDY.csv.gz, which pandas reads too
     #[arg(long)]
     compress: bool,
@@ -78,7 +82,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let mut studies = load(&chosen)?;
     if arguments.engine == Some(Engine::Slurm) {
         arguments.trust.mark_all(&mut studies, &chosen)?;
-        return slurm::run(&arguments.cluster, &chosen, &studies, arguments.tier, &arguments.out);
+        return slurm::run(
+            &arguments.cluster,
+            &chosen,
+            &studies,
+            arguments.tier,
+            &arguments.out,
+            arguments.keep_unproven,
+        );
     }
     if arguments.case.as_ref().is_some_and(|hash| hash.trim().is_empty()) {
         return Err(Ended::usage(
@@ -89,6 +100,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = RunOptions {
         shard: arguments.shard.as_deref().map(|typed| shard_of(typed, parting)).transpose()?,
         resume: arguments.resume,
+        keep_unproven: arguments.keep_unproven,
         only_on_disk: true,
         ..RunOptions::whole(arguments.tier, jobs_of(arguments.jobs))
     };
@@ -221,6 +233,18 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
         report.tally.failed + report.errors.len(),
         table.display()
     );
+    for sentence in TakenOver::sentences(&report.taken_over) {
+        say!("{}: {sentence}", study.name);
+    }
+    if report.unproven > 0 {
+        say!(
+            "{}: {} of attached solvers {} made again, for the study does not declare by what their programs are known \
+             (`reuse = \"version\"`): `--keep-unproven` keeps such results",
+            study.name,
+            count_of(report.unproven, "finished result", "finished results"),
+            if report.unproven == 1 { "was" } else { "were" }
+        );
+    }
     for warning in Absent::among(&report.records).warnings() {
         say!("{}: {warning}", study.name);
     }

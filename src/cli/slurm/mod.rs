@@ -76,8 +76,9 @@ pub fn run(
     studies: &[Study],
     tier: Tier,
     results: &Path,
+    keep_unproven: bool,
 ) -> anyhow::Result<Exit> {
-    let campaign = Campaign::new(arguments, files, studies, tier, results)?;
+    let campaign = Campaign::new(arguments, files, studies, tier, results, keep_unproven)?;
     let scripts = Scripts::new(arguments, &campaign.list, &campaign.name)?;
     if arguments.dry_run {
         let shares = campaign.shares_to_run();
@@ -133,6 +134,7 @@ impl<'a> Campaign<'a> {
         studies: &'a [Study],
         tier: Tier,
         results: &Path,
+        keep_unproven: bool,
     ) -> anyhow::Result<Self> {
         let folder = results.join(FOLDER);
         // The text of a study may be edited while its tasks wait: they take a copy.
@@ -163,6 +165,7 @@ impl<'a> Campaign<'a> {
             tasks: arguments.tasks.min(count as u64).min(most),
             parting: Parting::Cost,
             allow_solvers: starts_solvers,
+            keep_unproven,
         };
         list.tell_of_balance(&studies);
         let name = match studies.as_slice() {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::case::solver::Attached;
+use crate::foreign::identity::LONGEST_VERSION;
 
 /// A solver in a folder by a command, with the convention's mapping.
 pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
@@ -13,6 +14,7 @@ pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
         mapping: None,
         preset: None,
         version: Vec::new(),
+        known_by: None,
         timeout: 60.0,
         repeats: 1,
         warm_up: false,
@@ -312,7 +314,7 @@ mod runs {
             let mut solver = solver(folder.path(), &["true"]);
             solver.version = ["sh", "-c", script].map(str::to_owned).to_vec();
             let found = Attachment::new(&solver, false).version(&|| true).clone();
-            assert_eq!(found, Ok(version.map(str::to_owned)), "{script}");
+            assert_eq!(found.map(|version| version.line), Ok(version.map(str::to_owned)), "{script}");
         }
         let wish = Wish { references: &[], place: None, alone: true, is_wanted: &|| true };
         let solver = solver(folder.path(), &["true"]);
@@ -378,41 +380,45 @@ mod runs {
     }
 
     #[test]
-    fn a_record_is_what_a_solver_would_give_while_program_and_version_are_the_same() {
+    fn a_record_stands_by_what_the_study_declares_and_by_nothing_else() {
+        use Standing::{Outdated, Proven, Unproven};
         let folder = tempfile::TempDir::new().expect("a folder");
         std::fs::write(folder.path().join("adapter.sh"), "1").expect("a file");
         let plain = solver(folder.path(), &["sh", "adapter.sh"]);
-        let asked = ExternalSolver { version: ["echo", "7"].map(str::to_owned).to_vec(), ..plain.clone() };
+        let declared = ExternalSolver { known_by: Some(vec!["adapter.sh".to_owned()]), ..plain.clone() };
+        let asked = ExternalSolver { version: ["echo", "7"].map(str::to_owned).to_vec(), ..declared.clone() };
+        let mute = ExternalSolver { version: vec!["true".to_owned()], ..declared.clone() };
         let given = ExternalSolver { files: vec!["a.csv".to_owned()], ..plain.clone() };
-        let unnamed = solver(folder.path(), &["sh", "-c", "true"]);
-        let own = program_digest(&plain);
+        let of = |solver| {
+            let version = Version::asked(solver, &|| true).expect("in time");
+            digest_of_program(solver, &version).ok()
+        };
         let other = Some("0123456789abcdef".to_owned());
-        let version = |told: &str| Some(told.to_owned());
         let record = run("exit 1", |_| {});
-        for (number, (solver, digest, version, may_start, wanted)) in [
-            (&plain, &own, None, true, true),
-            (&plain, &own, None, false, true),
-            (&plain, &other, None, true, false),
-            (&plain, &None, None, true, false),
-            (&asked, &own, version("7"), true, true),
-            (&asked, &own, version("8"), true, false),
-            (&asked, &own, None, true, false),
-            (&asked, &other, version("7"), true, false),
-            // What nobody allowed to start is not asked.
-            (&asked, &own, version("7"), false, false),
-            // What is there already is read again, and what nobody can tell is run again.
-            (&given, &own, None, true, false),
-            (&unnamed, &None, None, true, false),
+        for (number, (solver, digest, may_start, wanted)) in [
+            // Without a declaration nothing is proven, whatever is the same.
+            (&plain, of(&plain), true, Unproven),
+            (&plain, other.clone(), true, Unproven),
+            (&declared, of(&declared), true, Proven),
+            (&declared, of(&declared), false, Proven),
+            (&declared, other.clone(), true, Outdated),
+            (&declared, None, true, Unproven),
+            // What was made before the declaration is not known by it.
+            (&declared, of(&plain), true, Outdated),
+            (&asked, of(&asked), true, Proven),
+            (&asked, of(&declared), true, Outdated),
+            // What nobody allowed to start is not asked, and a version that says nothing proves nothing.
+            (&asked, of(&asked), false, Unproven),
+            (&mute, of(&declared), true, Unproven),
+            // What is there already is read again.
+            (&given, of(&plain), true, Outdated),
         ]
         .into_iter()
         .enumerate()
         {
-            let about = AttachedRun { program_digest: digest.clone(), version, ..AttachedRun::default() };
+            let about = AttachedRun { program_digest: digest, ..AttachedRun::default() };
             let record = Record { attached: Some(about), ..record.clone() };
-            let found = Attachment::new(solver, false).would_make(&record, may_start);
-            assert_eq!(found, wanted, "row {number}");
+            assert_eq!(Attachment::new(solver, false).standing(&record, may_start), wanted, "row {number}");
         }
-        let of_this_program = Record { attached: None, ..record };
-        assert!(!Attachment::new(&plain, false).would_make(&of_this_program, true));
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod verdicts;
 
+use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::Change;
 use crate::judge::study_check::StudyCheck;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
@@ -65,6 +66,9 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
                 }
             }
         }
+        for sentence in TakenOver::sentences(&check.taken_over) {
+            add("notice", 1, "taken over", &sentence);
+        }
         for warning in &check.warnings {
             add("warning", 1, "wall time", warning);
         }
@@ -100,6 +104,9 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
     let mut report = Report::new("oedometer");
     for check in checks {
         let mut suite = TestSuite::new(check.study.clone());
+        for sentence in TakenOver::sentences(&check.taken_over) {
+            suite.add_property(Property::new("taken over", sentence));
+        }
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
         for judgement in &check.judgements {
             for mut case in cases_of(check, judgement) {
@@ -218,6 +225,7 @@ mod tests {
             groups: Vec::new(),
             changes: Vec::new(),
             agreeing: 0,
+            taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
         }
     }

@@ -1,5 +1,6 @@
 //! Verdicts and golden values of studies, as text in lines that fit a terminal and as Markdown.
 
+use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
@@ -14,6 +15,9 @@ use std::fmt::Write;
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
 pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     let mut text = wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
+    for sentence in TakenOver::sentences(&check.taken_over) {
+        text += &wrapped(&sentence, "  ", "    ");
+    }
     text += &text_of_inputs(check);
     text += &text_of_failures(check);
     text += &text_of_changes(check);
@@ -43,6 +47,9 @@ pub fn markdown_of(
     let (sound, unsound): (Vec<_>, Vec<_>) = checks.iter().partition(|check| check.end() == CheckEnd::Pass);
     for check in unsound.into_iter().chain(sound) {
         let _ = write!(text, "\n### {}: {}\n", check.study, headline(check));
+        for sentence in TakenOver::sentences(&check.taken_over) {
+            let _ = write!(text, "\n{sentence}\n");
+        }
         for input in &check.inputs {
             let _ = write!(text, "\nInput changed: {}\n", input.sentence());
         }
@@ -95,6 +102,16 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
         for mut row in judgements_table("", &judgements).rows {
             row.insert(0, check.study.as_str().into());
             whole.rows.push(row);
+        }
+        for one in &check.taken_over {
+            let reason = TakenOver::sentences(std::slice::from_ref(one)).concat();
+            whole.rows.push(vec![
+                check.study.as_str().into(),
+                Cell::Verdict(Mood::Note, "taken over".to_owned()),
+                one.case.as_str().into(),
+                "".into(),
+                Cell::Text(reason),
+            ]);
         }
         let agrees = check.golden.is_ok() && check.differences().is_empty() && check.inputs.is_empty();
         let (mood, word) = if agrees { (Mood::Pass, "pass") } else { (Mood::Fail, "fail") };

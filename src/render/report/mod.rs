@@ -11,6 +11,7 @@ pub(crate) mod refinement;
 pub(crate) mod setting;
 pub(crate) mod theory_lines;
 
+use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
@@ -34,6 +35,8 @@ pub struct StudyResults<'a> {
     pub unsound: Vec<(String, String)>,
     /// The file of the study, as it was given.
     pub file: String,
+    /// Results of attached solvers that were there before, as sentences.
+    pub taken_over: Vec<String>,
 }
 
 impl<'a> StudyResults<'a> {
@@ -52,7 +55,15 @@ impl<'a> StudyResults<'a> {
             paths,
             unsound: unsound.collect(),
             file,
+            taken_over: Vec::new(),
         }
+    }
+
+    /// Adds the results of attached solvers that were not made for this page.
+    #[must_use]
+    pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
+        self.taken_over = TakenOver::sentences(taken_over);
+        self
     }
 
     /// Sets the file of the study.

@@ -154,6 +154,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     blocks.extend(maps::critical_steps(results));
     if let Some(table) = runs::attached_table(results.records) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));
+        blocks.extend(results.taken_over.iter().map(|sentence| Block::Paragraph(format!("{sentence}."))));
         blocks.push(Block::Table(table.notes(diagnoses(study, results.records))));
     }
     if results.records.iter().any(|record| record.stability.is_none()) {

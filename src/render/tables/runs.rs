@@ -24,7 +24,7 @@ pub fn attached_table(records: &[Record]) -> Option<Table> {
         )
     });
     let columns = columns(
-        "case | ended | version | > wall, least [s] | > wall, median [s] | > processor [s] | > memory [MB] \
+        "case | ended | made by | > wall, least [s] | > wall, median [s] | > processor [s] | > memory [MB] \
          | > by its own account [s] | > repeats differ by",
     );
     let rows = attached.iter().map(|record| attached_row(record));
@@ -48,7 +48,7 @@ fn attached_row(record: &Record) -> Vec<Cell> {
     vec![
         Cell::Code(record.case.label()),
         Cell::Verdict(mood, record.status.name()),
-        about.and_then(|about| about.version.as_deref()).unwrap_or("–").into(),
+        about.map_or("–".to_owned(), |about| about.made_by().replace('`', "")).as_str().into(),
         Cell::of(wall.map(|wall| wall.minimum), Cell::Seconds, "not run"),
         Cell::of(wall.map(|wall| wall.median), Cell::Seconds, "not run"),
         Cell::of(median(|sample| sample.cpu_seconds), Cell::Seconds, not_told),

@@ -20,6 +20,8 @@ const MOST_REPEATS: i64 = 100;
 const MOST_AT_ONCE: i64 = 1024;
 /// Longest pattern of a time, letters.
 const LONGEST_PATTERN: usize = 500;
+/// By what a program may be known, so that its results are taken over.
+const REUSES: [&str; 1] = ["version"];
 /// What stands for the mesh in the names of files.
 const MESH: &str = "cells";
 
@@ -113,6 +115,7 @@ impl Checker<'_> {
         let solve_unit = self.solve_unit(table);
         let time_step =
             table.time_step.as_ref().map(|typed| self.positive(Some(typed), "time_step", "s", 1.0));
+        let known_by = self.known_by(table, &folder);
         let attached = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
         (self.diagnostics.len() == before).then(|| ExternalSolver {
             attached,
@@ -124,6 +127,7 @@ impl Checker<'_> {
             mapping,
             preset,
             version: table.version.as_ref().map_or(Vec::new(), |list| words_of(list)),
+            known_by,
             timeout,
             repeats,
             warm_up: table.warm_up.unwrap_or(repeats > 1),
@@ -190,6 +194,7 @@ impl Checker<'_> {
             mapping,
             preset,
             version: Vec::new(),
+            known_by: None,
             timeout: 0.0,
             repeats: 1,
             warm_up: false,
@@ -254,6 +259,32 @@ impl Checker<'_> {
             self.complain(typed.span(), format!("there is no file {}", path.display()), help);
         }
         Some(typed.to_string())
+    }
+
+    /// By what the program is known beside its command's files, where the study declares that its results may be taken over.
+    fn known_by(&mut self, table: &SolverTable, folder: &Path) -> Option<Vec<String>> {
+        let named = table.known_by.as_ref().map_or(Vec::new(), |list| words_of(list));
+        for typed in table.known_by.iter().flat_map(|list| &***list) {
+            let path = folder.join(typed.strip_prefix("{study}/").unwrap_or(typed));
+            if !path.exists() {
+                let help = "name files and folders by their paths from the folder of the study";
+                self.complain(typed.span(), format!("there is no file or folder {}", path.display()), help);
+            }
+        }
+        let Some(reuse) = &table.reuse else {
+            if let Some(typed) = &table.known_by {
+                let help = "add reuse = \"version\" to take results over while these files stay the same";
+                self.complain(typed.span(), "`known_by` has no effect without `reuse`", help);
+            }
+            return None;
+        };
+        self.word(reuse, "reuse", &REUSES)?;
+        if table.version.is_none() && named.is_empty() {
+            let help = "add the command that prints its version, like version = [\"ogs\", \"--version\"], or the files that \
+                        it is made of, like known_by = [\"src/\"]";
+            self.complain(reuse.span(), "nothing says by what the program is known", help);
+        }
+        Some(named)
     }
 
     /// The unit of the time that it says it took, s.

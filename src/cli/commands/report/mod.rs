@@ -1,6 +1,7 @@
 //! `oedometer report`: runs missing cases and renders everything.
 
 use crate::campaign::runner::{RunOptions, RunReport, Tally};
+use crate::campaign::taken_over::TakenOver;
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::commands::check::refuse_unfinished;
@@ -74,7 +75,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         .par_iter()
         .map(|(study, report)| {
             let file = typed_name(&study.name, &chosen);
-            StudyResults::new(study, &report.records, tier_of(study, report)).from_file(file)
+            StudyResults::new(study, &report.records, tier_of(study, report))
+                .from_file(file)
+                .with_taken_over(&report.taken_over)
         })
         .collect::<Vec<_>>();
     let making = Making {
@@ -114,7 +117,9 @@ fn typed_name(study: &str, chosen: &[PathBuf]) -> String {
 
 fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
     let tier = arguments.tier;
-    let options = RunOptions { resume: true, ..RunOptions::whole(tier, jobs_of(arguments.jobs)) };
+    // A page shows what there is and says what made it; a gate runs it again.
+    let whole = RunOptions::whole(tier, jobs_of(arguments.jobs));
+    let options = RunOptions { resume: true, keep_unproven: true, ..whole };
     let is_named = !arguments.studies.names_none();
     let chosen: Vec<Study> = studies.iter().map(|study| selected(study, is_named)).collect();
     let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, None)?;
@@ -137,6 +142,8 @@ fn add_finished(study: &Study, report: &mut RunReport, records: &Path) {
     let is_whole = all.iter().all(Option::is_some);
     let kept = all.into_iter().flatten().filter(|record| is_whole || run.contains_key(&record.hash));
     report.records = kept.collect();
+    let added = report.records.iter().filter(|record| !run.contains_key(&record.hash));
+    report.taken_over.extend(added.filter_map(|record| TakenOver::of(record, false)));
     report.resumed += report.records.len() - run.len();
 }
 
@@ -152,7 +159,8 @@ fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunRepor
         let store = RecordStore::new(&arguments.records, &study.name);
         let records: Vec<Record> =
             study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
-        RunReport { resumed: records.len(), records, ..RunReport::default() }
+        let taken_over = records.iter().filter_map(|record| TakenOver::of(record, false)).collect();
+        RunReport { resumed: records.len(), records, taken_over, ..RunReport::default() }
     };
     let reports: Vec<_> = studies.par_iter().map(of_study).collect();
     if reports.iter().all(|report| report.records.is_empty()) {

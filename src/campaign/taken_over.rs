@@ -1,0 +1,96 @@
+//! Results of attached solvers that a run takes over from an earlier one, and by what their programs are known.
+
+use crate::record::Record;
+use oedometer_soil::wording::count_of;
+
+/// Cases of a sentence before the rest is only counted.
+const MOST_CASES: usize = 12;
+
+/// A result that was not made by this run.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct TakenOver {
+    /// Name of the solver.
+    pub solver: String,
+    /// Label of the case.
+    pub case: String,
+    /// What made it.
+    pub made_by: String,
+    /// Whether the program is known to be that of now.
+    pub is_proven: bool,
+}
+
+impl TakenOver {
+    /// A record that is taken over; `None` for one of this program, whose sources decide its values.
+    pub fn of(record: &Record, is_proven: bool) -> Option<Self> {
+        let about = record.attached.as_ref()?;
+        Some(Self {
+            solver: record.case.method.to_string(),
+            case: record.case.label(),
+            made_by: about.made_by(),
+            is_proven,
+        })
+    }
+
+    /// The sentences on several, one for each solver and origin.
+    pub fn sentences(all: &[Self]) -> Vec<String> {
+        let mut groups: Vec<(&Self, Vec<&str>)> = Vec::new();
+        for one in all {
+            let is_alike = |other: &Self| {
+                (&other.solver, &other.made_by, other.is_proven) == (&one.solver, &one.made_by, one.is_proven)
+            };
+            match groups.iter_mut().find(|(first, _)| is_alike(first)) {
+                Some((_, cases)) => cases.push(&one.case),
+                None => groups.push((one, vec![&one.case])),
+            }
+        }
+        groups.into_iter().map(|(first, cases)| first.sentence(&cases)).collect()
+    }
+
+    fn sentence(&self, cases: &[&str]) -> String {
+        let count = count_of(cases.len(), "result", "results");
+        let more = cases.len().saturating_sub(MOST_CASES);
+        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+        let cases = cases.iter().take(MOST_CASES).copied().collect::<Vec<_>>().join(", ");
+        let proof = if self.is_proven {
+            "whose version and named files are unchanged"
+        } else {
+            "and nothing proves that its program is unchanged"
+        };
+        format!(
+            "`{}` was not run: {count} taken over ({cases}{more}), made by {}, {proof}",
+            self.solver, self.made_by
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_of_one_origin_are_one_sentence_that_names_each_case() {
+        let of = |solver: &str, cells: usize, made_by: &str, is_proven| TakenOver {
+            solver: solver.to_owned(),
+            case: format!("{solver} cells={cells}"),
+            made_by: made_by.to_owned(),
+            is_proven,
+        };
+        let all =
+            [of("a", 4, "v1", true), of("b", 4, "v1", false), of("a", 8, "v1", true), of("a", 9, "v2", true)];
+        assert_eq!(
+            TakenOver::sentences(&all),
+            [
+                "`a` was not run: 2 results taken over (a cells=4, a cells=8), made by v1, whose version and named files are \
+                 unchanged",
+                "`b` was not run: 1 result taken over (b cells=4), made by v1, and nothing proves that its program is unchanged",
+                "`a` was not run: 1 result taken over (a cells=9), made by v2, whose version and named files are unchanged",
+            ]
+        );
+        let many: Vec<TakenOver> = (0..14).map(|cells| of("a", cells, "v1", true)).collect();
+        let told = TakenOver::sentences(&many).remove(0);
+        assert!(
+            told.contains("14 results taken over (a cells=0,") && told.contains("a cells=11 and 2 more)"),
+            "{told}"
+        );
+    }
+}
