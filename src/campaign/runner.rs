@@ -5,7 +5,7 @@ use crate::campaign::case_runner::{CaseRunner, is_stopped};
 use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
 use crate::campaign::taken_over::TakenOver;
-use crate::case::work_estimate::{estimated_work, work_of};
+use crate::case::work_estimate::work_of_seconds;
 use crate::case::{Case, Tier};
 use crate::foreign::attachment::Standing;
 use crate::record::whole_file::StoreError;
@@ -94,7 +94,8 @@ pub fn run_studies_thinned(
         jobs.extend(missing.map(|(place, (case, _))| Job { case, study, place }));
     }
     // The longest first, so that the last ones to finish are short.
-    jobs.sort_by_cached_key(|job| Reverse(estimated_work(job.case)));
+    let work_of = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
+    jobs.sort_by_cached_key(|job| Reverse(work_of(job)));
     let threads = options.jobs.clamp(1, jobs.len().max(1));
     let longest = |job: &Job<'_>| LongestCase {
         study: studies[job.study].study.name.clone(),
@@ -104,7 +105,7 @@ pub fn run_studies_thinned(
     tell(Progress::Planned {
         cases: jobs.len(),
         resumed: begun.iter().map(|begun| begun.report.resumed).sum(),
-        work: work_of(jobs.iter().map(|job| job.case)),
+        work: jobs.iter().map(work_of).fold(0, u64::saturating_add),
         jobs: threads,
         longest: jobs.first().map(|job| Box::new(longest(job))),
     });
@@ -247,7 +248,7 @@ fn run_and_keep(
     stopped: &AtomicBool,
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Option<Outcome> {
-    let estimate = estimated_work(case);
+    let estimate = work_of_seconds(runner.study().estimated_seconds(case));
     let told = Cell::new(0_u64);
     let observe = |done: u64, expected: u64| {
         let now = u64::try_from(u128::from(estimate) * u128::from(done) / u128::from(expected.max(1)))
@@ -452,6 +453,7 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::work_estimate::estimated_work;
     use crate::study::file::StudySource;
     use std::sync::Mutex;
 

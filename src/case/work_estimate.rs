@@ -20,15 +20,24 @@ pub const MOST_PROBE_STEPS: u64 = 262_144;
 const HELD_RUNS: f64 = 4.0;
 
 /// Work of cases together: the largest number where there is more.
+#[cfg(test)]
 pub fn work_of<'a>(cases: impl Iterator<Item = &'a Case>) -> u64 {
     cases.fold(0, |sum, case| sum.saturating_add(estimated_work(case)))
 }
 
 /// Work of a case: the time that it will take on one core, ns.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
 pub fn estimated_work(case: &Case) -> u64 {
-    (1e9 * estimated_seconds(case)).max(1.0) as u64
+    work_of_seconds(estimated_seconds(case))
 }
+
+/// Work that takes so many seconds on one core, ns.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, it is an estimate")]
+pub fn work_of_seconds(seconds: f64) -> u64 {
+    (1e9 * seconds).max(1.0) as u64
+}
+
+/// Time in which a result that lies there is read and judged, s.
+pub const READING_SECONDS: f64 = 4e-3;
 
 /// Time assumed for a case of an attached solver, s: it cannot be estimated.
 const ATTACHED_SECONDS: f64 = 5.0;

@@ -140,15 +140,16 @@ impl<'a> Attachment<'a> {
             Ok(version) => about.version.clone_from(&version.line),
             Err(trouble) => about.notes.push(trouble.clone()),
         }
+        if self.solver.known_by.is_none() {
+            return self.all_runs(case, wish, about, wall);
+        }
         let program = self.program(wish.is_wanted);
         let left = self.all_runs(case, wish, about, wall);
-        let is_declared = self.solver.known_by.is_some();
         // What changed while it ran may have been another program from one run to the next.
-        let is_same = |program: &String| self.identity(wish.is_wanted).is_ok_and(|end| end == *program);
-        about.program_digest =
-            program.as_ref().ok().filter(|program| !is_declared || is_same(program)).cloned();
-        let why = program.as_ref().err().map_or("its program changed while it ran", String::as_str);
-        if is_declared && about.program_digest.is_none() {
+        let is_same = |program: &&String| self.identity(wish.is_wanted).is_ok_and(|end| end == **program);
+        about.program_digest = program.as_ref().ok().filter(is_same).cloned();
+        if about.program_digest.is_none() {
+            let why = program.as_ref().err().map_or("its program changed while it ran", String::as_str);
             note(about, format!("no later run takes its results over: {why}"));
         }
         left

@@ -218,6 +218,19 @@ pub fn case_changes(differences: &[Difference]) -> Vec<CaseChange> {
     changes
 }
 
+/// Cases that only the first of two states has, and those that only the second has, by the names of their values.
+pub fn cases_apart<'a>(
+    before: impl IntoIterator<Item = &'a String>,
+    after: impl IntoIterator<Item = &'a String>,
+) -> [Vec<String>; 2] {
+    let before: BTreeSet<&str> = before.into_iter().map(|name| parts(name).0).collect();
+    let after: BTreeSet<&str> = after.into_iter().map(|name| parts(name).0).collect();
+    let only = |one: &BTreeSet<&str>, other: &BTreeSet<&str>| {
+        one.difference(other).map(|case| (*case).to_owned()).collect()
+    };
+    [only(&before, &after), only(&after, &before)]
+}
+
 /// The differences of one kind.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DifferenceGroup {

@@ -105,6 +105,11 @@ pub enum GoldenError {
 }
 
 impl GoldenError {
+    /// Whether there is no file.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::Missing(_))
+    }
+
     fn refused(path: &Path, what: &'static str, reason: String) -> Self {
         Self::Refused { path: path.to_owned(), what, reason }
     }
@@ -178,7 +183,7 @@ impl GoldenFile {
             }
             Err(error) => return Err(unreadable(error.to_string())),
         };
-        let file = Self::from_text(&text).map_err(unreadable)?;
+        let file = Self::from_text(&text).map_err(|reason| unreadable(remedy(&text, &path, &reason)))?;
         if file.study != study {
             return Err(unreadable(format!("it is of study `{}`", file.study)));
         }
@@ -220,6 +225,27 @@ impl GoldenFile {
             self.to_text().map_err(|reason| GoldenError::refused(&path, "cannot be written", reason))?;
         write_whole(&path, text.as_bytes())?;
         Ok(path)
+    }
+}
+
+/// Why a text is no golden file, and what to do.
+fn remedy(text: &str, path: &Path, reason: &str) -> String {
+    let marks = ["<<<<<<<", "=======", ">>>>>>>", "|||||||"];
+    let mark = text.lines().position(|line| marks.iter().any(|mark| line.starts_with(mark)));
+    if text.starts_with("version https://git-lfs") {
+        "it is a pointer of Git LFS and not the file: `git lfs pull` brings that".to_owned()
+    } else if let Some(line) = mark {
+        format!(
+            "git left conflict marks in it (line {}): take one side by `git checkout --ours {path}` or `--theirs`, and check \
+             again",
+            line + 1,
+            path = path.display()
+        )
+    } else {
+        format!(
+            "{reason}; take it from a commit by `git checkout HEAD -- {path}`, or mend it",
+            path = path.display()
+        )
     }
 }
 

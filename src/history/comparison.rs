@@ -2,7 +2,7 @@
 //! errors under refinement, found from values by their names.
 
 use crate::golden::compare::{
-    CaseChange, Change, Difference, DifferenceGroup, case_changes, compare, groups_of,
+    CaseChange, Change, Difference, DifferenceGroup, case_changes, cases_apart, compare, groups_of,
 };
 use crate::golden::inputs::InputChange;
 use crate::golden::{is_counter, is_error, parts};
@@ -57,6 +57,8 @@ impl Trend {
 pub struct StudyComparison {
     /// Its name.
     pub study: String,
+    /// Cases that only the first state has, and those that only the second has.
+    pub cases_apart: [Vec<String>; 2],
     /// Errors of what both states have; values that only one state has are in `unpaired`.
     pub accuracy: Trend,
     /// Work counters.
@@ -154,6 +156,7 @@ impl StudyComparison {
         let names = before.values.keys().chain(found.keys()).map(String::as_str);
         Self {
             study: study.to_owned(),
+            cases_apart: cases_apart(before.values.keys(), found.keys()),
             accuracy,
             cost,
             values: before.values.keys().filter(|name| found.contains_key(*name)).count(),
@@ -230,6 +233,8 @@ fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<
 const ROUND_OFF: f64 = 1e-12;
 /// Change of an order that is told.
 const TOLD: f64 = 0.05;
+/// Fall of an order from which on it is lost.
+const LOST: f64 = 0.15;
 /// Levels from which on a series has a class.
 const LEAST_LEVELS: usize = 3;
 
@@ -251,6 +256,23 @@ pub struct OrderChange {
     pub before: Behaviour,
     /// In the second.
     pub after: Behaviour,
+}
+
+impl OrderChange {
+    /// Whether a settled order is gone or is smaller. Errors that are round-off now have none and lost nothing.
+    pub fn is_loss(&self) -> bool {
+        let is_smaller = |before: f64| self.after.order.is_none_or(|after| after < before - LOST);
+        self.after.class != "exact" && self.before.order.is_some_and(is_smaller)
+    }
+
+    /// The series with its order before and after.
+    pub fn sentence(&self) -> String {
+        let told = |state: &Behaviour| match state.order {
+            Some(order) => format!("{order:.2}"),
+            None => format!("none, {}", state.class),
+        };
+        format!("{} {} → {}", self.series, told(&self.before), told(&self.after))
+    }
 }
 
 /// The size of a level by a word of a label, with the word that stands for the axis: cells or a rule of time steps.

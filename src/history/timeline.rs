@@ -1,6 +1,6 @@
 //! Golden values over the commits that changed them.
 
-use crate::golden::compare::{Difference, case_changes, compare};
+use crate::golden::compare::{Difference, case_changes, cases_apart, compare};
 use crate::golden::{GoldenFile, is_counter, is_error, parts};
 use crate::history::comparison::{StudyComparison, Trend};
 use crate::history::repository::{Commit, GitError, Repository};
@@ -20,8 +20,14 @@ pub(crate) struct Step {
     pub commit: Commit,
     /// The reason that the golden file gives.
     pub reason: String,
+    /// Cases that the file before had and this one has not.
+    pub went: Vec<String>,
+    /// Cases that only this file has.
+    pub came: Vec<String>,
     /// Values of the file.
     pub values: usize,
+    /// Values that the file before had too.
+    pub shared: usize,
     /// Geometric mean of the errors over those of the first file, chained over the values that neighbours share.
     pub error_index: f64,
     /// Geometric mean of the work counters over those of the first file, chained likewise.
@@ -36,6 +42,13 @@ pub(crate) struct Step {
     pub accuracy: Trend,
     /// Where the work went.
     pub cost: Trend,
+}
+
+impl Step {
+    /// Whether values moved, or cases went or came.
+    pub fn has_changed(&self) -> bool {
+        self.moved > 0 || !(self.went.is_empty() && self.came.is_empty())
+    }
 }
 
 /// A study's golden values over time.
@@ -103,7 +116,10 @@ impl Step {
         let mut step = Self {
             commit: commit.clone(),
             reason: golden.reason.clone(),
+            went: Vec::new(),
+            came: Vec::new(),
             values: golden.values.len(),
+            shared: golden.values.len(),
             error_index: last.map_or(1.0, |last| last.error_index),
             work_index: last.map_or(1.0, |last| last.work_index),
             moved: 0,
@@ -113,6 +129,8 @@ impl Step {
             cost: Trend::Same,
         };
         let Some(before) = before else { return step };
+        [step.went, step.came] = cases_apart(before.values.keys(), golden.values.keys());
+        step.shared = before.values.keys().filter(|name| golden.values.contains_key(*name)).count();
         step.error_index *= mean_ratio(before, golden, |name| is_error(parts(name).1));
         step.work_index *= mean_ratio(before, golden, |name| is_counter(parts(name).1));
         let differences = compare(before, &golden.values);

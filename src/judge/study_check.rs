@@ -59,6 +59,10 @@ pub struct StudyCheck {
     pub changes: Vec<CaseChange>,
     /// Golden values that agree.
     pub agreeing: usize,
+    /// Expectations of the study.
+    pub expected: usize,
+    /// Cases that were not begun, because nobody allowed their programs to start.
+    pub held_back: usize,
     /// Results of attached solvers that were not made for this check.
     pub taken_over: Vec<TakenOver>,
     /// Warnings, which fail nothing.
@@ -77,6 +81,8 @@ pub enum CheckEnd {
     CaseFailed,
     /// A golden value is missing or stale, or of other inputs.
     Golden,
+    /// There are no golden values, and there cannot be any before all cases are run.
+    HeldBack,
 }
 
 impl StudyCheck {
@@ -118,6 +124,8 @@ impl StudyCheck {
                 _ => Vec::new(),
             }),
             judgements: judge_study(study, records, tier),
+            expected: study.expectations.len() + study.case_expectations.len(),
+            held_back: absent.held_back(study),
             warnings: (slow.into_iter())
                 .chain(absent.warnings())
                 .chain(differing_repeats(records))
@@ -184,6 +192,8 @@ impl StudyCheck {
             groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),
             golden,
+            expected: 0,
+            held_back: 0,
             taken_over: Vec::new(),
             warnings: Vec::new(),
         }
@@ -212,6 +222,8 @@ impl StudyCheck {
             CheckEnd::Failed
         } else if !self.failed_cases.is_empty() {
             CheckEnd::CaseFailed
+        } else if self.held_back > 0 && matches!(&self.golden, Err(error) if error.is_missing()) {
+            CheckEnd::HeldBack
         } else if self.golden.is_err() || !self.differences().is_empty() || !self.inputs.is_empty() {
             CheckEnd::Golden
         } else {

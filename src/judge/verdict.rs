@@ -374,6 +374,11 @@ impl<'a> Absent<'a> {
         Self { skipped, others }
     }
 
+    /// Cases that were not begun, because nobody allowed their programs to start.
+    pub fn held_back(&self, study: &Study) -> usize {
+        self.skipped.iter().filter(|record| study.holds_back(&record.case)).count()
+    }
+
     /// Whether a selection has cases, and all of them were skipped.
     pub fn holds_all(&self, is_selected: impl Fn(&Case) -> bool) -> bool {
         self.skipped.iter().any(|record| is_selected(&record.case))

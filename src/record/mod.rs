@@ -269,9 +269,9 @@ pub struct AttachedRun {
     /// What it says of its version, where it was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
-    /// Digest of all by which its program is known: the program that the command starts, the files that command and
-    /// environment name, those in `known_by`, and the output of the version command. None where one of them cannot be
-    /// read, or changed while it ran.
+    /// Digest of all by which its program is known, where the study declares that it is: the program that the command
+    /// starts, the files that command and environment name, those in `known_by`, and the output of the version command.
+    /// None where one of them cannot be read, or changed while it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program_digest: Option<String>,
     /// Commit that the repository of the study was at when it was run, and whether files had changed since.
@@ -308,11 +308,13 @@ impl AttachedRun {
             return "existing files".to_owned();
         }
         let version = self.version.as_ref().map(|version| format!("`{version}`"));
-        let program =
-            self.program_digest.as_ref().map(|digest| format!("program {}", &digest[..8.min(digest.len())]));
+        let program = self.program_digest.as_ref().map_or_else(
+            || format!("`{}`", self.command.join(" ")),
+            |digest| format!("program {}", digest.chars().take(8).collect::<String>()),
+        );
         let commit = self.commit.as_ref().map(|commit| format!("at commit {commit}"));
-        let known: Vec<String> = [version, program, commit].into_iter().flatten().collect();
-        if known.is_empty() { "an unknown program".to_owned() } else { known.join(", ") }
+        let known: Vec<String> = [version, Some(program), commit].into_iter().flatten().collect();
+        known.join(", ")
     }
 }
 

@@ -10,7 +10,7 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::golden_changes::{input_cells, summary};
 use oedometer_soil::elementary;
 use oedometer_soil::wording::{count_of, short};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 fn trend(trend: Trend) -> Cell {
     let mood = match trend {
@@ -42,7 +42,7 @@ pub(crate) fn comparison_tables(found: &[StudyComparison], names: [&str; 2]) -> 
             summary_table(&differing, names).note(format!("{} studies are the same: {studies}.", same.len()));
     }
     table = table.notes(origins(&found, names));
-    let details = [inputs_table(&found), moved_table(&found), orders_table(&found)];
+    let details = [cases_table(&found), inputs_table(&found), moved_table(&found), orders_table(&found)];
     std::iter::once(table).chain(details.into_iter().flatten()).collect()
 }
 
@@ -125,6 +125,16 @@ fn summary_table(found: &[&StudyComparison], names: [&str; 2]) -> Table {
     table
 }
 
+/// The cases that went and came; none where both states have the same.
+fn cases_table(found: &[&StudyComparison]) -> Option<Table> {
+    let rows = found.iter().filter(|one| one.cases_apart.iter().any(|cases| !cases.is_empty()));
+    let rows = rows.map(|one| {
+        let [went, came] = &one.cases_apart;
+        vec![Cell::Code(one.study.clone()), cases(went), cases(came)]
+    });
+    Table::of("cases that went and came", columns("study | went | came"), rows).unless_empty()
+}
+
 /// The inputs that differ; none where none does.
 fn inputs_table(found: &[&StudyComparison]) -> Option<Table> {
     let rows = found
@@ -170,6 +180,25 @@ fn values_of(one: &Difference) -> [Cell; 2] {
         .map(|value| value.map_or(Cell::missing("no value"), |value| Cell::Text(number::error(value))))
 }
 
+/// Cases that are named before the rest is only counted.
+const MOST_CASES: usize = 3;
+
+/// Cases by their labels, or a dash.
+fn cases(all: &[String]) -> Cell {
+    let more = all.len().saturating_sub(MOST_CASES);
+    let named = all.iter().take(MOST_CASES).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match (all.is_empty(), more) {
+        (true, _) => Cell::missing("no case"),
+        (false, 0) => Cell::Code(named),
+        (false, more) => Cell::Code(format!("{named} and {more} more")),
+    }
+}
+
+/// Where errors or work went at a commit: nothing is known of that where no value is left to compare.
+fn trend_of(step: &Step, word: Trend) -> Cell {
+    if step.shared == 0 { Cell::missing("no value in common with the file before") } else { trend(word) }
+}
+
 /// Golden values over time: a row per commit that changed them.
 pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
     let rows = lines.iter().flat_map(|line| {
@@ -178,8 +207,10 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
                 Cell::Code(line.study.clone()),
                 Cell::Code(step.commit.short().to_owned()),
                 step.commit.date.as_str().into(),
-                trend(step.accuracy),
-                trend(step.cost),
+                cases(&step.went),
+                cases(&step.came),
+                trend_of(step, step.accuracy),
+                trend_of(step, step.cost),
                 Cell::Number(step.error_index),
                 Cell::Number(step.work_index),
                 Cell::Count(step.moved as u64),
@@ -193,8 +224,8 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
     Table::of(
         "golden values over time",
         columns(
-            "study | commit | date | accuracy | cost | > error index | > work index | > moved | > came or went \
-             | > largest relative change | reason | commit subject",
+            "study | commit | date | cases that went | cases that came | accuracy | cost | > error index | > work index \
+             | > moved | > came or went | > largest relative change | reason | commit subject",
         ),
         rows,
     )
@@ -205,22 +236,32 @@ pub(crate) fn timeline_table(lines: &[Timeline]) -> Table {
 pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
     let rows = lines.iter().filter_map(|line| {
         let last = line.steps.last()?;
-        let steps = line.steps.iter().skip(1).filter(|step| step.moved > 0);
+        let steps = line.steps.iter().skip(1).filter(|step| step.has_changed());
         let moved = steps.clone().next_back();
+        let all = |of: fn(&Step) -> &Vec<String>| {
+            line.steps.iter().flat_map(of).map(String::as_str).collect::<BTreeSet<_>>()
+        };
+        let (went, came) = (all(|step| &step.went), all(|step| &step.came));
+        let apart = |one: &BTreeSet<&str>, other: &BTreeSet<&str>| {
+            cases(&one.difference(other).map(|case| (*case).to_owned()).collect::<Vec<_>>())
+        };
         Some(vec![
             Cell::Code(line.study.clone()),
+            apart(&went, &came),
+            apart(&came, &went),
             Cell::Count(line.steps.len() as u64),
             Cell::Count(steps.count() as u64),
             Cell::Number(last.error_index),
             Cell::Number(last.work_index),
-            moved.map_or(Cell::missing("nothing moved"), |step| Cell::Code(step.commit.short().to_owned())),
-            moved.map_or(Cell::missing("nothing moved"), |step| step.reason.as_str().into()),
+            moved.map_or(Cell::missing("nothing changed"), |step| Cell::Code(step.commit.short().to_owned())),
+            moved.map_or(Cell::missing("nothing changed"), |step| step.reason.as_str().into()),
         ])
     });
     Table::of(
         "golden values over time",
         columns(
-            "study | > commits | > with values that moved | > error index | > work index | last that moved | its reason",
+            "study | cases that went | cases that came | > commits | > with changes | > error index | > work index \
+             | last with a change | its reason",
         ),
         rows,
     )
@@ -430,7 +471,10 @@ mod tests {
                 subject: format!("Subject {number}"),
             },
             reason: format!("reason {number}"),
+            went: Vec::new(),
+            came: (0..if number == 1 { 0 } else { unpaired }).map(|case| format!("case {case}")).collect(),
             values: 40,
+            shared: 40,
             error_index: 0.5 * at,
             work_index: 0.25 * at,
             moved,
@@ -446,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn a_timeline_tells_every_commit_and_in_short_the_last_that_moved_values() {
+    fn a_timeline_tells_every_commit_and_in_short_the_last_that_changed_anything() {
         // What the first file has has not moved.
         let all = [
             Timeline {
@@ -457,14 +501,17 @@ mod tests {
             Timeline { study: "c".to_owned(), steps: Vec::new() },
         ];
         let rows = [
-            "a,12345678,2026-01-01,mixed,regressed,0.5,0.25,9,2,0.125,reason 1,Subject 1",
-            "a,22345678,2026-01-02,same,improved,1.0,0.5,5,0,0.25,reason 2,Subject 2",
-            "a,32345678,2026-01-03,mixed,regressed,1.5,0.75,7,1,0.375,reason 3,Subject 3",
-            "a,42345678,2026-01-04,same,improved,2.0,1.0,0,3,0.5,reason 4,Subject 4",
-            "b,12345678,2026-01-01,mixed,regressed,0.5,0.25,9,0,0.125,reason 1,Subject 1",
+            "a,12345678,2026-01-01,,,mixed,regressed,0.5,0.25,9,2,0.125,reason 1,Subject 1",
+            "a,22345678,2026-01-02,,,same,improved,1.0,0.5,5,0,0.25,reason 2,Subject 2",
+            "a,32345678,2026-01-03,,case 0,mixed,regressed,1.5,0.75,7,1,0.375,reason 3,Subject 3",
+            "a,42345678,2026-01-04,,\"case 0, case 1, case 2\",same,improved,2.0,1.0,0,3,0.5,reason 4,Subject 4",
+            "b,12345678,2026-01-01,,,mixed,regressed,0.5,0.25,9,0,0.125,reason 1,Subject 1",
         ];
         assert_eq!(csv(&timeline_table(&all)), rows);
-        assert_eq!(csv(&timeline_summary(&all)), ["a,4,2,2.0,1.0,32345678,reason 3", "b,1,0,0.5,0.25,,"]);
+        assert_eq!(
+            csv(&timeline_summary(&all)),
+            ["a,,\"case 0, case 1, case 2\",4,3,2.0,1.0,42345678,reason 4", "b,,,1,0,0.5,0.25,,"]
+        );
         let page = timeline_page(&all);
         let Block::Table(studies) = &page.sections[0].blocks[0] else { panic!("a table first") };
         let link = |study: &str| Cell::Link { words: study.to_owned(), target: format!("#{study}") };

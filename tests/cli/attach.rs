@@ -186,7 +186,7 @@ fn finished_cases_are_taken_up_failed_ones_are_run_again_and_so_are_those_of_ano
     let Some(folder) = folder_with_toy() else { return };
     let sweep = "[[sweep]]\nmethod = [\"toy\"]\ncells = [10, 20]\n";
     write_study(folder.path(), "again.toml", &solver("toy", "fail", ""), sweep);
-    let run = || call(folder.path(), &["run", "again.toml", "--resume"]);
+    let run = || call(folder.path(), &["run", "again.toml", "--resume", "--keep-unproven"]);
     assert!(run().err.contains("2 cases (0 from disk, 1 failed)"));
     let again = run().err;
     assert!(again.contains("2 cases (1 from disk, 1 failed)"), "the failed one ran again: {again}");

@@ -1,5 +1,6 @@
 //! Whole runs through the program, as its users call it.
 
+mod at_the_gate;
 mod attach;
 mod attach_plane;
 mod bad_input;

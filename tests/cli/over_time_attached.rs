@@ -78,7 +78,9 @@ fn the_commit_that_moved_a_python_solver_is_found_marked_and_told() {
         |words: &[&str]| call(at, &[&["bisect", "mine/mine.toml", "--good", "good"], words].concat());
     let told: Told = bisect(&["--bad", "HEAD"]);
     assert_eq!(told.code, 0, "{}{}", told.out, told.err);
-    assert!(told.out.lines().next().is_some_and(|first| first.ends_with(WORSE)), "{}", told.out);
+    let first = told.out.lines().next().unwrap_or_default();
+    assert!(first.starts_with("first bad commit: ") && first.ends_with(WORSE), "{}", told.out);
+    assert!(told.out.contains("diagnosis: mine cells="), "what it looks like: {}", told.out);
     assert!(told.out.contains("mine cells="), "what moved: {}", told.out);
     assert!(told.err.contains(" skip: Crash"), "{}", told.err);
     assert_eq!(git(at, &["status", "--porcelain"]), "", "the user's tree is as it was");

@@ -68,7 +68,7 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
         (&["plan", "s.toml", "--format", "json"], 0),
         (&["run", "s.toml"], 6),
         (&["run", "s.toml", "--resume"], 6),
-        (&["check", "s.toml"], 5),
+        (&["check", "s.toml"], 6),
         (&["report", "s.toml"], 6),
         (&["report", "s.toml", "--from-records"], 0),
         (&["explain", "theirs cells=4", "s.toml"], 4),
@@ -97,6 +97,8 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
     let told = untrusting(at, &["run", "s.toml"]);
     assert!(told.code == 6 && !at.join("started").exists(), "{}", told.err);
     let told = untrusting(at, &["run", "s.toml", "--resume"]);
+    assert!(told.code == 6 && told.err.contains("nothing proves 1 finished result"), "{}", told.err);
+    let told = untrusting(at, &["run", "s.toml", "--resume", "--keep-unproven"]);
     assert!(told.code == 0 && told.err.contains("3 cases (3 from disk, 0 failed)"), "{}", told.err);
 }
 

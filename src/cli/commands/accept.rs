@@ -4,15 +4,18 @@ use crate::case::planned::Tier;
 use crate::cli::commands::check::run_quietly;
 use crate::cli::commands::run::{jobs_of, load};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{is_on, say};
+use crate::cli::output::{TableFormat, is_on, print_tables, say};
 use crate::cli::place::{golden_folder, named};
 use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::{LastDigit, spread_by_group};
-use crate::golden::{GoldenFile, values_of};
+use crate::golden::{GoldenError, GoldenFile, values_of};
+use crate::history::comparison::{OrderChange, StudyComparison};
+use crate::history::state::StudyState;
 use crate::judge::study_check::StudyCheck;
 use crate::record::Record;
 use crate::record::provenance::Provenance;
 use crate::render::checks::verdicts::objections_of;
+use crate::render::history_tables::comparison_tables;
 use crate::study::check::Study;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -49,19 +52,23 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = named(&arguments.studies)?;
     let mut studies = load(&chosen)?;
     arguments.trust.mark_all(&mut studies, &chosen)?;
+    let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
+    let older = studies.iter().map(|study| older_of(&folder_of(&study.name), &study.name));
+    let older = older.collect::<anyhow::Result<Vec<Option<GoldenFile>>>>()?;
     let records = run_quietly(&studies, jobs_of(arguments.jobs))?;
     refuse_failing(&studies, &records, arguments.despite_failing)?;
-    let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
+    let lost = tell_changes(&studies, &records, &older)?;
     let mut perturbed = Vec::new();
     for digit in LastDigit::ALL {
         let studies: Vec<Study> = studies.iter().map(|study| study.perturbed(digit)).collect();
         perturbed.push(run_quietly(&studies, jobs_of(arguments.jobs))?);
     }
-    for (number, study) in studies.iter().enumerate() {
-        let golden = GoldenFile::of(&study.name, &records[number], reason);
+    for ((number, study), older) in studies.iter().enumerate().zip(older) {
+        let reason = with_lost_orders(reason, &lost[number]);
+        let golden = GoldenFile::of(&study.name, &records[number], &reason);
         let others: Vec<&[Record]> = perturbed.iter().map(|records| &records[number][..]).collect();
         let spread = spread_over(&golden, &others);
-        keep(golden.widened_by(spread), &folder_of(&study.name))?;
+        keep(golden.widened_by(spread), older.as_ref(), &folder_of(&study.name))?;
     }
     Ok(Exit::Pass)
 }
@@ -111,12 +118,64 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The golden values there are; `None` where there are none. What cannot be read is not replaced: nobody has seen what it was.
+fn older_of(folder: &Path, study: &str) -> anyhow::Result<Option<GoldenFile>> {
+    match GoldenFile::read(folder, study) {
+        Ok(older) => Ok(Some(older)),
+        Err(GoldenError::Missing(_)) => Ok(None),
+        Err(error) => Err(Ended::with(
+            Exit::Golden,
+            format!("nothing is taken: {error}. Only a file that can be read, or that is gone, is replaced"),
+        )),
+    }
+}
+
+/// Values that may move before an acceptance shows all that did.
+const FEW: usize = 5;
+
+/// Shows what an acceptance changes, where that is more than a few values; the orders that each study loses.
+fn tell_changes(
+    studies: &[Study],
+    records: &[Vec<Record>],
+    older: &[Option<GoldenFile>],
+) -> anyhow::Result<Vec<Vec<OrderChange>>> {
+    let compared = |((study, records), older): ((&Study, &Vec<Record>), &Option<GoldenFile>)| {
+        let before = StudyState::of_golden(older.clone()?);
+        Some(StudyComparison::of(&study.name, &before, &StudyState::of_records(&study.name, records)))
+    };
+    let all: Vec<Option<StudyComparison>> = studies.iter().zip(records).zip(older).map(compared).collect();
+    let is_much = |one: &&StudyComparison| one.groups.iter().map(|group| group.values).sum::<usize>() > FEW;
+    let shown: Vec<StudyComparison> = all.iter().flatten().filter(is_much).cloned().collect();
+    if !shown.is_empty() {
+        print_tables(&comparison_tables(&shown, ["golden values", "now"]), TableFormat::Table)?;
+    }
+    let lost = |one: Option<StudyComparison>| {
+        one.map_or(Vec::new(), |one| one.orders.into_iter().filter(OrderChange::is_loss).collect())
+    };
+    Ok(all.into_iter().map(lost).collect())
+}
+
+/// Lost orders that a reason names before the rest is only counted.
+const MOST_LOST: usize = 5;
+
+/// A reason with the orders that the acceptance loses.
+fn with_lost_orders(reason: &str, lost: &[OrderChange]) -> String {
+    if lost.is_empty() {
+        return reason.to_owned();
+    }
+    let named: Vec<String> = lost.iter().take(MOST_LOST).map(OrderChange::sentence).collect();
+    let more = lost.len().saturating_sub(MOST_LOST);
+    let more = if more == 0 { String::new() } else { format!("; and {more} more") };
+    let reason = format!("{reason} (orders lost: {}{more})", named.join("; "));
+    say!("the reason of this acceptance is: {reason}");
+    reason
+}
+
 /// Writes golden values; those that agree with what is there stay as they are.
-fn keep(golden: GoldenFile, folder: &Path) -> anyhow::Result<()> {
-    let golden = match GoldenFile::read(folder, &golden.study) {
-        Ok(older) => golden.keeping(&older),
-        // What is missing or damaged is written anew.
-        Err(_) => golden,
+fn keep(golden: GoldenFile, older: Option<&GoldenFile>, folder: &Path) -> anyhow::Result<()> {
+    let golden = match older {
+        Some(older) => golden.keeping(older),
+        None => golden,
     };
     let path = golden.write(folder)?;
     say!("{}: {} values in {}", golden.study, golden.values.len(), path.display());
@@ -126,6 +185,7 @@ fn keep(golden: GoldenFile, folder: &Path) -> anyhow::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::history::comparison::Behaviour;
     use crate::study::file::StudySource;
 
     #[test]
@@ -146,6 +206,55 @@ mod tests {
         assert!(error.to_string().contains("--despite-failing"), "{error}");
         assert!(refused("1e-9", true).is_none(), "somebody said so");
         assert!(refused("0.5", false).is_none(), "nothing fails");
+    }
+
+    #[test]
+    fn an_acceptance_names_the_orders_that_it_loses_in_its_reason() {
+        let behaviour = |class, order| Behaviour { class, order };
+        let change = |before, after| OrderChange { series: "s cells=…".to_owned(), before, after };
+        for (before, after, lost) in [
+            (behaviour("asymptotic", Some(2.0)), behaviour("asymptotic", Some(1.2)), Some("2.00 → 1.20")),
+            (
+                behaviour("asymptotic", Some(2.0)),
+                behaviour("floor-limited", None),
+                Some("2.00 → none, floor-limited"),
+            ),
+            (behaviour("asymptotic", Some(2.0)), behaviour("asymptotic", Some(1.9)), None),
+            (behaviour("asymptotic", Some(1.0)), behaviour("asymptotic", Some(2.0)), None),
+            (behaviour("asymptotic", Some(2.0)), behaviour("exact", None), None),
+            (behaviour("oscillatory", None), behaviour("asymptotic", Some(1.0)), None),
+        ] {
+            let one = change(before, after);
+            assert_eq!(one.is_loss(), lost.is_some(), "{one:?}");
+            if let Some(told) = lost {
+                assert_eq!(one.sentence(), format!("s cells=… {told}"));
+            }
+        }
+        assert_eq!(with_lost_orders("why", &[]), "why");
+        let lost = change(behaviour("asymptotic", Some(2.0)), behaviour("asymptotic", Some(1.0)));
+        assert_eq!(with_lost_orders("why", &[lost.clone()]), "why (orders lost: s cells=… 2.00 → 1.00)");
+        assert!(with_lost_orders("why", &vec![lost; 7]).ends_with("; and 2 more)"));
+    }
+
+    #[test]
+    fn orders_that_an_acceptance_loses_are_found_against_the_file_that_it_replaces() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16, 32]\n";
+        let study = crate::campaign::runner::study_of("t", text);
+        let now = crate::campaign::runner::records_of(text);
+        let mut before = GoldenFile::of("t", &now, "before");
+        for (name, value) in &mut before.values {
+            if let Some(cells) =
+                name.split("cells=").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok())
+                && name.contains("pressure points l2")
+            {
+                *value = cells.powi(-3);
+            }
+        }
+        let studies = [study];
+        let found = tell_changes(&studies, &[now.clone()], &[Some(before)]).expect("compared");
+        assert!(found[0].iter().any(|one| one.series.contains("pressure points l2")), "{found:?}");
+        assert_eq!(tell_changes(&studies, &[now], &[None]).expect("compared"), [vec![]]);
     }
 
     #[test]

@@ -8,8 +8,13 @@ use crate::cli::output::{print_data, say};
 use crate::golden::compare::{Change, Difference, compare, groups_of};
 use crate::history::repository::{Commit, Repository};
 use crate::history::state::{State, StudyState};
+use crate::judge::study_check::diagnoses;
+use crate::record::{Record, RecordStore};
 use crate::render::tables::golden_changes::sentence;
+use crate::study::check::Study;
+use crate::study::file::StudySource;
 use crate::study::shipped::name_of;
+use oedometer_formats::input_file::read_text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -145,7 +150,7 @@ fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Op
 /// The first bad commit, what moved there, and what was skipped.
 fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String]) -> anyhow::Result<String> {
     let commit = trial.repository.commit(hash)?;
-    let mut text = format!("{} {} {}\n", commit.hash, commit.date, commit.subject);
+    let mut text = format!("first bad commit: {} {} {}\n", commit.hash, commit.date, commit.subject);
     if let Ok(values) = trial.values_at(&commit) {
         let differences = compare(&right.golden, &values.golden.values);
         for group in groups_of(&differences, right.golden.values.keys().map(String::as_str)) {
@@ -153,6 +158,9 @@ fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String])
             if let (Some(before), Some(after)) = (group.worst.golden, group.worst.found) {
                 writeln!(text, "    {before:e} -> {after:e}")?;
             }
+        }
+        for sentence in trial.diagnoses() {
+            writeln!(text, "  diagnosis: {sentence}")?;
         }
     }
     for line in skipped {
@@ -209,6 +217,19 @@ impl<'a> Trial<'a> {
         let mut state = State::of_records(&out).map_err(|error| error.to_string())?;
         let name = name_of(&study).to_owned();
         state.studies.remove(&name).ok_or_else(|| format!("there are no records of `{name}`"))
+    }
+
+    /// What the results of the commit that was tried last look like, where an attached solver made them.
+    fn diagnoses(&self) -> Vec<String> {
+        let study = self.study_file().ok().and_then(|file| {
+            let path = self.tree().join(file);
+            let text = read_text(&path).ok()?;
+            Study::check(&StudySource { name: path.display().to_string(), text }).ok()
+        });
+        let Some(study) = study else { return Vec::new() };
+        let store = RecordStore::new(&self.folder.join("out"), &study.name);
+        let records: Vec<Record> = store.hashes().iter().filter_map(|hash| store.read(hash)).collect();
+        diagnoses(&study, &records)
     }
 
     /// The study in this commit: where it is named, or by its name anywhere.

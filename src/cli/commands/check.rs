@@ -187,6 +187,7 @@ fn worst_of(checks: &[StudyCheck]) -> Exit {
         (CheckEnd::Failed, Exit::VerdictFailed),
         (CheckEnd::CaseFailed, Exit::CaseFailed),
         (CheckEnd::Golden, Exit::Golden),
+        (CheckEnd::HeldBack, Exit::IncompleteMerge),
     ];
     let worst = order.into_iter().find(|(end, _)| checks.iter().any(|check| check.end() == *end));
     worst.map_or(Exit::Pass, |(_, exit)| exit)

@@ -3,13 +3,14 @@
 use crate::cli::commands::run::load;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
-use crate::cli::place::folder_of_golden;
+use crate::cli::place::{GOLDEN, folder_of_golden};
 use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
 use crate::history::state::{self, State, with_command};
 use crate::render::history_tables::{comparison_page, comparison_rows, comparison_tables};
 use crate::render::page::render_html;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `compare`.
@@ -49,7 +50,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let ([before, after], studies) = if arguments.commands {
         (states_of_commands(named, arguments)?, &[][..])
     } else {
-        let [before, after] = named.map(|name| state_of(name, arguments.golden.as_deref()));
+        let [before, after] =
+            named.map(|name| state_of(name, arguments.golden.as_deref(), &arguments.studies));
         ([before?, after?], &arguments.studies[..])
     };
     let (mut found, notes) = compare_states(&before, &after, studies);
@@ -95,22 +97,63 @@ fn states_of_commands(commands: [&str; 2], arguments: &Arguments) -> anyhow::Res
 }
 
 /// A state as it is named: a folder, or a revision of the repository around the current folder.
-pub fn state_of(named: &str, golden: Option<&Path>) -> anyhow::Result<State> {
+pub fn state_of(named: &str, golden: Option<&Path>, studies: &[String]) -> anyhow::Result<State> {
     let usage = |error: &dyn std::fmt::Display| Ended::usage(error.to_string());
     let folder = Path::new(named);
     if folder.is_dir() {
         return State::of_records(folder).map_err(|error| usage(&error));
     }
-    let (repository, folder) = repository_with(golden)?;
+    let (repository, folder) = repository_with(golden, studies)?;
     State::of_revision(&repository, named, &folder).map_err(|error| usage(&error))
 }
 
+/// The one folder of golden values in a repository that has none here or above: `accept` writes beside a study.
+///
+/// # Errors
+/// When there are several.
+fn only_golden_folder(repository: &Repository, root: &Path, studies: &[String]) -> anyhow::Result<PathBuf> {
+    let pattern = format!("**/{GOLDEN}/*.csv");
+    let listed = repository.run(&[
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+        "--",
+        &format!(":(glob){pattern}"),
+    ])?;
+    let is_named = |path: &&Path| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        studies.is_empty() || studies.iter().any(|study| *study == name)
+    };
+    let files = listed.split_terminator('\0').map(Path::new).filter(is_named);
+    let folders: BTreeSet<&Path> = files.filter_map(Path::parent).collect();
+    match folders.iter().collect::<Vec<_>>()[..] {
+        [] => Ok(folder_of_golden(None)),
+        [only] => Ok(root.join(only)),
+        ref several => {
+            let several: Vec<String> =
+                several.iter().map(|folder| format!("--golden {}", root.join(folder).display())).collect();
+            Err(Ended::usage(format!(
+                "golden values lie in {} folders: give one of them, {}",
+                several.len(),
+                several.join(" or ")
+            )))
+        }
+    }
+}
+
 /// The repository around the current folder, and the path of its golden values from the root.
-pub fn repository_with(golden: Option<&Path>) -> anyhow::Result<(Repository, String)> {
+pub fn repository_with(golden: Option<&Path>, studies: &[String]) -> anyhow::Result<(Repository, String)> {
     let here = std::env::current_dir()?;
     let repository = Repository::around(&here).map_err(|error| Ended::usage(error.to_string()))?;
     let root = repository.root().canonicalize()?;
-    let given = golden.map_or_else(|| folder_of_golden(None), Path::to_owned);
+    let given = match golden {
+        Some(folder) => folder.to_owned(),
+        None => Some(folder_of_golden(None))
+            .filter(|folder| folder.is_dir())
+            .map_or_else(|| only_golden_folder(&repository, &root, studies), Ok)?,
+    };
     let whole = here.canonicalize()?.join(given);
     let whole = whole.canonicalize().unwrap_or(whole);
     let inside = whole.strip_prefix(&root).map_err(|_| {

@@ -30,7 +30,7 @@ pub struct Arguments {
 
 /// Reads the history and prints it.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let (repository, folder) = repository_with(arguments.golden.as_deref())?;
+    let (repository, folder) = repository_with(arguments.golden.as_deref(), &arguments.studies)?;
     if repository.is_shallow() {
         say!(
             "the clone is shallow: commits before its first one are not shown; `git fetch --unshallow` brings them"

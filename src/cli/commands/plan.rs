@@ -4,7 +4,7 @@ use crate::campaign::runner::LongestCase;
 use crate::campaign::shares::Parting;
 use crate::case::Case;
 use crate::case::planned::Tier;
-use crate::case::work_estimate::{estimated_seconds, estimated_updates};
+use crate::case::work_estimate::estimated_updates;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::job_list::{JobList, missing_of};
@@ -117,7 +117,7 @@ fn write_plan(out: &mut dyn std::io::Write, studies: &[(&Study, Vec<&Case>)]) ->
     writer.write_record(COLUMNS).map_err(of_device)?;
     for (study, cases) in studies {
         for case in cases {
-            let seconds = format!("{:.1e}", estimated_seconds(case));
+            let seconds = format!("{:.1e}", study.estimated_seconds(case));
             let updates = estimated_updates(case).to_string();
             let row = [&study.name, &case.hash(), &updates, &case.label(), &seconds];
             writer.write_record(row).map_err(of_device)?;
@@ -132,7 +132,7 @@ fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
         let mut slowest: Option<&Case> = None;
         let mut most = 0.0;
         for case in cases {
-            let seconds = estimated_seconds(case);
+            let seconds = study.estimated_seconds(case);
             if seconds > most {
                 (most, slowest) = (seconds, Some(*case));
             }
@@ -161,13 +161,17 @@ fn tell_of_time(studies: &[(&Study, Vec<&Case>)]) {
 
 /// Number of cases, and the estimated seconds of all of them together and of the longest.
 fn seconds_of(studies: &[(&Study, Vec<&Case>)]) -> (usize, f64, f64) {
-    let all = studies.iter().flat_map(|(_, cases)| cases).map(|case| estimated_seconds(case));
+    let seconds = |(study, cases): &(&Study, Vec<&Case>)| -> Vec<f64> {
+        cases.iter().map(|case| study.estimated_seconds(case)).collect()
+    };
+    let all = studies.iter().flat_map(seconds);
     all.fold((0, 0.0, 0.0), |(count, total, longest), one| (count + 1, total + one, f64::max(longest, one)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::work_estimate::estimated_seconds;
     use crate::study::file::StudySource;
 
     #[test]

@@ -238,11 +238,10 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
     if report.unproven > 0 {
         say!(
-            "{}: {} of attached solvers {} made again, for the study does not declare by what their programs are known \
-             (`reuse = \"version\"`): `--keep-unproven` keeps such results",
+            "{}: nothing proves {} of attached solvers to be of the present programs, for the study does not declare by what \
+             these are known (`reuse = \"version\"`): not taken up; `--keep-unproven` takes such results up",
             study.name,
             count_of(report.unproven, "finished result", "finished results"),
-            if report.unproven == 1 { "was" } else { "were" }
         );
     }
     for warning in Absent::among(&report.records).warnings() {

@@ -5,7 +5,7 @@ pub mod verdicts;
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::Change;
-use crate::judge::study_check::StudyCheck;
+use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::tables::golden_changes::sentence;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -58,6 +58,9 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
             add("error", 1, "input changed", &input.sentence());
         }
         match &check.golden {
+            Err(_) if check.end() == CheckEnd::HeldBack => {
+                add("warning", 1, "not run", "its programs may not be started without --allow-solvers");
+            }
             Err(error) => add("error", 1, "golden values", &error.to_string()),
             Ok(_) => {
                 for group in &check.groups {
@@ -136,9 +139,44 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
             }
             Err(error) => (false, error.to_string()),
         };
-        suite.add_test_case(TestCase::new(format!("{}/golden", check.study), status(agrees, &sentence)));
+        let status = match check.end() {
+            CheckEnd::HeldBack => skipped("its programs may not be started without --allow-solvers"),
+            _ => status(agrees, &sentence),
+        };
+        suite.add_test_case(TestCase::new(format!("{}/golden", check.study), status));
         report.add_test_suite(suite);
     }
+    report.to_string()
+}
+
+/// Something that `score` judged: a file and what of it, and how it fails.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// Name of the case, `file/quantity/time`.
+    pub subject: String,
+    /// Why it fails, if it does.
+    pub failure: Option<String>,
+}
+
+/// What `score` judged as a `JUnit` document of one suite, with sentences on what the result looks like.
+///
+/// # Errors
+/// If the document cannot be written.
+pub fn junit_of_findings(
+    scene: &str,
+    findings: &[Finding],
+    diagnosis: impl Iterator<Item = String>,
+) -> Result<String, SerializeError> {
+    let mut report = Report::new("oedometer");
+    let mut suite = TestSuite::new(format!("score {scene}"));
+    for one in findings {
+        let status = status(one.failure.is_none(), one.failure.as_deref().unwrap_or_default());
+        suite.add_test_case(TestCase::new(one.subject.clone(), status));
+    }
+    for sentence in diagnosis {
+        suite.add_property(Property::new("diagnosis", sentence));
+    }
+    report.add_test_suite(suite);
     report.to_string()
 }
 
@@ -148,9 +186,7 @@ fn cases_of(check: &StudyCheck, judgement: &Judgement) -> Vec<TestCase> {
     let verdict = &judgement.verdict;
     let case = |measured: &'_ crate::judge::verdict::Check| {
         let status = if !measured.pass && verdict.outcome == VerdictOutcome::KnownFailure {
-            let mut skipped = TestCaseStatus::skipped();
-            skipped.set_message(verdict.reason.clone());
-            skipped
+            skipped(&verdict.reason)
         } else {
             status(measured.pass, &measured.reason)
         };
@@ -166,6 +202,12 @@ fn cases_of(check: &StudyCheck, judgement: &Judgement) -> Vec<TestCase> {
         cases.push(TestCase::new(format!("{name}/known failure"), status(false, &verdict.reason)));
     }
     cases
+}
+
+fn skipped(why: &str) -> TestCaseStatus {
+    let mut status = TestCaseStatus::skipped();
+    status.set_message(why);
+    status
 }
 
 fn status(pass: bool, sentence: &str) -> TestCaseStatus {
@@ -225,6 +267,8 @@ mod tests {
             groups: Vec::new(),
             changes: Vec::new(),
             agreeing: 0,
+            expected: 0,
+            held_back: 0,
             taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
         }

@@ -89,6 +89,8 @@ pub fn next_command(check: &StudyCheck, file: Option<&str>) -> Option<String> {
         (_, Some(failure)) => explain(failure.subject),
         _ if !unmet.is_empty() => Some(format!("oedometer report {file}")),
         (None, _) if check.golden.is_ok() && check.inputs.is_empty() => None,
+        // What cannot be read says itself what to do, and what was not run cannot be accepted.
+        _ if matches!(&check.golden, Err(error) if !error.is_missing()) || check.held_back > 0 => None,
         _ => Some(format!("oedometer accept {file} --reason \"why the new values are right\"")),
     }
 }
@@ -114,7 +116,11 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
             ]);
         }
         let agrees = check.golden.is_ok() && check.differences().is_empty() && check.inputs.is_empty();
-        let (mood, word) = if agrees { (Mood::Pass, "pass") } else { (Mood::Fail, "fail") };
+        let (mood, word) = match (agrees, check.end()) {
+            (true, _) => (Mood::Pass, "pass"),
+            (false, CheckEnd::HeldBack) => (Mood::Note, "not run"),
+            (false, _) => (Mood::Fail, "fail"),
+        };
         let inputs = check.inputs.iter().map(|input| format!("input changed: {}", input.sentence()));
         let reason: Vec<String> = std::iter::once(headline(check)).chain(inputs).collect();
         whole.rows.push(vec![
@@ -131,12 +137,19 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
 fn headline(check: &StudyCheck) -> String {
     let [unmet, failed, unsound] = failures_of(check).map(|failures| failures.len());
     let expectations = match check.judgements.len() {
+        0 if check.expected > 0 => {
+            format!("none of {} judged", count_of(check.expected, "expectation", "expectations"))
+        }
         0 => "no expectations".to_owned(),
         all => format!("{} of {all} expectations met", all - unmet),
     };
     let golden = match &check.golden {
         Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
         Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
+        Err(_) if check.end() == CheckEnd::HeldBack => {
+            let cases = count_of(check.held_back, "case", "cases");
+            return format!("{expectations}: {cases} not run, for their programs need --allow-solvers");
+        }
         Err(error) => error.to_string(),
     };
     let count = |count: usize, one: &str, several: &str| match count {

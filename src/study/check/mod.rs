@@ -7,6 +7,7 @@ pub mod solvers;
 mod sweeps;
 mod values;
 
+use crate::case::work_estimate::{READING_SECONDS, estimated_seconds};
 use crate::case::{Case, Key, PlannedCase, Planner, Solver, Task, Tier, Value};
 use crate::record::Record;
 use crate::study::check::expectations::Subject;
@@ -103,6 +104,12 @@ impl Study {
     /// Whether a case would start a program that may not be started.
     pub fn holds_back(&self, case: &Case) -> bool {
         !self.may_start_solvers && self.solver_of(case).is_some_and(|solver| !solver.is_given())
+    }
+
+    /// Time that a case will take on one core, s: nothing is solved for a result that lies there.
+    pub fn estimated_seconds(&self, case: &Case) -> f64 {
+        let is_given = self.solver_of(case).is_some_and(ExternalSolver::is_given);
+        if is_given { READING_SECONDS } else { estimated_seconds(case) }
     }
 
     /// The solver that a case is given to, where that is not this program.

@@ -5,12 +5,13 @@ mod scored_files;
 use crate::case::{Case, Norm, Quantity};
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say};
+use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say, write_document};
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::judge::score::completeness::Lack;
 use crate::judge::score::results::{Comparison, Results, Scored};
 use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
+use crate::render::checks::{Finding, junit_of_findings};
 use crate::render::tables::scores;
 use crate::study::overrides::{Asked, Outputs};
 use crate::study::solver::Preset;
@@ -63,6 +64,9 @@ pub struct Arguments {
     /// Fail with exit code 1 if the result is incomplete: volume, height, rows, times
     #[arg(long)]
     strict: bool,
+    /// Write a `JUnit` report of what --below and --strict judge
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -83,6 +87,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
         print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
         return Ok(Exit::Pass);
+    }
+    if arguments.junit.is_some() && !arguments.strict && arguments.below.is_none() {
+        return Err(Ended::usage(
+            "`--junit` has nothing to report: say what is judged by --below ERROR, or by --strict",
+        ));
     }
     let tolerance = arguments.time_tolerance;
     if !(0.0..1.0).contains(&tolerance) {
@@ -123,7 +132,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     }
     say!("{}", groups_of(case));
-    judged(&results, arguments.below, arguments.strict, comparison.references)
+    let (findings, exit) = judged(&results, arguments.below, arguments.strict, comparison.references)?;
+    if let Some(path) = &arguments.junit {
+        let told = results.all.iter().flat_map(|one| {
+            one.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", one.name()))
+        });
+        write_document(path, &junit_of_findings(&arguments.scene, &findings, told)?)?;
+    }
+    Ok(exit)
 }
 
 /// Quantities by their names.
@@ -182,23 +198,26 @@ fn judged(
     below: Option<f64>,
     strict: bool,
     references: &[ReferenceKind],
-) -> anyhow::Result<Exit> {
+) -> anyhow::Result<(Vec<Finding>, Exit)> {
     let is_gate = strict || below.is_some();
-    let mut exit = Exit::Pass;
+    let mut findings = Vec::new();
     let mut is_undeclared_told = false;
     for one in &results.all {
-        let name = if results.all.len() > 1 { format!("{}: ", one.name()) } else { String::new() };
-        for finding in &one.score.warnings {
+        let is_named = is_gate || results.all.len() > 1;
+        let name = if is_named { format!("{}: ", one.name()) } else { String::new() };
+        for lack in &one.score.warnings {
             let word = if is_gate { "fail" } else { "warning" };
-            let is_of_mapping = finding.name == Lack::Undeclared;
+            let is_of_mapping = lack.name == Lack::Undeclared;
             if !(is_of_mapping && is_undeclared_told) {
-                let name = if is_of_mapping { "" } else { &name };
-                say!("{word}: {}: {name}{}", finding.name.name(), finding.sentence);
+                let name = if is_of_mapping && !is_gate { "" } else { &name };
+                say!("{word}: {}: {name}{}", lack.name.name(), lack.sentence);
             }
             is_undeclared_told |= is_of_mapping;
-            if is_gate {
-                exit = Exit::VerdictFailed;
-            }
+            let subject = format!("{}/{}", one.name(), lack.name.name());
+            findings.push(Finding { subject, failure: Some(lack.sentence.clone()) });
+        }
+        if is_gate && one.score.warnings.is_empty() {
+            findings.push(Finding { subject: format!("{}/complete", one.name()), failure: None });
         }
         for sentence in &one.score.diagnosis {
             say!("diagnosis: {name}{sentence}");
@@ -207,60 +226,76 @@ fn judged(
             say!("note: {name}{note}");
         }
     }
-    if is_gate && !results.are_times_known() {
+    if !is_gate {
+        return Ok((Vec::new(), Exit::Pass));
+    }
+    if !results.are_times_known() {
         say!("note: missing times were not looked for: give the times that must be there by --time-factor");
     }
-    let Some(bound) = below else { return Ok(exit) };
-    let reference = references.first().map(|kind| kind.name());
-    Ok(exit.max(errors_below(bound, &results.all, reference)?))
+    if let Some(bound) = below {
+        let reference = references.first().map(|kind| kind.name());
+        let errors = errors_below(bound, &results.all, reference)?;
+        for failure in errors.iter().filter_map(|one| one.failure.as_ref()) {
+            say!("fail: {failure}");
+        }
+        findings.extend(errors);
+    }
+    let passes = findings.iter().all(|one| one.failure.is_none());
+    Ok((findings, if passes { Exit::Pass } else { Exit::VerdictFailed }))
 }
 
-/// Checks that every main error against the first reference is below a bound; NaN is not. Where the exact value all but
+/// Whether every main error against the first reference is below a bound; NaN is not. Where the exact value all but
 /// vanishes, as a displacement does at `t = 0`, the error is judged on the scale of the load.
-fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Exit> {
+fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyhow::Result<Vec<Finding>> {
     if !(bound.is_finite() && bound > 0.0) {
         return Err(Ended::usage(format!("`--below {bound}` is invalid: expected a positive number")));
     }
-    let judged = results.iter().flat_map(|one| &one.score.errors).filter(|row| {
-        matches!(row.norm, Norm::L2 | Norm::Relative) && Some(row.reference.as_str()) == reference
-    });
-    let vanished = results.iter().flat_map(|one| &one.score.unresolved);
-    let vanished = vanished.filter(|one| Some(one.reference.as_str()) == reference);
-    let scaled = |quantity, time_factor, absolute| (quantity, time_factor, absolute, "error over the load");
-    let errors = judged.map(|row| {
-        // An exact value that all but vanishes: an error relative to it says nothing.
-        if row.absolute.abs() < VANISHING * row.value.abs() {
-            return scaled(row.quantity, row.time_factor, row.absolute);
-        }
-        let unit = if row.quantity == Quantity::Settlement { "relative error" } else { "L2 error" };
-        (row.quantity, row.time_factor, row.value, unit)
-    });
-    let mut any = false;
-    let mut exit = Exit::Pass;
-    for (quantity, time_factor, error, unit) in
-        errors.chain(vanished.map(|one| scaled(one.quantity, one.time_factor, one.absolute)))
-    {
-        any = true;
-        // NaN fails.
-        let passes = error.abs() < bound;
-        if !passes {
-            let (name, time) = (quantity.name(), typed(time_factor));
-            let scale = match (unit, quantity) {
-                ("error over the load", Quantity::Displacement | Quantity::Settlement) => {
-                    "error over the final settlement"
-                }
-                _ => unit,
-            };
-            let article = if scale.starts_with('e') || scale.starts_with('L') { "an" } else { "a" };
-            say!("fail: {name} at T_v = {time} has {article} {scale} of {error:.3e}, not below {bound:e}");
-            exit = Exit::VerdictFailed;
-        }
+    let is_judged = |of_row: &str| Some(of_row) == reference;
+    let mut findings = Vec::new();
+    for one in results {
+        let rows = one
+            .score
+            .errors
+            .iter()
+            .filter(|row| matches!(row.norm, Norm::L2 | Norm::Relative) && is_judged(&row.reference));
+        let scaled =
+            |quantity, time_factor, absolute| (quantity, time_factor, absolute, "error over the load");
+        let errors = rows.map(|row| {
+            // An exact value that all but vanishes: an error relative to it says nothing.
+            if row.absolute.abs() < VANISHING * row.value.abs() {
+                return scaled(row.quantity, row.time_factor, row.absolute);
+            }
+            let unit = if row.quantity == Quantity::Settlement { "relative error" } else { "L2 error" };
+            (row.quantity, row.time_factor, row.value, unit)
+        });
+        let vanished = one.score.unresolved.iter().filter(|row| is_judged(&row.reference));
+        let vanished = vanished.map(|row| scaled(row.quantity, row.time_factor, row.absolute));
+        findings.extend(errors.chain(vanished).map(|error| finding_below(bound, &one.name(), error)));
     }
-    if any {
-        Ok(exit)
-    } else {
-        Err(Ended::with(Exit::NothingSelected, "the result has no error that can be judged"))
+    if findings.is_empty() {
+        return Err(Ended::with(Exit::NothingSelected, "the result has no error that can be judged"));
     }
+    Ok(findings)
+}
+
+/// One error of a result held below a bound; NaN is not.
+fn finding_below(
+    bound: f64,
+    file: &str,
+    (quantity, time_factor, error, unit): (Quantity, f64, f64, &str),
+) -> Finding {
+    let (name, time) = (quantity.name(), typed(time_factor));
+    let scale = match (unit, quantity) {
+        ("error over the load", Quantity::Displacement | Quantity::Settlement) => {
+            "error over the final settlement"
+        }
+        _ => unit,
+    };
+    let article = if scale.starts_with('e') || scale.starts_with('L') { "an" } else { "a" };
+    let failure =
+        format!("{file}: {name} at T_v = {time} has {article} {scale} of {error:.3e}, not below {bound:e}");
+    let passes = error.abs() < bound;
+    Finding { subject: format!("{file}/{name}/T_v={time}"), failure: (!passes).then_some(failure) }
 }
 
 #[cfg(test)]
@@ -270,6 +305,11 @@ mod tests {
     use crate::import::runs::Run;
     use crate::judge::score::Score;
     use crate::record::ErrorRow;
+
+    fn end_of(findings: &[Finding]) -> Exit {
+        let passes = findings.iter().all(|one| one.failure.is_none());
+        if passes { Exit::Pass } else { Exit::VerdictFailed }
+    }
 
     #[test]
     fn every_quantity_of_every_result_is_held_below_the_bound() {
@@ -300,7 +340,7 @@ mod tests {
                 }
                 Scored { run: Run::default(), score }
             };
-            errors_below(1e-3, &[result(0), result(1), result(2)], Some("own")).expect("errors")
+            end_of(&errors_below(1e-3, &[result(0), result(1), result(2)], Some("own")).expect("errors"))
         };
         for wrong in 0..3 * rows.len() {
             for (value, end) in [
@@ -353,7 +393,8 @@ mod tests {
         let exit = |errors: Vec<ErrorRow>, unresolved: Vec<Unresolved>| {
             let scored =
                 Scored { run: Run::default(), score: Score { errors, unresolved, ..Score::default() } };
-            errors_below(1e-2, &[scored], Some("own")).map_err(|error| Exit::of(&error))
+            let judged = errors_below(1e-2, &[scored], Some("own"));
+            judged.map(|findings| end_of(&findings)).map_err(|error| Exit::of(&error))
         };
         // The exact value all but vanishes where the error over the load is below a thousandth of the relative one.
         for (value, absolute, end) in [
