@@ -142,6 +142,7 @@ impl StudyComparison {
     pub(crate) fn of(study: &str, before: &StudyState, after: &StudyState) -> Self {
         let found = &after.golden.values;
         let seconds = Seconds::of_both(before, after);
+        let cases_apart = cases_apart(before.golden.values.keys(), found.keys());
         let made_by = [before, after].map(|state| state.made_by.clone());
         let (before, pairing) = before.golden.clone().beside(&after.golden.inputs);
         let differences = compare(&before, found);
@@ -156,7 +157,7 @@ impl StudyComparison {
         let names = before.values.keys().chain(found.keys()).map(String::as_str);
         Self {
             study: study.to_owned(),
-            cases_apart: cases_apart(before.values.keys(), found.keys()),
+            cases_apart,
             accuracy,
             cost,
             values: before.values.keys().filter(|name| found.contains_key(*name)).count(),

@@ -209,8 +209,8 @@ fn judged(
             let word = if is_gate { "fail" } else { "warning" };
             let is_of_mapping = lack.name == Lack::Undeclared;
             if !(is_of_mapping && is_undeclared_told) {
-                let name = if is_of_mapping && !is_gate { "" } else { &name };
-                say!("{word}: {}: {name}{}", lack.name.name(), lack.sentence);
+                let name = if is_of_mapping { "" } else { &name };
+                say!("{word}: {name}{}: {}", lack.name.name(), lack.sentence);
             }
             is_undeclared_told |= is_of_mapping;
             let subject = format!("{}/{}", one.name(), lack.name.name());
