@@ -343,7 +343,8 @@ fn points_that_a_mesh_lacks_show_beside_the_other_meshes() {
     write("c.csv", 20);
     let told = gate();
     assert!(
-        told.code == 1 && told.err.contains("c.csv: samples stand at 1 heights per cell, and at 2 on"),
+        told.code == 1
+            && told.err.contains("c.csv: samples-differ: samples stand at 1 heights per cell, and at 2 on"),
         "{}",
         told.err
     );
