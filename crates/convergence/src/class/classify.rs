@@ -1,5 +1,6 @@
 //! The class of a series of errors, decided before any order is quoted.
 
+use crate::class::all_levels::judge_all_levels;
 use crate::class::evaluable_series::{EvaluableSeries, FLOOR_LEVELS};
 use crate::class::finest_window::judge_window;
 use crate::class::{Class, Classification, Context};
@@ -23,6 +24,9 @@ const STALLED: f64 = 0.3;
 /// Errors within this factor over the finest levels are a plateau.
 const PLATEAU: f64 = 1.5;
 
+/// Errors that grow by less than this in all may stand still.
+const GROWN: f64 = 1.3;
+
 /// A body that reaches less than this share of its displacement on every mesh is locked.
 const LEAST_MOBILITY: f64 = 0.5;
 
@@ -35,13 +39,14 @@ const LOOK_FOR_NOISE: &str = "look for cell crossing, waves or a start that diff
 ///
 /// 1. an invalid context (`not-evaluable`), errors that are all round-off (`exact`), levels that are
 ///    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
-/// 2. a finest error of round-off, and a limit that is not zero (`floor-limited`; `pre-asymptotic` where
-///    only three levels say so), before any growth;
+/// 2. a finest error of round-off, errors within a tolerance that do not fall, and a limit that is not zero
+///    (`floor-limited`; `pre-asymptotic` where only three levels say so), before any growth;
 /// 3. signs that change on the finest window (`oscillatory`; `pre-asymptotic` for a single change), growth
 ///    (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
 ///    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
 /// 4. a series that falls steadily is judged on its finest window: `asymptotic`, `pre-asymptotic`,
-///    `contaminated`, `superconvergent` or `floor-limited`.
+///    `contaminated`, `superconvergent` or `floor-limited`. Five levels and more may show a floor, a lower order or a
+///    logarithm that the window does not.
 ///
 /// A single level that all others contradict is named beside any class. A reference no better than the
 /// smallest error turns a class of step 4, or `pre-asymptotic`, into `not-evaluable`.
@@ -64,6 +69,7 @@ fn wrong_context(context: &Context) -> Option<Classification> {
     let given = [
         ("formal order", context.formal_order),
         ("round-off", claimed(context.round_off)),
+        ("tolerance", claimed(context.tolerance)),
         ("reference accuracy", claimed(context.reference_accuracy)),
     ];
     given.into_iter().find_map(|(name, value)| {
@@ -135,13 +141,14 @@ impl EvaluableSeries<'_> {
     fn classify(&self, context: &Context) -> Classification {
         let found = self
             .round_off(context)
+            .or_else(|| self.within_tolerance(context))
             .or_else(|| self.limit())
             .or_else(|| self.changes_of_sign())
             .or_else(|| self.growth())
             .or_else(|| self.plateau())
             .or_else(|| self.ups_and_downs())
             .or_else(|| self.alternation())
-            .unwrap_or_else(|| judge_window(self));
+            .unwrap_or_else(|| judge_all_levels(self, judge_window(self)));
         self.with_odd_level(self.poor_reference(context, &found).unwrap_or(found))
     }
 
@@ -200,13 +207,39 @@ impl EvaluableSeries<'_> {
         })
     }
 
-    /// Rises that no fall makes up for.
+    /// Errors of the finest window within a tolerance that do not fall steadily: the digits of the data or of the
+    /// arithmetic, whichever way they move.
+    fn within_tolerance(&self, context: &Context) -> Option<Classification> {
+        let tolerance = context.tolerance?;
+        let window = &self.values[self.values.len() - WINDOW..];
+        let is_within = window.iter().all(|value| value.1.abs() <= tolerance);
+        let pairs = &self.pairs[self.pairs.len() + 1 - WINDOW..];
+        let falls = pairs.iter().all(|order| *order > FLAT) && self.order >= STALLED;
+        if !is_within || falls {
+            return None;
+        }
+        let [.., size, error] = self.ends();
+        let reason = format!(
+            "the errors of the finest levels, {error} at size {size}, do not fall and lie within a tolerance of {}",
+            short(tolerance)
+        );
+        let mut found = self.limited(&reason);
+        if let Some(floor) = &mut found.floor {
+            floor.limiter = Some(LimiterKind::RoundOff);
+        }
+        Some(found.advise("look at the digits of the data and at the tolerance of the solver: they end here"))
+    }
+
+    /// Rises that no fall makes up for, and that go on: a small rise before levels that stand still is a floor.
     fn growth(&self) -> Option<Classification> {
         let falls = self.pairs.iter().any(|order| *order > FLAT);
         let rises =
-            self.pairs.iter().any(|order| *order < -FLAT) || self.finest().1 > 1.3 * self.coarsest().1;
+            self.pairs.iter().any(|order| *order < -FLAT) || self.finest().1 > GROWN * self.coarsest().1;
+        let last = self.pairs.last().copied().unwrap_or(f64::NAN);
+        let is_small = self.finest().1 <= GROWN * self.coarsest().1 || last >= 0.0;
+        let stands_still = self.order.abs() <= FLAT && last >= -FLAT && is_small;
         let [coarse, first, fine, last] = self.ends();
-        (rises && !falls).then(|| {
+        (rises && !falls && !stands_still).then(|| {
             let reason = format!(
                 "the error grows under refinement, from {first} at size {coarse} to {last} at {fine}"
             );

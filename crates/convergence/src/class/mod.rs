@@ -1,5 +1,6 @@
 //! The classes of a series of errors, and what a classification contains.
 
+mod all_levels;
 mod classify;
 mod evaluable_series;
 mod finest_window;
@@ -61,6 +62,9 @@ pub struct Context {
     pub formal_order: Option<f64>,
     /// Errors up to this are round-off; in the unit of the errors. 1e-13 suits relative errors.
     pub round_off: Option<f64>,
+    /// Errors up to this may be what a solver's tolerance or the digits of its data leave, in the unit of the errors:
+    /// they stand on a floor unless they fall. 1e-6 suits relative errors of data in single precision.
+    pub tolerance: Option<f64>,
     /// How far the reference itself may be off, in the unit of the errors.
     pub reference_accuracy: Option<f64>,
     /// What might put a floor under the errors.

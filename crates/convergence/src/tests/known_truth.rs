@@ -238,6 +238,53 @@ pub(super) const KINDS: [Kind; 19] = [
     }),
 ];
 
+/// What the finest three levels hide and five show, what must not be taken for it, and floors that are reached from below.
+const HIDDEN_KINDS: [Kind; 6] = [
+    ("a floor of a quarter on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.one_of(&[1.0, 1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, 0.0);
+        let points = levels(ratio, count, |h| h.powf(p) + b);
+        Known::of(points, draw.one_of(&[None, Some(p)]), &[FloorLimited, PreAsymptotic, Contaminated])
+    }),
+    ("a lower order of a quarter on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.one_of(&[1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, p - 1.0);
+        let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
+        Known::of(points, draw.one_of(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
+    }),
+    ("a logarithm on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.one_of(&[1.0, 1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let points = levels(ratio, count, |h| h.powf(p) * (1.0 / h).ln());
+        Known::of(points, draw.one_of(&[None, Some(p)]), &[PreAsymptotic, Contaminated])
+    }),
+    ("a higher order of either sign on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[5, 6, 7]));
+        let b = coefficient(draw.between(0.001, 0.03), ratio, count, p, p + 1.0) * draw.one_of(&[-1.0, 1.0]);
+        // At a ratio of 4 the coarse levels would vanish.
+        let b = b.max(-6.0);
+        let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p + 1.0));
+        Known::of(points, draw.one_of(&[None, Some(p)]), &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
+    }),
+    ("five per cent of noise on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[5, 6, 7]));
+        let mut points = levels(ratio, count, |h| h.powf(p));
+        noisy(draw, &mut points, 0.05);
+        let right: &[Class] = if ratio < 1.9 {
+            &[Asymptotic, PreAsymptotic, Contaminated, Superconvergent, Oscillatory]
+        } else {
+            &[Asymptotic, PreAsymptotic]
+        };
+        Known::of(points, draw.one_of(&[None, Some(p)]), right).with_order(p, 0.4)
+    }),
+    ("a small rise to a floor", |draw, ratio| {
+        let count = draw.one_of(&[4, 5, 6]);
+        let mut points = levels(ratio, count, |_| 2.15e-4);
+        noisy(draw, &mut points[1..], 0.02 * ratio.ln());
+        points[0].1 *= draw.between(0.8, 0.95);
+        Known::of(points, draw.one_of(&[None, Some(2.0)]), &[FloorLimited])
+    }),
+];
+
 #[test]
 fn series_of_known_truth_get_their_class() {
     let mut draw = Draw(20_260_301);
@@ -247,7 +294,7 @@ fn series_of_known_truth_get_their_class() {
     for ratio in RATIOS {
         write!(table, "{ratio:8}").expect("memory");
     }
-    for (kind, of) in KINDS {
+    for (kind, of) in KINDS.into_iter().chain(HIDDEN_KINDS) {
         write!(table, "\n{kind:44}").expect("memory");
         for ratio in RATIOS {
             let (mut met, mut undecided) = (0, 0);
@@ -281,6 +328,31 @@ fn series_of_known_truth_get_their_class() {
     insta::with_settings!({ snapshot_path => "../../../../tests/snapshots", prepend_module_to_snapshot => false }, {
         insta::assert_snapshot!("known_truth", format!("{right} of {all} calls are right\n\n{table}\n{wrong}"));
     });
+}
+
+/// Errors of a sealed element in double precision, and of results in single precision, which go anywhere.
+#[test]
+fn digits_that_move_are_exact_or_a_floor_and_never_divergence() {
+    for (errors, class) in [
+        (&[2e-13, 1.7e-12][..], Class::NotEvaluable),
+        (&[2e-13, 6e-13, 9e-13], Class::Exact),
+        (&[2e-13, 6e-13, 1.7e-12], FloorLimited),
+        (&[6e-8, 1.1e-7, 2.3e-7, 4.1e-7], FloorLimited),
+        (&[6e-8, 2.1e-7, 9e-8, 4.1e-7], FloorLimited),
+        (&[1e-3, 2.4e-5, 6e-7, 1.2e-7, 3e-7], FloorLimited),
+        (&[3e-7, 2e-7, 9e-8], PreAsymptotic),
+        (&[1.0e-4, 2.0e-4, 2.19e-4, 2.15e-4], FloorLimited),
+        (&[8e-7, 2e-7, 5e-8], Asymptotic),
+        (&[1.94e-4, 2.19e-4, 2.15e-4, 2.14e-4], FloorLimited),
+        (&[1.94e-4, 2.19e-4, 2.15e-4], PreAsymptotic),
+        (&[2.3e-4, 1.94e-4, 2.19e-4, 2.15e-4], FloorLimited),
+        (&[1.0e-4, 1.9e-4, 4.1e-4, 8.2e-4], Divergent),
+    ] {
+        let points: Vec<_> = (0..).zip(errors).map(|(level, error)| (0.5_f64.powi(level), *error)).collect();
+        let context = Context { round_off: Some(1e-12), tolerance: Some(1e-6), ..Context::default() };
+        let found = classify(&ErrorSeries::of(&points), &context);
+        assert_eq!(found.class, class, "{errors:?}: {found:?}");
+    }
 }
 
 #[test]

@@ -85,8 +85,14 @@ fn context(draw: &mut Draw, points: &[(f64, f64)], formal: Option<f64>) -> Conte
 fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
     let magnitudes: Vec<_> = points.iter().map(|point| (point.0, point.1.abs())).collect();
     let series = ErrorSeries::of(&magnitudes);
-    let Context { formal_order, round_off, reference_accuracy, limiters, mobility, signed } = context;
-    let known = [("formal", formal_order), ("round-off", round_off), ("reference", reference_accuracy)];
+    let Context { formal_order, round_off, reference_accuracy, limiters, mobility, signed, tolerance } =
+        context;
+    let known = [
+        ("formal", formal_order),
+        ("round-off", round_off),
+        ("tolerance", tolerance),
+        ("reference", reference_accuracy),
+    ];
     write!(text, "{}", numbers(points.iter().map(|point| point.1))).expect("memory");
     for (name, value) in known {
         if let Some(value) = value {
