@@ -1,14 +1,12 @@
 //! Orders, classes and verdicts of a series of errors.
 
+use crate::judge::paths::{ROUND_OFF, SINGLE_PRECISION};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::study::diagnostic::one_of;
 use oedometer_convergence::{
     Class, Classification, Context, ErrorBound, ErrorSeries, OrderBand, SeriesDemand, SeriesLevel, classify,
     pair_orders,
 };
-
-/// Errors up to this are round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The orders and class of a series.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -54,10 +52,12 @@ fn series_of(
     // Norms have no sign, so signs carry no information here.
     let has_signs = errors.iter().any(|error| *error < 0.0);
     let signed = if has_signs { signed.into_iter().map(|(_, error)| error).collect() } else { Vec::new() };
-    Ok((series, Context { formal_order, round_off: Some(ROUND_OFF), signed, ..Context::default() }))
+    let (round_off, tolerance) = (Some(ROUND_OFF), Some(SINGLE_PRECISION));
+    Ok((series, Context { formal_order, round_off, tolerance, signed, ..Context::default() }))
 }
 
-/// Class, order and pair orders of errors over the sizes of their levels, in any order.
+/// Class, order and pair orders of errors over the sizes of their levels, in any order. Errors are relative ones: those
+/// up to 1e-6 that do not fall are taken for the digits of single precision, and those up to 1e-12 for round-off.
 ///
 /// ```
 /// let found = oedometer::api::convergence::convergence(&[0.1, 0.05, 0.025], &[4e-2, 1e-2, 2.5e-3], None);

@@ -232,6 +232,8 @@ fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<
 
 /// Errors up to this are round-off.
 const ROUND_OFF: f64 = 1e-12;
+/// Errors up to this may be what iterations leave.
+const ITERATIONS: f64 = 1e-8;
 /// Change of an order that is told.
 const TOLD: f64 = 0.05;
 /// Fall of an order from which on it is lost.
@@ -318,7 +320,8 @@ fn behaviours(values: &BTreeMap<String, f64>, asked: &BTreeSet<String>) -> BTree
         let level = |(size, error): &(f64, f64)| SeriesLevel { size: *size, error: Some(error.abs()) };
         let has_signs = levels.iter().any(|(_, error)| *error < 0.0);
         let signed = if has_signs { levels.iter().map(|(_, error)| *error).collect() } else { Vec::new() };
-        let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
+        let tolerance = Some(ITERATIONS);
+        let context = Context { round_off: Some(ROUND_OFF), tolerance, signed, ..Context::default() };
         let found = classify(&ErrorSeries::new(levels.iter().map(level).collect()), &context);
         Behaviour { class: found.class.name(), order: found.order }
     };

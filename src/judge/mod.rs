@@ -6,6 +6,7 @@
 pub mod case_verdicts;
 pub mod comparison;
 pub mod explanation;
+pub mod levels;
 pub mod path_context;
 pub mod paths;
 pub mod proposals;

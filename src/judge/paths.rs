@@ -14,6 +14,15 @@ use oedometer_soil::material::Material;
 use std::collections::HashMap;
 use std::hash::Hash;
 
+/// Relative errors up to this are round-off.
+pub const ROUND_OFF: f64 = 1e-12;
+
+/// Relative errors up to this may be those of numbers in single precision, and of iterations that stop early.
+pub const SINGLE_PRECISION: f64 = 1e-6;
+
+/// Relative errors up to this may be what the iterations of this program leave.
+pub const ITERATIONS: f64 = 1e-8;
+
 /// The records of one path through a study: equal in everything but the axis.
 #[derive(Clone, Debug)]
 pub struct Path<'a> {
@@ -208,12 +217,14 @@ impl<'a> Path<'a> {
 
 /// Difference of a run from the next finer one, whose places are the same; signed for a settlement.
 fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f64> {
+    // Nothing is relative to a body that has not moved.
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let (coarse, fine) = (record.snapshot(measure.time_factor)?, finer.snapshot(measure.time_factor)?);
     if measure.quantity == Quantity::Settlement {
-        return Some(coarse.settlement / fine.settlement - 1.0);
+        return finite(coarse.settlement / fine.settlement - 1.0);
     }
     if measure.quantity == Quantity::LoadFactor {
-        return Some(coarse.plate_force? / fine.plate_force? - 1.0);
+        return finite(coarse.plate_force? / fine.plate_force? - 1.0);
     }
     let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
     let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);

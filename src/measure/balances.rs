@@ -87,6 +87,8 @@ pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) 
 /// explains: the curve is taken cubic in `ln T_v` through its four nearest rows, and allowed its
 /// distance from the straight line.
 pub fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
+    // The start has no logarithm.
+    let curve = &curve[curve.partition_point(|row| row.time_factor <= 0.0)..];
     let after = curve.partition_point(|row| row.time_factor <= time_factor);
     if after == 0 || after == curve.len() {
         return 0.0;

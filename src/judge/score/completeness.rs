@@ -152,7 +152,7 @@ impl Whole<'_> {
         let mut off = Vec::new();
         for ((state, sum), time) in states.iter().zip(&sums).zip(&times) {
             let settled = reference.settlement(*time)? / self.parameters.height;
-            let share = sum / whole - 1.0;
+            let share = if whole > 0.0 { sum / whole - 1.0 } else { -1.0 };
             if !(-VOLUME - settled.max(0.0)..=VOLUME).contains(&share) {
                 off.push((state, *sum, share));
             }
@@ -272,7 +272,9 @@ pub fn missing_times(missing: &[f64], has: &[f64], asked: bool) -> Option<Findin
     let nearest = has.iter().copied().min_by(|a, b| (a - first).abs().total_cmp(&(b - first).abs()));
     let near = nearest.map_or(String::new(), |time| {
         let off = (time / first - 1.0).abs();
-        format!("; the nearest it has is T_v = {}, {off:.2e} off in relative terms", typed(time))
+        // Nothing is relative to the start.
+        let off = if off.is_finite() { format!(", {off:.2e} off in relative terms") } else { String::new() };
+        format!("; the nearest it has is T_v = {}{off}", typed(time))
     });
     let more = match missing.len() {
         1 => String::new(),
@@ -485,6 +487,8 @@ mod tests {
         let (asked, other) = ("which was asked for", "which another result has");
         assert_eq!(told(&[], &[0.1], true), None);
         assert_eq!(told(&[0.1], &[], true), said("", asked, ""));
+        let start = "there is no T_v = 0, which was asked for; the nearest it has is T_v = 0.1";
+        assert_eq!(told(&[0.0], &[0.1], true).as_deref(), Some(start));
         assert_eq!(told(&[0.1], &[0.05, 0.11, 0.2], true), said("", asked, near));
         assert_eq!(told(&[0.1, 0.3, 0.4], &[0.5, 0.11], false), said(" (and 2 more)", other, near));
         let column = ColumnParameters::default();

@@ -11,8 +11,8 @@ use crate::import::SampledState;
 use crate::judge::score::completeness::{Finding, Lack};
 use crate::judge::score::score_series::{SeriesRow, time_factors};
 use crate::measure::fields::{
-    ExactFields, FieldDifference, FieldError, LONG_AFTER, SamplePlaces, largest_contribution, resolution,
-    settlement_error,
+    ExactFields, FieldDifference, FieldError, LONG_AFTER, SamplePlaces, half_a_digit, largest_contribution,
+    resolution, settlement_error, start_of,
 };
 use crate::record::ErrorRow;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, ShelfProblem};
@@ -80,6 +80,8 @@ pub struct Leaning {
     pub quantity: Quantity,
     /// Cosine between error and exact field, from −1, smaller everywhere, to 1, larger everywhere.
     pub cosine: f64,
+    /// Half a unit in the last digit of the field's numbers, relative: no error is known better.
+    pub half_a_digit: f64,
 }
 
 /// A quantity that cannot be compared with a reference at a time.
@@ -200,7 +202,12 @@ impl Score {
             let (name, resolution) = (reference.name(), resolution(reference, time_factor));
             let field =
                 FieldError { time_factor, quantity, sample, reference: name, scale, components, resolution };
-            let rows = field.rows(computed, exact, volumes);
+            let at_start = || {
+                let places = state.places(parameters.height);
+                let start = ExactFields::of(reference, 0.0, places).ok();
+                start_of(quantity, start.as_ref().map(|start| start.field(quantity)), scale, time_factor)
+            };
+            let rows = field.rows(computed, exact, volumes, at_start);
             if rows.is_empty() {
                 let difference = FieldDifference::of(computed, exact, volumes);
                 let absolute = difference.and_then(|one| one.in_norm(Norm::L2).0).unwrap_or(f64::NAN);
@@ -218,7 +225,8 @@ impl Score {
                 let sentence = found.filter(|_| !is_known);
                 self.warnings.extend(sentence.map(|told| Finding::new(Lack::ValueImpossible, told)));
                 let cosine = cosine_of_error(computed, exact, volumes);
-                self.leanings.push(Leaning { time_factor, quantity, cosine });
+                let half_a_digit = half_a_digit(computed);
+                self.leanings.push(Leaning { time_factor, quantity, cosine, half_a_digit });
                 self.worst.extend(compared.worst_place(quantity, computed, exact, volumes));
             }
         }

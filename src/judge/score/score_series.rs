@@ -3,15 +3,12 @@
 
 use crate::case::{Norm, Quantity, Sample};
 use crate::import::SampledState;
-use crate::judge::paths::grouped;
+use crate::judge::paths::{ROUND_OFF, SINGLE_PRECISION, grouped};
 use crate::judge::score::{Leaning, Score};
 use crate::record::ErrorRow;
 use oedometer_convergence::{Classification, Context, ErrorSeries, SeriesLevel, classify};
 use oedometer_exact::ColumnParameters;
 use std::collections::HashMap;
-
-/// Errors up to this are round-off of a written number.
-const ROUND_OFF: f64 = 1e-12;
 
 /// Cosine between error and field from which on the error has a sign: half of its square lies along the field.
 const CLEAR: f64 = 0.7;
@@ -124,7 +121,8 @@ fn one_series(
         Norm::Relative => rows.iter().flatten().map(|row| row.value).collect(),
         _ => signed_by_leaning(rows, levels),
     };
-    let context = Context { round_off: Some(ROUND_OFF), signed, ..Context::default() };
+    let round_off = Some(ROUND_OFF.max(2.0 * largest_digit(rows, levels)));
+    let context = Context { round_off, tolerance: Some(SINGLE_PRECISION), signed, ..Context::default() };
     let differences =
         rows.iter().flatten().map(|row| (row.time_factor - time_factor).abs() / time_factor.abs());
     Some(ScoredSeries {
@@ -134,6 +132,18 @@ fn one_series(
         classification: classify(&series, &context),
         series,
     })
+}
+
+/// The coarsest half digit of the fields of a series; a settlement has that of the displacement.
+fn largest_digit(rows: &[Option<&ErrorRow>], levels: &[(usize, &Score)]) -> f64 {
+    let digit = |(row, (_, score)): (Option<&ErrorRow>, &(usize, &Score))| {
+        let row = row?;
+        let quantity =
+            if row.quantity == Quantity::Settlement { Quantity::Displacement } else { row.quantity };
+        let like = |one: &&Leaning| (one.time_factor, one.quantity) == (row.time_factor, quantity);
+        score.leanings.iter().find(like).map(|leaning| leaning.half_a_digit)
+    };
+    rows.iter().copied().zip(levels).filter_map(digit).fold(0.0, f64::max)
 }
 
 /// The errors of a field with the signs of their cosines, where these are clear on every mesh and differ; else empty.

@@ -6,6 +6,7 @@ use crate::measure::other_measures::load_error;
 use crate::record::ErrorRow;
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
 use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use std::cell::LazyCell;
 
 /// Norms of a field's error.
 const FIELD_NORMS: [Norm; 3] = [Norm::L1, Norm::L2, Norm::Linf];
@@ -36,6 +37,43 @@ pub struct FieldError<'a> {
 /// and displacements are of the size of the scale: an error relative to them means nothing.
 const UNRESOLVED: f64 = 1e4 * f64::EPSILON;
 
+/// Share of its start to which a value must have fallen to have vanished: a method's error of a hundredth is a hundred
+/// times as large then.
+const VANISHED: f64 = 1e-4;
+
+/// Share of the scale below which a value that has fallen is nothing, whatever its start.
+const NOTHING: f64 = 1e-6;
+
+/// Share of the scale above which a value has not vanished, whatever its start.
+const PRESENT: f64 = 1e-3;
+
+/// Whether an exact value has vanished against its start or the load, so that an error relative to it means nothing: a
+/// wave that has died out, a pressure that has dissipated. A value that is small at the start and grows, as a settlement,
+/// has not. All are absolute values in one unit; `at_start` is asked for where the value is small, and not a number where
+/// it is not known.
+pub fn has_vanished(value: f64, scale: f64, at_start: impl FnOnce() -> f64) -> bool {
+    if value > PRESENT * scale.abs() {
+        return false;
+    }
+    let start = at_start();
+    value <= VANISHED * start || value <= NOTHING * scale.abs() && value <= 0.5 * start
+}
+
+/// Time factor from which on a pressure of the size of the load has been there, whatever the start.
+const CONSOLIDATING: f64 = 1.0;
+
+/// The largest value of a quantity at the start, against which it may vanish; `exact` are the fields there. A pressure
+/// that waves or a growing load raise from nothing has been as large as the load.
+pub fn start_of(quantity: Quantity, exact: Option<&[f64]>, scale: f64, time_factor: f64) -> f64 {
+    let at_start = exact.map_or(f64::NAN, largest);
+    let is_late = quantity == Quantity::Pressure && time_factor >= CONSOLIDATING;
+    if is_late { at_start.max(scale.abs()) } else { at_start }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |most, value| most.max(value.abs()))
+}
+
 /// Share of the load, or of the final settlement, below which no error against a reference
 /// is defined: its own accuracy at that time, and round-off at least.
 pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
@@ -44,11 +82,18 @@ pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
 }
 
 impl FieldError<'_> {
-    /// The error in every norm in which it is defined; no row where the exact field is zero or too small to be told
-    /// from zero.
-    pub fn rows(self, computed: &[f64], exact: &[f64], volume: &[f64]) -> Vec<ErrorRow> {
-        let largest = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let is_lost = largest <= self.resolution * self.scale.abs();
+    /// The error in every norm in which it is defined; no row where the exact field is zero, too small to be told
+    /// from zero, or has vanished against its largest value at the start.
+    pub fn rows(
+        self,
+        computed: &[f64],
+        exact: &[f64],
+        volume: &[f64],
+        at_start: impl FnOnce() -> f64,
+    ) -> Vec<ErrorRow> {
+        let largest = largest(exact);
+        let is_lost =
+            largest <= self.resolution * self.scale.abs() || has_vanished(largest, self.scale, at_start);
         let difference = FieldDifference::of(computed, exact, volume).filter(|_| !is_lost);
         let row = |norm| {
             let (absolute, relative) = difference.as_ref()?.in_norm(norm);
@@ -87,7 +132,10 @@ pub fn settlement_error(
     scale: f64,
 ) -> Result<Option<ErrorRow>, ExactError> {
     let exact = reference.settlement(time_factor)?;
-    if exact.abs() <= resolution(reference, time_factor) * scale.abs() {
+    let at_start = || reference.settlement(0.0).map_or(f64::NAN, f64::abs);
+    if exact.abs() <= resolution(reference, time_factor) * scale.abs()
+        || has_vanished(exact.abs(), scale, at_start)
+    {
         return Ok(None);
     }
     let value = settlement / exact - 1.0;
@@ -126,6 +174,7 @@ pub fn snapshot_errors(
         (Sample::Nodes, &snapshot.nodes),
     ] {
         let exact = exact_samples(case, reference, time_factor, samples)?;
+        let start = LazyCell::new(|| exact_samples(case, reference, 0.0, samples).ok());
         let displacements = (displacement_components(samples), displacement_components(&exact));
         let directions = if samples.plane.is_some() { 2 } else { 1 };
         let volumes = samples.volume.repeat(directions);
@@ -145,7 +194,14 @@ pub fn snapshot_errors(
             let components = if quantity == Quantity::Displacement { directions } else { 1 };
             let field =
                 FieldError { time_factor, quantity, sample, reference, scale, components, resolution };
-            rows.extend(field.rows(computed, exact, volume));
+            let at_start = || {
+                let exact = start.as_ref().and_then(|start| match quantity {
+                    Quantity::Pressure => Some(start.pressures().0),
+                    other => other.field(start),
+                });
+                start_of(quantity, exact, scale, time_factor)
+            };
+            rows.extend(field.rows(computed, exact, volume, at_start));
         }
     }
     rows.extend(settlement_error(reference, time_factor, snapshot.settlement, final_settlement)?);
@@ -182,7 +238,9 @@ mod tests {
     #[test]
     fn an_exact_field_below_the_resolution_has_no_relative_error() {
         let rows = |exact: f64, resolution: f64| {
-            field(100.0, resolution).rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0]).len()
+            field(100.0, resolution)
+                .rows(&[1e-11, 2e-11], &[exact, 0.5 * exact], &[1.0, 1.0], || f64::NAN)
+                .len()
         };
         assert_eq!(rows(1e-50, UNRESOLVED), 0);
         assert_eq!(rows(0.9 * 100.0 * UNRESOLVED, UNRESOLVED), 0);
@@ -190,6 +248,29 @@ mod tests {
         // A reference that is good to 1e-6 of the load resolves no pressure of 1e-7 of it.
         assert_eq!(rows(1e-5, 1e-6), 0);
         assert_eq!(rows(1e-3, 1e-6), FIELD_NORMS.len());
+    }
+
+    #[test]
+    fn what_has_vanished_against_its_start_has_no_relative_error_and_what_grows_from_little_has() {
+        let unknown = f64::NAN;
+        for (value, start, vanished) in [
+            (1.0, 100.0, false),
+            (0.9e-2, 100.0, true),
+            (1.1e-2, 100.0, false),
+            (1.1e-2, 200.0, true),
+            // A stress that stiff water leaves at the start, and one that has fallen from it.
+            (5e-5, 5e-5, false),
+            (5e-5, 2e-4, true),
+            (5e-5, 0.0, false),
+            (5e-5, unknown, false),
+            (0.0, unknown, false),
+        ] {
+            assert_eq!(has_vanished(value, 100.0, || start), vanished, "{value} of {start}");
+        }
+        assert_eq!(start_of(Quantity::Pressure, Some(&[0.0, 0.0]), 100.0, 5.0), 100.0);
+        assert_eq!(start_of(Quantity::Pressure, Some(&[0.0, -3.0]), 100.0, 0.5), 3.0);
+        assert_eq!(start_of(Quantity::EffectiveStress, Some(&[-2.0]), 100.0, 5.0), 2.0);
+        assert!(start_of(Quantity::Displacement, None, 100.0, 0.5).is_nan());
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Errors under refinement: figures with slope triangles, and tables of orders.
 
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::levels::{LevelError, LevelValue, levels_of};
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::record::Record;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
@@ -241,10 +243,10 @@ fn orders_table(
     reference: &str,
     time_factor: f64,
 ) -> Table {
-    let levels = level_names(all, axis);
+    let levels = levels_of(all, axis);
     let labels = labels::path_labels(all);
     let mut columns = columns("method | error of");
-    columns.extend(levels.iter().map(|level| TableColumn::number(level.clone())));
+    columns.extend(levels.iter().map(|(_, record)| TableColumn::number(level_name(record, axis))));
     if shows_orders(axis, reference) {
         columns.extend(
             ["order from level to level", "order fitted to all, 95 %", "order of the finest 3"]
@@ -272,7 +274,7 @@ fn orders_table(
                     floor.value
                 ));
             }
-            rows.push(orders_row(&summary, label, &measure, levels.len(), axis));
+            rows.push(orders_row(&summary, label, &measure, &levels, axis));
         }
     }
     if notes.len() > MOST_NOTES {
@@ -294,15 +296,19 @@ fn orders_row(
     summary: &SeriesSummary<'_>,
     label: &str,
     measure: &Measure,
-    levels: usize,
+    levels: &[(LevelValue, &Record)],
     axis: Axis,
 ) -> Vec<Cell> {
     let mut row = vec![Cell::Code(label.to_owned()), labels::measure(measure).into()];
-    let levels_run = summary.series.levels().iter();
-    row.extend(levels_run.map(|level| Cell::of(level.error, Cell::Error, "no error was measured")));
-    // The finest level of such a series is what the one before is compared with.
-    let absent = if measure.reference == NEXT_FINER { "no finer level to compare with" } else { "not run" };
-    row.resize(2 + levels, Cell::missing(absent));
+    row.extend(levels.iter().map(|(level, _)| {
+        match summary.path.error_at(level, measure, &summary.series) {
+            LevelError::Measured(error) => Cell::Error(error),
+            LevelError::NotMeasured => Cell::missing("no error was measured"),
+            LevelError::NotAsked => Cell::missing("not asked for at this time"),
+            LevelError::NoFiner => Cell::missing("no finer level to compare with"),
+            LevelError::NotRun => Cell::missing("not run"),
+        }
+    }));
     if shows_orders(axis, &measure.reference) {
         let pairs: Vec<String> = summary
             .pairs
@@ -323,20 +329,14 @@ fn orders_row(
     row
 }
 
-/// Names of the levels, from the path that has most of them.
-fn level_names(all: &[Path<'_>], axis: Axis) -> Vec<String> {
-    let longest = all.iter().max_by_key(|path| path.records.len());
-    longest.map_or(Vec::new(), |path| {
-        path.records
-            .iter()
-            .map(|record| match axis {
-                Axis::Cells => record.case.cells.to_string(),
-                Axis::TimeStep => labels::step(record),
-                Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
-                Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
-            })
-            .collect()
-    })
+/// The name of a run's level.
+fn level_name(record: &Record, axis: Axis) -> String {
+    match axis {
+        Axis::Cells => record.case.cells.to_string(),
+        Axis::TimeStep => labels::step(record),
+        Axis::PointsPerCell => format!("m = {}", record.case.points_per_cell),
+        Axis::WaterBulkModulus => format!("K_w = {:e} Pa", record.case.material.water_bulk_modulus),
+    }
 }
 
 #[cfg(test)]
@@ -345,7 +345,6 @@ mod tests {
     use crate::campaign::runner::{records_of, study_of};
     use crate::case::planned::Tier;
     use crate::judge::paths::StudyPaths;
-    use crate::record::Record;
     use oedometer_convergence::{Floor, Undefined};
 
     /// Series of methods with the floors and the finest orders that are given.
@@ -443,7 +442,10 @@ mod tests {
             let records = of("[0.1]", sweep);
             let paths = StudyPaths::of(&records);
             let shorter = Path { axis, records: paths.along(axis)[0].records[..2].to_vec() };
-            assert_eq!(level_names(&[shorter, paths.along(axis)[0].clone()], axis), names);
+            let both = [shorter, paths.along(axis)[0].clone()];
+            let found: Vec<String> =
+                levels_of(&both, axis).iter().map(|(_, record)| level_name(record, axis)).collect();
+            assert_eq!(found, names);
             let study = study_of("s", &text_of("[0.1]", sweep));
             let results = StudyResults::new(&study, &records, Tier::Full);
             // Along the points of a cell the error ends in that of the mesh: there is no order and no class.

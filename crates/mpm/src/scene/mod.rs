@@ -150,11 +150,12 @@ impl SceneKind {
     }
 
     /// Time factors where a study names none; a yield front has none once the base is felt, and those of a footing are
-    /// its settlements over its width.
+    /// its settlements over its width. A standing wave dies out within few periods.
     pub fn default_time_factors(self) -> &'static [f64] {
         match self {
             Self::YieldFront => &[0.0005, 0.001, 0.002, 0.004],
             Self::Footing => &[0.01, 0.02, 0.05],
+            Self::StandingWave => &[2e-5, 5e-5, 1e-4],
             _ => &[0.05, 0.1, 0.2, 0.5, 1.0],
         }
     }
