@@ -120,6 +120,7 @@ impl Samples<'_> {
                     horizontal_displacement: self.horizontal_displacement.get(index).copied(),
                     moved: None,
                     others: place as u64,
+                    set: Default::default(),
                 };
                 let refused = |why: String| {
                     ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))

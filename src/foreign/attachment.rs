@@ -326,7 +326,7 @@ fn record(
             about.taken.extend((more > 0).then(|| format!("and {} more", count_of(more, "note", "notes"))));
             about.result_digest = Some(result.digest);
             let snapshot = |state| snapshot_of(case, result.sample, state);
-            (Status::Ok, states.into_iter().map(snapshot).collect())
+            (Status::Ok, states.iter().map(snapshot).collect())
         }
         Err(failure) => (Status::Failed(failure), Vec::new()),
     };
@@ -365,8 +365,39 @@ fn note_difference(about: &mut AttachedRun, difference: f64) {
     }
 }
 
-/// A state from outside as a snapshot: its one kind of samples, and the settlement where it is known.
-fn snapshot_of(case: &Case, sample: Sample, state: SampledState) -> Snapshot {
+/// A state from outside as a snapshot: its kinds of samples, and the settlement where it is known.
+fn snapshot_of(case: &Case, sample: Sample, state: &SampledState) -> Snapshot {
+    let mut snapshot = Snapshot { time: state.time, settlement: f64::NAN, ..Snapshot::default() };
+    for (sample, set) in state.sets(sample) {
+        if snapshot.settlement.is_nan() {
+            snapshot.settlement = settlement_in(case, set).unwrap_or(f64::NAN);
+        }
+        let plane = case.scene.has_plane_fields().then(|| PlaneSamples {
+            initial_distance: set.initial_distance.clone(),
+            displacement_distance: None,
+            horizontal_displacement: set.horizontal_displacement.clone(),
+        });
+        let samples = Samples {
+            initial_height: set.initial_height.clone(),
+            displacement_height: None,
+            volume: set.volume.clone(),
+            pressure: set.pressure.clone(),
+            effective_stress: set.effective_stress.clone(),
+            displacement: set.displacement.clone(),
+            plane,
+            water: None,
+        };
+        match sample {
+            Sample::Centres => snapshot.centres = samples,
+            Sample::Nodes => snapshot.nodes = samples,
+            Sample::Points | Sample::Surface => snapshot.points = samples,
+        }
+    }
+    snapshot
+}
+
+/// The settlement that a state shows, m: of a curve, or of a sample at the surface.
+fn settlement_in(case: &Case, state: &SampledState) -> Option<f64> {
     let is_at_surface = |place: &usize| {
         let column = &case.column;
         state.initial_height[*place] > (1.0 - RIM) * column.height
@@ -381,29 +412,7 @@ fn snapshot_of(case: &Case, sample: Sample, state: SampledState) -> Snapshot {
     };
     // The settlement of a slab is its plate's, which presses across.
     let surface = state.surface_displacement.or_else(|| at_surface().filter(|_| !case.scene.has_plates()));
-    let plane = case.scene.has_plane_fields().then(|| PlaneSamples {
-        initial_distance: state.initial_distance.clone(),
-        displacement_distance: None,
-        horizontal_displacement: state.horizontal_displacement.clone(),
-    });
-    let samples = Samples {
-        initial_height: state.initial_height,
-        displacement_height: None,
-        volume: state.volume,
-        pressure: state.pressure,
-        effective_stress: state.effective_stress,
-        displacement: state.displacement,
-        plane,
-        water: None,
-    };
-    let mut snapshot =
-        Snapshot { time: state.time, settlement: surface.map_or(f64::NAN, |up| -up), ..Snapshot::default() };
-    match sample {
-        Sample::Centres => snapshot.centres = samples,
-        Sample::Nodes => snapshot.nodes = samples,
-        Sample::Points | Sample::Surface => snapshot.points = samples,
-    }
-    snapshot
+    surface.map(|up| -up)
 }
 
 /// Programs that want the processor, as a mean over the last minute, where the system tells.

@@ -13,7 +13,7 @@
 //! | `incomplete` | outputs or places are missing | the adapter's |
 //! | `ok` | none of these | |
 
-use crate::case::Case;
+use crate::case::{Case, Sample};
 use crate::foreign::process::{Ending, Finished, last_lines};
 use crate::foreign::reading::Unread;
 use crate::foreign::started_processes::named;
@@ -31,6 +31,36 @@ const MOST_LINES: usize = 12;
 const TOLD_LINES: usize = 4;
 /// Longest of these lines, letters.
 const LONGEST_LINE: usize = 200;
+
+/// Begin of a traceback of Python.
+const TRACEBACK: &str = "Traceback (most recent call last)";
+/// Parts of lines that name what went wrong.
+const WRONG: [&str; 9] = [
+    "error",
+    "exception",
+    "fatal",
+    "assert",
+    "fault",
+    "terminate called",
+    "abort",
+    "not found",
+    "no such file",
+];
+/// Parts of lines that MPI's launchers write about a process that ended.
+const LAUNCHERS: [&str; 12] = [
+    "mpi_abort",
+    "mpirun",
+    "mpiexec",
+    "prterun",
+    "orterun",
+    "primary job",
+    "your application process",
+    "application called",
+    "errorcode",
+    "with errorcode",
+    "proc: [[",
+    "hydra",
+];
 
 /// The end of a run that left no result; none where it may have.
 pub fn of_process(run: &Finished, solver: &ExternalSolver) -> Option<Failure> {
@@ -149,16 +179,54 @@ pub fn of_mapping(why: &str) -> Failure {
     Failure::of_attached(FailureKind::Unreadable, format!("the mapping cannot be taken: {why}"))
 }
 
-/// The last lines of a run's errors, or of its output if it wrote no errors.
+/// The last lines of a run's errors, or of its output if it wrote no errors, behind the first that names what went wrong:
+/// what follows a crash is the launcher's.
 pub fn kept_words(run: &Finished) -> Vec<String> {
-    let errors = last_lines(&run.errors, MOST_LINES, LONGEST_LINE);
-    if errors.is_empty() { last_lines(&run.output, MOST_LINES, LONGEST_LINE) } else { errors }
+    let text = if run.errors.trim().is_empty() { &run.output } else { &run.errors };
+    let mut lines = last_lines(text, MOST_LINES, LONGEST_LINE);
+    if let Some(first) = first_message(&run.errors).or_else(|| first_message(&run.output))
+        && !lines.contains(&first)
+    {
+        lines.insert(0, first);
+    }
+    lines
+}
+
+/// The first line that names what went wrong; of a traceback of Python the line that ends it.
+fn first_message(text: &str) -> Option<String> {
+    let lines: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.trim().is_empty()).collect();
+    let is_message = |line: &str| {
+        let small = line.to_lowercase();
+        !is_of_launcher(line) && WRONG.iter().any(|word| small.contains(word))
+    };
+    let place = lines.iter().position(|line| line.starts_with(TRACEBACK) || is_message(line))?;
+    let line = if lines[place].starts_with(TRACEBACK) {
+        lines[place + 1..].iter().find(|line| !line.starts_with([' ', '\t']))?
+    } else {
+        &lines[place]
+    };
+    Some(line.trim().chars().take(LONGEST_LINE).collect())
+}
+
+/// Whether a line is what MPI says when one of its processes ends.
+fn is_of_launcher(line: &str) -> bool {
+    let small = line.to_lowercase();
+    LAUNCHERS.iter().any(|word| small.contains(word))
+        || line.trim().chars().all(|symbol| "-=*".contains(symbol))
 }
 
 fn last_words(run: &Finished) -> String {
     let lines = kept_words(run);
-    let told = &lines[lines.len().saturating_sub(TOLD_LINES)..];
-    if told.is_empty() { String::new() } else { format!(". The last it said: {}", told.join(" / ")) }
+    let own: Vec<String> = lines.iter().filter(|line| !is_of_launcher(line)).cloned().collect();
+    // Nothing but the launcher's is better than nothing.
+    let own = if own.is_empty() { lines } else { own };
+    let last = &own[own.len().saturating_sub(TOLD_LINES)..];
+    let first = first_message(&run.errors).or_else(|| first_message(&run.output));
+    match first.filter(|first| !last.contains(first)) {
+        Some(first) => format!(". It said first: {first}. The last it said: {}", last.join(" / ")),
+        None if last.is_empty() => String::new(),
+        None => format!(". The last it said: {}", last.join(" / ")),
+    }
 }
 
 /// How far, relative, a state may lie from the output that it stands for.
@@ -211,11 +279,21 @@ pub fn states_at_outputs(case: &Case, states: &[SampledState]) -> Result<Vec<Sam
 /// What the samples of a state leave bare.
 fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
     let when = format!("at T_v = {}", typed(time_factor));
+    if let Some(lack) = state.beside.iter().find_map(|set| lack(case, time_factor, &set.state)) {
+        return Some(lack);
+    }
     if state.repeated > 0 {
-        return Some(format!("{when}, {} samples stand twice", state.repeated));
+        let at = state.repeated_at.map_or(String::new(), |[height, distance]| {
+            let across =
+                if distance.is_nan() { String::new() } else { format!(", x = {} m", short(distance)) };
+            format!(", the first at y = {} m{across}", short(height))
+        });
+        return Some(format!("{when}, {} samples stand twice with different values{at}", state.repeated));
     }
     if state.initial_height.is_empty() {
-        return Some(format!("{when}, there is no sample"));
+        // A settlement curve alone has none.
+        let has_curve = state.surface_displacement.is_some();
+        return (!has_curve).then(|| format!("{when}, there is no sample"));
     }
     let column = &case.column;
     let size = case.cell_size();
@@ -267,8 +345,13 @@ fn same_counts(case: &Case, states: &[SampledState]) -> Option<String> {
 /// Largest difference of two results, over the largest value of its field; infinite where they have not the same
 /// places, or not the same fields.
 pub fn difference(first: &[SampledState], second: &[SampledState]) -> f64 {
+    let sets = |states: &[SampledState]| -> Vec<SampledState> {
+        let all = states.iter().flat_map(|state| state.sets(Sample::Points));
+        all.map(|(_, state)| SampledState { beside: Vec::new(), ..state.clone() }).collect()
+    };
+    let (first, second) = (&sets(first)[..], &sets(second)[..]);
     let places = |states: &[SampledState]| -> Vec<[Vec<f64>; 2]> {
-        states.iter().map(|one| [one.initial_height.clone(), one.initial_distance.clone()]).collect()
+        states.iter().map(|state| [state.initial_height.clone(), state.initial_distance.clone()]).collect()
     };
     let same_places = places(first) == places(second);
     if !same_places {

@@ -16,6 +16,10 @@ use std::path::PathBuf;
 const IMPOSSIBLE: f64 = 100.0;
 /// Places closer than this share of the height are one.
 const SAME_PLACE: f64 = 1e-6;
+/// Gaps between places that differ by less than this share are even.
+const EVEN: f64 = 1e-3;
+/// Most parts into which the places of an element divide a cell.
+const MOST_OF_A_CELL: usize = 4;
 
 /// A result as it was read.
 #[derive(Debug)]
@@ -100,6 +104,11 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
         return Err(Unread::NoFile);
     }
     let digest = digest_of(&files);
+    let mut mapping = mapping.clone();
+    let seconds: Vec<f64> =
+        case.time_factors.iter().map(|factor| factor * case.seconds_per_time_factor()).collect();
+    mapping.follow_case(&seconds, case.seconds_per_time_factor());
+    let mapping = &mapping;
     let runs = runs_of(&given, mapping, SolvedBody::of(case)).map_err(|error| why_unread(&error))?;
     if runs.len() > 1 {
         return Err(Unread::Unreadable(format!(
@@ -118,7 +127,14 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     if let Some(why) = other_cells(case, run.cells) {
         return Err(Unread::Unreadable(why));
     }
-    Ok(ReadResult { states: run.states, sample, notes: run.notes, digest })
+    if let Some(sample) = twice(&run.states, sample) {
+        return Err(Unread::Unreadable(format!(
+            "quantities stand at different {}: an attached solver writes those of one kind at the same places",
+            sample.name()
+        )));
+    }
+    let notes = run.doubts.into_iter().chain(run.notes).collect();
+    Ok(ReadResult { states: run.states, sample, notes, digest })
 }
 
 /// Why a result that could be read cannot be that of its case: cut, without a quantity, of another mesh, or with a pressure
@@ -133,22 +149,42 @@ fn unfit(case: &Case, sample: Sample, run: &Run) -> Option<String> {
         return Some(absent.sentence(when));
     }
     run.states.iter().enumerate().find_map(|(place, state)| {
-        let why = other_mesh(case, sample, state).or_else(|| beyond_the_load(case, state))?;
+        let is_table = run.cells.is_none();
+        let other =
+            state.sets(sample).filter(|_| is_table).find_map(|(sample, set)| other_mesh(case, sample, set));
+        let why = other.or_else(|| state.sets(sample).find_map(|(_, set)| beyond_the_load(case, set)))?;
         Some(format!("at {}, {why}", when(place)))
     })
 }
 
-/// Whether nodes or centres stand at more heights than the cells of the case have: a finer mesh's are whole, too.
+/// A kind of places of which a state has two sets: a record has one of each.
+fn twice(states: &[SampledState], sample: Sample) -> Option<Sample> {
+    let of_state = |state: &SampledState| {
+        let kinds: Vec<Sample> = state.sets(sample).map(|(sample, _)| sample).collect();
+        kinds.iter().enumerate().find(|(place, kind)| kinds[..*place].contains(kind)).map(|(_, kind)| *kind)
+    };
+    states.iter().find_map(of_state)
+}
+
+/// Whether nodes or centres of a table stand on a lattice of their own that no element of the case's cells has: a mesh of other
+/// cells is whole, too. Quadratic elements halve a cell, triangles and quadrature points divide it into thirds.
 fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<String> {
-    let most = match sample {
-        Sample::Nodes => case.cells + 1,
-        Sample::Centres => case.cells,
+    let nodes = match sample {
+        Sample::Nodes => 1,
+        Sample::Centres => 0,
         Sample::Points | Sample::Surface => return None,
     };
-    let heights = distinct(&state.initial_height, case.column.height);
-    (heights > most).then(|| {
+    let places = sorted(&state.initial_height, case.column.height);
+    let (heights, most) = (places.len(), case.cells + nodes);
+    let gap = |pair: &[f64]| pair[1] - pair[0];
+    let gaps = || places.windows(2).map(gap);
+    let widest = gaps().fold(0.0, f64::max);
+    let is_even = gaps().all(|gap| gap >= (1.0 - EVEN) * widest);
+    let spacings = heights - nodes;
+    let divides = (1..=MOST_OF_A_CELL).any(|parts| spacings == parts * case.cells);
+    (heights > most && is_even && !divides).then(|| {
         format!(
-            "the {} of the result stand at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
+            "the {} of the result stand evenly at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
              places are no {} (`sample` in the mapping; `rows` chooses corners)",
             sample.name(),
             case.cells,
@@ -166,12 +202,12 @@ fn other_cells(case: &Case, shown: Option<usize>) -> Option<String> {
     ))
 }
 
-/// How many places differ.
-fn distinct(places: &[f64], extent: f64) -> usize {
+/// The places that differ, in rising order.
+fn sorted(places: &[f64], extent: f64) -> Vec<f64> {
     let mut sorted = places.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.dedup_by(|later, earlier| *later - *earlier <= SAME_PLACE * extent);
-    sorted.len()
+    sorted
 }
 
 /// A pressure that the load cannot cause, in a body without self-weight.
@@ -287,6 +323,14 @@ mod tests {
         for (sample, most) in [(Sample::Nodes, 5), (Sample::Centres, 4)] {
             let found = [most - 1, most, most + 1].map(|heights| is_other(sample, heights));
             assert_eq!(found, [false, false, true], "{sample:?}");
+            // Quadratic elements, and triangles.
+            for parts in [2, 3, 4, 5] {
+                assert_eq!(
+                    is_other(sample, most + (parts - 1) * case.cells),
+                    parts > 4,
+                    "{sample:?} {parts}"
+                );
+            }
         }
         assert!(!is_other(Sample::Points, 40), "a cell may have many points");
         assert!(!is_other(Sample::Surface, 40), "nor has the surface heights");

@@ -75,13 +75,14 @@ impl Expected {
 }
 
 fn has(state: &SampledState, column: Column) -> bool {
+    let beside = || state.beside.iter().any(|set| has(&set.state, column));
     let list = match column {
         Column::Pressure => &state.pressure,
         Column::EffectiveStress => &state.effective_stress,
         Column::Up => &state.displacement,
         _ => &state.horizontal_displacement,
     };
-    !list.is_empty()
+    !list.is_empty() || beside()
 }
 
 impl Absent {

@@ -1,8 +1,11 @@
 //! Rows of a state in arrays: finds the columns among arrays and coordinates, selects rows, forms displacements.
 
+use crate::case::quantity::Sample;
+use crate::import::mapping::units::{StatedPlace, StressKind};
 use crate::import::mapping::{Column, DeclaredBy, Mapping};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
-use crate::import::samples::SampleRow;
+use crate::import::samples::{PlaceSet, SampleRow};
+use crate::import::spelling::spellings;
 use crate::study::solver::Preset;
 use oedometer_formats::{Array, Association, Cells, Frame, ImportError};
 use std::collections::{BTreeSet, HashMap};
@@ -11,36 +14,19 @@ use std::path::Path;
 
 /// Name of the places of points, and of the centres of cells, as a column.
 const COORDINATES: &str = "coordinates";
-
-/// A column as a mapping names it: `displacement[1]`, `cells:pressure`.
-struct Spelling<'a> {
-    on: Option<Association>,
-    name: &'a str,
-    component: Option<usize>,
-}
-
-/// The alternatives of a name, separated by `|`.
-fn spellings(typed: &str) -> impl Iterator<Item = Spelling<'_>> {
-    typed.split('|').map(|one| {
-        let (on, rest) = match one.split_once(':') {
-            Some(("points", rest)) => (Some(Association::Points), rest),
-            Some(("cells", rest)) => (Some(Association::Cells), rest),
-            _ => (None, one),
-        };
-        let indexed = rest.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
-        match indexed.and_then(|(name, index)| Some((name, index.parse().ok()?))) {
-            Some((name, index)) => Spelling { on, name, component: Some(index) },
-            None => Spelling { on, name: rest, component: None },
-        }
-    })
-}
+/// Quantities, the one that chooses the places first.
+const QUANTITIES: [Column; 4] = [Column::Pressure, Column::Up, Column::EffectiveStress, Column::Along];
+/// Volumes that differ by less than this share are equal.
+const SAME_VOLUME: f64 = 1e-9;
+/// Coordinates that differ by less than this share of the largest are equal.
+const SAME_PLACE: f64 = 1e-9;
 
 /// Names of all arrays that a mapping may ask for.
 pub fn wanted_names(mapping: &Mapping) -> BTreeSet<String> {
     let columns = Column::ALL.into_iter().filter_map(|column| mapping.columns.get(column));
     let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
     let typed = columns.chain(id).chain(mapping.rows.equals.keys());
-    typed.flat_map(|typed| spellings(typed)).map(|one| one.name.to_owned()).collect()
+    typed.flat_map(|typed| spellings(typed)).map(|spelled| spelled.name.to_owned()).collect()
 }
 
 /// Where the numbers of a column are.
@@ -71,12 +57,20 @@ pub struct FrameRows<'a> {
     along: Option<Source<'a>>,
     equals: Vec<(Source<'a>, f64)>,
     id: Option<Source<'a>>,
+    /// Quantities that are on something else than the rows.
+    elsewhere: Vec<Column>,
+    /// Which places the rows are of.
+    set: PlaceSet,
+    /// Centres of the cells, where the rows lie on cells.
+    centres: Vec<[f64; 3]>,
+    /// Volumes of the cells, where the rows lie on cells and these differ.
+    volumes: Vec<f64>,
     /// What each column was read from.
     pub notes: Vec<String>,
 }
 
 impl<'a> FrameRows<'a> {
-    /// Finds the columns of a state.
+    /// Finds the columns of a state. The first quantity decides what the rows lie on; others may be elsewhere.
     ///
     /// # Errors
     /// When a column is missing that must be there, or belongs to something else than the rows.
@@ -85,6 +79,46 @@ impl<'a> FrameRows<'a> {
         path: &'a Path,
         mapping: &'a Mapping,
         body: SolvedBody,
+    ) -> Result<Self, ImportError> {
+        Self::of_places(frame, path, mapping, body, &QUANTITIES, None)
+    }
+
+    /// The rows of the quantities that lie on something else: stresses in cells beside pressures at nodes.
+    ///
+    /// # Errors
+    /// Those of [`find`](Self::find), and where a quantity is needed there that is not.
+    pub fn beside(&self) -> Result<Option<Self>, ImportError> {
+        if self.elsewhere.is_empty() {
+            return Ok(None);
+        }
+        let on = if self.on == Association::Cells { Association::Points } else { Association::Cells };
+        let Self { frame, path, mapping, body, .. } = *self;
+        let mut rows = Self::of_places(frame, path, mapping, body, &self.elsewhere, Some(on))?;
+        let has = |column: Column| self.elsewhere.contains(&column);
+        let refused = |what: &str| {
+            self.refused(format!(
+                "{what}, and the file has it on {} alone: leave one of them out",
+                self.on.name()
+            ))
+        };
+        if mapping.stress.is == StressKind::Total && has(Column::EffectiveStress) != has(Column::Pressure) {
+            return Err(refused("a total stress becomes effective by the pressure at its place"));
+        }
+        if mapping.position.y == StatedPlace::Current {
+            return Err(refused("a present place becomes the initial one by the displacement there"));
+        }
+        rows.set = (1, Some(if on == Association::Cells { Sample::Centres } else { Sample::Nodes }));
+        Ok(Some(rows))
+    }
+
+    /// Finds the columns of some quantities, on what is asked for or on what the first of them is on.
+    fn of_places(
+        frame: &'a Frame,
+        path: &'a Path,
+        mapping: &'a Mapping,
+        body: SolvedBody,
+        quantities: &[Column],
+        mut on: Option<Association>,
     ) -> Result<Self, ImportError> {
         let mut rows = Self {
             frame,
@@ -97,16 +131,23 @@ impl<'a> FrameRows<'a> {
             along: None,
             equals: Vec::new(),
             id: None,
+            elsewhere: Vec::new(),
+            set: PlaceSet::default(),
+            centres: Vec::new(),
+            volumes: Vec::new(),
             notes: Vec::new(),
         };
         let mut notes = Vec::new();
-        // The first quantity decides what the rows lie on.
-        let mut on = None;
-        for column in [Column::Pressure, Column::Up, Column::EffectiveStress] {
-            let source = rows.source(column.name(), mapping.columns.get(column), on, &mut notes)?;
+        let columns = &mapping.columns;
+        for column in quantities.iter().copied() {
+            if rows.is_elsewhere(columns.get(column), on) {
+                rows.elsewhere.push(column);
+                continue;
+            }
+            let source = rows.source(column.name(), columns.get(column), on, &mut notes)?;
             if let Some(Source::Array(array, _)) = source
                 && array.on != Association::Whole
-                && on.is_none()
+                && rows.count == 0
             {
                 (on, rows.count) = (Some(array.on), array.tuples);
             }
@@ -120,37 +161,83 @@ impl<'a> FrameRows<'a> {
             )));
         }
         rows.on = on.unwrap_or(Association::Points);
-        let on = Some(rows.on);
-        rows.columns[Column::Y as usize] = rows.source("y", Some(&mapping.columns.y), on, &mut notes)?;
-        let Some(y) = rows.columns[Column::Y as usize] else {
+        rows.find_others(&mut notes)?;
+        if rows.on == Association::Cells
+            && let Some(cells) = &frame.cells
+        {
+            rows.centres = (0..cells.count()).map(|cell| cells.centre(cell, &frame.coordinates)).collect();
+            if columns.volume.is_none() {
+                notes.extend(rows.weigh(cells));
+            }
+        }
+        rows.check_lengths()?;
+        rows.note(notes);
+        Ok(rows)
+    }
+
+    /// Finds the columns that are no quantities.
+    fn find_others(&mut self, notes: &mut Vec<String>) -> Result<(), ImportError> {
+        let (mapping, frame) = (self.mapping, self.frame);
+        let on = Some(self.on);
+        self.columns[Column::Y as usize] = self.source("y", Some(&mapping.columns.y), on, notes)?;
+        let Some(y) = self.columns[Column::Y as usize] else {
             let reason =
                 format!("there is no height `{}`; the file has {}", mapping.columns.y, frame.names());
-            return Err(rows.refused(reason));
+            return Err(self.refused(reason));
         };
         for (name, value) in &mapping.rows.equals {
-            let source = rows.source(name, Some(name), on, &mut notes)?;
-            rows.equals.extend(source.map(|source| (source, *value)));
+            let source = self.source(name, Some(name), on, notes)?;
+            self.equals.extend(source.map(|source| (source, *value)));
         }
-        for column in [Column::X, Column::Along, Column::Volume] {
-            let source = rows.source(column.name(), mapping.columns.get(column), on, &mut notes)?;
-            rows.columns[column as usize] = source;
+        for column in [Column::X, Column::Volume] {
+            let source = self.source(column.name(), mapping.columns.get(column), on, notes)?;
+            self.columns[column as usize] = source;
         }
-        rows.along = rows.columns[Column::X as usize];
-        if rows.along.is_none() && mapping.rows.x.is_some() {
-            rows.along = rows.source("x", Some(&format!("{COORDINATES}[0]")), on, &mut notes)?;
+        self.along = self.columns[Column::X as usize];
+        if self.along.is_none() && mapping.rows.x.is_some() {
+            self.along = self.source("x", Some(&format!("{COORDINATES}[0]")), on, notes)?;
         }
         let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
-        rows.id = rows.source("id", id, on, &mut notes)?;
-        if rows.count == 0 {
-            rows.count = match (rows.on, y) {
+        self.id = self.source("id", id, on, notes)?;
+        if self.count == 0 {
+            self.count = match (self.on, y) {
                 (Association::Cells, _) => frame.cells.as_ref().map_or(0, Cells::count),
                 (_, Source::Array(array, _)) if frame.coordinates.is_empty() => array.tuples,
                 _ => frame.coordinates.len(),
             };
         }
-        rows.check_lengths()?;
-        rows.note(notes);
-        Ok(rows)
+        Ok(())
+    }
+
+    /// Takes the volumes of the cells as weights, where they differ; a note says so.
+    fn weigh(&mut self, cells: &Cells) -> Option<String> {
+        let highest = cells.dimension();
+        let bodies = (0..cells.count()).filter(|cell| cells.dimension_of(*cell) == highest);
+        let of_cell = |cell: usize| cells.volume(cell, &self.frame.coordinates);
+        let known: Vec<f64> = bodies.map(of_cell).collect();
+        if known.iter().any(|volume| !(volume.is_finite() && *volume > 0.0)) {
+            return Some("each cell weighs the same, because some have no volume".to_owned());
+        }
+        let largest = known.iter().copied().fold(0.0, f64::max);
+        if known.iter().all(|volume| *volume >= (1.0 - SAME_VOLUME) * largest) {
+            return None;
+        }
+        self.volumes = (0..cells.count()).map(of_cell).collect();
+        Some("weight = the volumes of the cells".to_owned())
+    }
+
+    /// Whether the array of a quantity lies on something else than the rows, and on that alone.
+    fn is_elsewhere(&self, typed: Option<&String>, on: Option<Association>) -> bool {
+        let (Some(typed), Some(on)) = (typed, on) else { return false };
+        let mut first =
+            spellings(typed).filter(|spelled| self.frame.array(spelled.name, spelled.on).is_some());
+        let is_here = |spelled: &crate::import::spelling::Spelling| {
+            let whole = || self.frame.array(spelled.name, Some(Association::Whole));
+            let here = || self.frame.array(spelled.name, Some(on)).or_else(whole);
+            spelled.on.is_none_or(|asked| asked == on) && here().is_some()
+        };
+        let any = spellings(typed).any(|spelled| is_here(&spelled));
+        !any && first.next().is_some()
     }
 
     fn note(&mut self, mut notes: Vec<String>) {
@@ -179,19 +266,28 @@ impl<'a> FrameRows<'a> {
         notes: &mut Vec<String>,
     ) -> Result<Option<Source<'a>>, ImportError> {
         let Some(typed) = typed else { return Ok(None) };
-        for one in spellings(typed) {
-            if one.name == COORDINATES && !self.frame.coordinates.is_empty() {
-                let component = one.component.unwrap_or(1);
+        for spelled in spellings(typed) {
+            if spelled.name == COORDINATES && !self.frame.coordinates.is_empty() {
+                let component = spelled.component.unwrap_or(1);
                 if component > 2 {
                     return Err(self.refused(format!("`{typed}`: places have the components 0, 1 and 2")));
                 }
                 notes.push(format!("{key} = {COORDINATES}[{component}]"));
                 return Ok(Some(Source::Coordinates(component)));
             }
-            let whole = || self.frame.array(one.name, Some(Association::Whole));
-            let Some(array) = self.frame.array(one.name, one.on.or(on)).or_else(whole) else { continue };
+            let whole = || self.frame.array(spelled.name, Some(Association::Whole));
+            let here = |on: Option<Association>| self.frame.array(spelled.name, on);
+            // What the mapping asks for goes before what the rows lie on.
+            let Some(array) = here(spelled.on.or(on)).or_else(whole) else { continue };
+            let alike = self.frame.namesakes(spelled.name);
+            if alike.len() > 1 && alike.iter().any(|other| other.name != array.name) {
+                let names: Vec<String> =
+                    alike.iter().take(4).map(|array| format!("`{}`", array.name)).collect();
+                return Err(self
+                    .refused(format!("`{typed}` may be each of {}: give the whole path", names.join(", "))));
+            }
             let Array { name, components, .. } = array;
-            let (component, index) = match one.component {
+            let (component, index) = match spelled.component {
                 Some(component) if component < *components => (component, format!("[{component}]")),
                 None if *components == 1 => (0, String::new()),
                 _ => {
@@ -265,14 +361,11 @@ impl<'a> FrameRows<'a> {
                 let tuple = if array.on == Association::Whole { 0 } else { row };
                 array.values.get(tuple * array.components + component).copied().unwrap_or(f64::NAN)
             }
-            Source::Coordinates(component) => match (self.on, &self.frame.cells) {
-                (Association::Cells, Some(cells)) if row < cells.count() => {
-                    let corners = cells.corners(row);
-                    let place = |point: &u32| self.frame.coordinates[*point as usize][component];
-                    corners.iter().map(place).sum::<f64>() / corners.len() as f64
-                }
-                _ => self.frame.coordinates.get(row).map_or(f64::NAN, |place| place[component]),
-            },
+            Source::Coordinates(component) => {
+                let places =
+                    if self.on == Association::Cells { &self.centres } else { &self.frame.coordinates };
+                places.get(row).map_or(f64::NAN, |place| place[component])
+            }
         }
     }
 
@@ -288,8 +381,10 @@ impl<'a> FrameRows<'a> {
             // A preset asks for corners in case there are cells.
             _ => vec![true; self.count],
         };
+        let is_sample = self.are_samples();
         let is_selected = |row: &usize| {
             are_corners[*row]
+                && is_sample(*row)
                 && self.equals.iter().all(|(source, value)| self.number(*source, *row) == *value)
                 && rows.x.zip(self.along).is_none_or(|(x, along)| is_at(self.number(along, *row), x))
         };
@@ -298,6 +393,23 @@ impl<'a> FrameRows<'a> {
             return Err(self.refused(format!("[rows] selects none of its {} rows", self.count)));
         }
         Ok(selected)
+    }
+
+    /// Whether a row is a sample: a point that no other piece owns and that a cell of the highest dimension has the value
+    /// of, or such a cell; edges and faces beside cells are their borders.
+    fn are_samples(&self) -> Box<dyn Fn(usize) -> bool + '_> {
+        let Frame { cells, ghosts, .. } = self.frame;
+        let Some(cells) = cells.as_ref().filter(|cells| cells.dimension() > 0) else {
+            return Box::new(|row| !ghosts.get(row).copied().unwrap_or(false));
+        };
+        if self.on == Association::Cells {
+            let highest = cells.dimension();
+            return Box::new(move |row| cells.dimension_of(row) == highest);
+        }
+        let have_values = cells.have_values(self.frame.coordinates.len());
+        Box::new(move |row| {
+            have_values.get(row).copied().unwrap_or(true) && !ghosts.get(row).copied().unwrap_or(false)
+        })
     }
 
     /// The present places, from which later displacements count.
@@ -322,15 +434,21 @@ impl<'a> FrameRows<'a> {
         let selected = self.selected()?;
         rows.reserve(selected.len());
         let kind = if self.on == Association::Cells { "cell" } else { "point" };
+        let largest = |most: f64, place: &[f64; 3]| place.iter().fold(most, |most, at| most.max(at.abs()));
+        let step = SAME_PLACE * self.frame.coordinates.iter().fold(0.0, largest);
         for row in selected {
             let refused = |reason: String| self.refused(format!("{kind} {row}: {reason}"));
             let number = |source: Source, key: &str| {
                 let number = self.number(source, row);
                 if number.is_finite() { Ok(number) } else { Err(refused(format!("`{key}` is {number}"))) }
             };
-            let mut raw = RawRow::read(time, self.hash_of_place(row), |column| {
+            let mut raw = RawRow::read(time, self.hash_of_place(row, step), |column| {
                 self.columns[column as usize].map(|source| number(source, column.name())).transpose()
             })?;
+            raw.set = self.set;
+            if let Some(volume) = self.volumes.get(row) {
+                raw.volume = Some(*volume);
+            }
             if let Some(start) = start {
                 let id = self.id.map_or(Ok(row as u64), |id| number(id, "id").map(f64::to_bits))?;
                 let first = start.places.get(&id).ok_or_else(|| {
@@ -345,8 +463,8 @@ impl<'a> FrameRows<'a> {
         Ok(())
     }
 
-    /// What distinguishes rows at one height: their whole place.
-    fn hash_of_place(&self, row: usize) -> u64 {
+    /// What distinguishes rows at one height: their whole place, in steps of round-off.
+    fn hash_of_place(&self, row: usize, step: f64) -> u64 {
         let mut hasher = DefaultHasher::new();
         for component in 0..3 {
             let at = match self.columns[Column::Y as usize] {
@@ -356,7 +474,8 @@ impl<'a> FrameRows<'a> {
                 }
                 _ => 0.0,
             };
-            at.to_bits().hash(&mut hasher);
+            let at = if step > 0.0 { (at / step).round() } else { at };
+            (at + 0.0).to_bits().hash(&mut hasher);
         }
         hasher.finish()
     }
@@ -366,9 +485,21 @@ impl<'a> FrameRows<'a> {
     /// # Errors
     /// When the user names such an array and it is missing.
     pub fn time_of_array(&self) -> Result<Option<f64>, ImportError> {
-        match self.source("t", self.mapping.columns.t.as_ref(), None, &mut Vec::new())? {
-            Some(Source::Array(array, component)) => Ok(array.values.get(component).copied()),
-            _ => Ok(None),
+        let Some(Source::Array(array, component)) =
+            self.source("t", self.mapping.columns.t.as_ref(), None, &mut Vec::new())?
+        else {
+            return Ok(None);
+        };
+        let times = || array.values.iter().skip(component).step_by(array.components);
+        let first = times().next().copied();
+        match times().find(|time| Some(**time) != first) {
+            Some(other) => Err(self.refused(format!(
+                "`{}` has several times, {} and {other} among them, and a state has one: no array of the mapping has an \
+                 axis of their number",
+                array.name,
+                first.unwrap_or(f64::NAN)
+            ))),
+            None => Ok(first),
         }
     }
 }
@@ -381,10 +512,20 @@ pub fn cells_over_height(frame: &Frame, mapping: &Mapping, height: f64) -> Optio
         .map_or(1, |one| one.component.unwrap_or(1).min(2));
     let is_corner = cells.are_corners(frame.coordinates.len());
     let corners = frame.coordinates.iter().zip(is_corner).filter(|(_, is_corner)| *is_corner);
-    let mut levels: Vec<f64> = corners.map(|(place, _)| place[component]).collect();
+    let near = 1e-5 * height / mapping.units.length.metres();
+    // Some programs repeat a corner for each of its cells.
+    let rounded = |place: &[f64; 3]| {
+        let mut across = *place;
+        across[component] = 0.0;
+        across.map(|at| ((at / near).round() + 0.0).to_bits())
+    };
+    let mut places: Vec<(f64, [u64; 3])> =
+        corners.map(|(place, _)| (place[component], rounded(place))).collect();
+    places.sort_by(|a, b| a.1.cmp(&b.1).then(a.0.total_cmp(&b.0)));
+    places.dedup_by(|later, earlier| later.1 == earlier.1 && later.0 - earlier.0 <= near);
+    let mut levels: Vec<f64> = places.into_iter().map(|(level, _)| level).collect();
     levels.sort_by(f64::total_cmp);
     let all = levels.len();
-    let near = 1e-5 * height / mapping.units.length.metres();
     levels.dedup_by(|later, earlier| *later - *earlier <= near);
     (levels.len() > 1 && all.is_multiple_of(levels.len())).then(|| levels.len() - 1)
 }
@@ -441,6 +582,7 @@ mod tests {
                 components: 1,
                 tuples: values.len(),
                 values,
+                shape: Vec::new(),
             };
             let frame = Frame { coordinates: places, arrays: vec![pressure], ..Frame::default() };
             FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body).expect("its columns").width()
@@ -463,6 +605,7 @@ mod tests {
             components: 1,
             tuples: values.len(),
             values: values.to_vec(),
+            shape: Vec::new(),
         };
         let arrays = vec![
             array("y", Association::Points, &[0.25, 0.75]),
@@ -480,7 +623,7 @@ mod tests {
 
     fn array(name: &str, on: Association, components: usize, values: &[f64]) -> Array {
         let tuples = values.len() / components;
-        Array { name: name.to_owned(), on, components, tuples, values: values.to_vec() }
+        Array { name: name.to_owned(), on, components, tuples, values: values.to_vec(), shape: Vec::new() }
     }
 
     /// Two squares on each other: six nodes, two cells, and arrays on both.
@@ -563,13 +706,67 @@ mod tests {
                 "`coordinates[3]`: places have the components 0, 1 and 2".to_owned(),
             ),
             (format!("{y}, p = 'q', u_y = ''"), format!("there is no array `q` for `p`; {there}")),
-            (format!("{y}, p = 'p', u_y = 'm'"), format!("there is no array `m` for `u_y`; {there}")),
+            (format!("{y}, p = 'p', u_y = 'n'"), format!("there is no array `n` for `u_y`; {there}")),
             (
-                format!("{y}, p = 'p', u_y = 'cells:m'"),
+                format!("{y}, p = 'p', u_y = '', volume = 'cells:m'"),
                 "`m` has 2 tuples on cells, and the rows are 6 points: take both from one of them".to_owned(),
             ),
         ] {
             assert_eq!(found(&columns), Err(format!("f.vtu: {told}")), "{columns}");
+        }
+    }
+
+    #[test]
+    fn quantities_on_cells_stand_beside_those_at_nodes_and_weigh_by_volume() {
+        let body = SolvedBody { height: 2.0, length: None, seconds_per_time_factor: 1.0 };
+        let found = |frame: &Frame, columns: &str, more: &str| -> Result<[Vec<[f64; 3]>; 2], String> {
+            let text = format!("{more}\ncolumns = {{ y = 'coordinates[1]', {columns} }}");
+            let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+            let rows = FrameRows::find(frame, Path::new("f.vtu"), &mapping, body)
+                .map_err(|error| error.to_string())?;
+            let beside = rows.beside().map_err(|error| error.to_string())?;
+            let taken = |rows: Option<&FrameRows>| {
+                let mut all = Vec::new();
+                rows.map_or(Ok(()), |rows| rows.take_rows(1.0, None, &mut all)).expect("rows");
+                let value = |row: &SampleRow| [row.pressure, row.displacement, row.effective_stress];
+                let value = |row: &SampleRow| value(row).into_iter().find(|value| !value.is_nan());
+                all.iter().map(|row| [row.initial_height, value(row).expect("a value"), row.volume]).collect()
+            };
+            Ok([taken(Some(&rows)), taken(beside.as_ref())])
+        };
+        let mut frame = squares();
+        let [nodes, cells] =
+            found(&frame, "p = 'points:p', u_y = '', effective_stress = 'm'", "").expect("both");
+        assert_eq!((nodes.len(), &cells[..]), (6, &[[0.5, -7.0, 1.0], [1.5, -8.0, 1.0]][..]));
+        let [cells, nodes] = found(&frame, "p = 'cells:p', u_y = 'u[1]'", "").expect("both");
+        assert_eq!((cells.len(), nodes.len()), (2, 6));
+        // A graded mesh, with an edge and a point of no cell among its cells.
+        for place in &mut frame.coordinates[2..4] {
+            place[1] = 0.5;
+        }
+        frame.coordinates.push([9.0, 9.0, 9.0]);
+        let cells = frame.cells.as_mut().expect("cells");
+        (cells.types, cells.ends) = (vec![9, 9, 3], vec![4, 8, 10]);
+        cells.connectivity.extend([0, 1]);
+        frame.arrays = vec![
+            array("p", Association::Points, 1, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 99.0]),
+            array("m", Association::Cells, 1, &[7.0, 8.0, 99.0]),
+        ];
+        let [nodes, cells] = found(&frame, "p = 'p', u_y = '', effective_stress = 'm'", "").expect("both");
+        assert_eq!((nodes.len(), cells.len()), (6, 2), "neither the edge nor the loose point");
+        let volumes: Vec<f64> = cells.iter().map(|row| row[2]).collect();
+        assert!((volumes[1] / volumes[0] - 3.0).abs() < 0.1, "{volumes:?}");
+        for (columns, more, told) in [
+            (
+                "p = 'p', u_y = '', effective_stress = 'm'",
+                "stress.is = 'total'",
+                "by the pressure at its place",
+            ),
+            ("p = 'm', u_y = 'p'", "position.y = 'current'", "by the displacement there"),
+            ("p = 'p', u_y = 'm'", "position.y = 'current'", "by the displacement there"),
+        ] {
+            let refused = found(&frame, columns, more);
+            assert!(refused.is_err_and(|why| why.contains(told)), "{columns}");
         }
     }
 

@@ -5,7 +5,7 @@ use crate::import::mapping::units::{
     HorizontalSense, StatedPlace, StressKind, StressSign, StressUnit, VerticalSense,
 };
 use crate::import::mapping::{Column, Mapping};
-use crate::import::samples::SampleRow;
+use crate::import::samples::{PlaceSet, SampleRow};
 use oedometer_formats::ImportError;
 
 /// Share of the height by which a place may lie outside: round-off of a number in a file.
@@ -57,6 +57,8 @@ pub struct RawRow {
     pub moved: Option<[f64; 2]>,
     /// Hash of what distinguishes it from other rows at its place and time.
     pub others: u64,
+    /// Which places it is of, where quantities have places of their own.
+    pub set: PlaceSet,
 }
 
 /// Whether a place is the requested one, up to the round-off of single precision.
@@ -85,6 +87,7 @@ impl RawRow {
             horizontal_displacement: number(Column::Along)?,
             moved: None,
             others,
+            set: PlaceSet::default(),
         })
     }
 
@@ -141,7 +144,7 @@ impl RawRow {
                  unit, the sign and the origin of `x`, and at whether places are initial or current"
             )));
         }
-        let pore = self.pressure.map(|p| p * stress * compressive(sign.p));
+        let pore = self.pressure.map(|p| (p - mapping.origin.p) * stress * compressive(sign.p));
         let vertical = self.stress.map(|given| -given * stress * compressive(sign.effective_stress));
         let effective = match mapping.stress.is {
             StressKind::Effective => vertical,
@@ -167,6 +170,7 @@ impl RawRow {
             displacement: or_absent(displacement),
             horizontal_displacement: or_absent(horizontal),
             others: self.others,
+            set: self.set,
         })
     }
 }

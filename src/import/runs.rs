@@ -3,16 +3,21 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{Column, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::samples::{SampleRow, SampledState, states_of};
-use crate::import::step_times::{declared_time, join, members, step_of};
-use crate::import::table_rows::{attach_settlement, is_ended, take_rows};
+use crate::import::spelling::spellings;
+use crate::import::step_times::{declared_time, have_steps_in_folders, join, members, step_of};
+use crate::import::table_rows::{Curve, take_rows};
 use oedometer_formats::{
-    Association, Frame, ImportError, Kind, Step, Wanted, collection_of, read_states, steps_of,
+    Array, Association, Axis, Frame, ImportError, Kind, Step, Use, Wanted, collection_of, read_states,
+    states_by_time, steps_of,
 };
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+
+/// Most doubts that are kept of a run.
+const MOST_DOUBTS: usize = 4;
 
 /// The states of one mesh.
 #[derive(Debug, Default)]
@@ -31,6 +36,8 @@ pub struct Run {
     pub expected: Expected,
     /// Tables whose last line does not end: they may be cut inside a number.
     pub unended: Vec<PathBuf>,
+    /// What files say in two ways: a header that does not fit its data.
+    pub doubts: Vec<String>,
     /// Width of a body whose files show it, m.
     pub width: Option<f64>,
     /// Quantities that are left out on purpose.
@@ -48,15 +55,26 @@ pub fn files_of(arguments: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, ImportError>
             return Ok(vec![typed.clone()]);
         }
         let refused = |why: &str| ImportError::content(typed, why);
-        let found = glob::glob(&pattern).map_err(|error| refused(error.msg))?;
+        // Brackets are letters of a name.
+        let escaped = pattern.replace('[', "[[]");
+        let found = glob::glob(&escaped).map_err(|error| refused(error.msg))?;
         let mut files: Vec<PathBuf> = found.flatten().filter(|path| path.is_file()).collect();
         if files.is_empty() {
             return Err(refused("no file matches this pattern"));
         }
+        // `Cycle*/data.pvtu`: the folders count the steps.
         let number = |path: &PathBuf| {
-            step_of(&path.file_name().unwrap_or_default().to_string_lossy(), None).unwrap_or(-1.0)
+            let of = |part: &Path| step_of(&part.file_name().unwrap_or_default().to_string_lossy(), None);
+            [path.parent().and_then(of), of(path)].map(|step| step.unwrap_or(-1.0))
         };
-        files.sort_by(|a, b| a.parent().cmp(&b.parent()).then(number(a).total_cmp(&number(b))));
+        let by_folder = |path: &PathBuf| path.parent().and_then(Path::parent).map(Path::to_owned);
+        files.sort_by(|a, b| {
+            let ([folder, step], [other_folder, other_step]) = (number(a), number(b));
+            (by_folder(a).cmp(&by_folder(b)))
+                .then(folder.total_cmp(&other_folder))
+                .then(a.parent().cmp(&b.parent()))
+                .then(step.total_cmp(&other_step))
+        });
         Ok(files)
     };
     arguments.iter().map(of_argument).collect()
@@ -80,26 +98,38 @@ pub fn are_tables(given: &[Vec<PathBuf>]) -> Result<bool, ImportError> {
 /// # Errors
 /// What cannot be read, with file and line.
 pub fn runs_of(given: &[Vec<PathBuf>], mapping: &Mapping, body: SolvedBody) -> Result<Vec<Run>, ImportError> {
-    if are_tables(given)? {
+    if !are_tables(given)? {
+        runs_of_arrays(given, mapping, body)
+    } else if mapping.has_fields() {
         Ok(vec![run_of_tables(given.concat(), mapping, body)?])
     } else {
-        runs_of_arrays(given, mapping, body)
+        Ok(vec![run_of_curve(given.concat(), mapping, body)?])
     }
 }
 
 fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
     let mut rows = Vec::new();
+    let mut unended = Vec::new();
     for (place, path) in files.iter().enumerate() {
-        take_rows(path, place, mapping, body, &mut rows)?;
+        let is_ended = take_rows(path, place, mapping, body, &mut rows)?;
+        unended.extend((!is_ended).then(|| path.clone()));
     }
     let states = states_of(&rows)?;
-    let mut run = Run { files, expected: Expected::of_states(&states), states, ..Run::default() };
-    for file in &run.files {
-        if !is_ended(file)? {
-            run.unended.push(file.clone());
-        }
-    }
+    let mut run = Run { files, expected: Expected::of_states(&states), states, unended, ..Run::default() };
+    run.note_repeated(rows.len());
     run.attach_settlement(mapping, body)?;
+    Ok(run)
+}
+
+/// A settlement curve alone.
+fn run_of_curve(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
+    let mut run = Run { files, sample: Some(Sample::Surface), ..Run::default() };
+    if let Some(series) = &mapping.settlement {
+        let curve = Curve::read(series, run.files.first().map(PathBuf::as_path), mapping, body)?;
+        run.states = curve.states();
+        run.expected.settlement = true;
+        run.unended.extend((!curve.is_ended).then(|| curve.file.clone()));
+    }
     Ok(run)
 }
 
@@ -111,43 +141,137 @@ fn runs_of_arrays(
     let names = wanted_names(mapping);
     let mut readings: Vec<Reading> = Vec::new();
     let mut joined = HashSet::new();
-    for path in given.iter().flatten() {
-        let mut notes = Vec::new();
-        let mut steps = steps_of(path, &mut notes)?;
-        steps.retain(|step| match &members(&step.file, &mapping.join)[..] {
-            [first, _, ..] => joined.insert(first.clone()),
-            _ => true,
-        });
-        if let Some(table) = steps.iter().find(|step| step.kind == Kind::Table) {
-            let reason = "it is a table among files with arrays: score them separately";
-            return Err(ImportError::content(&table.file, reason));
-        }
-        read_states(&steps, Wanted(&names), &mut |step, mut frame| {
-            join(step, &mapping.join, Wanted(&names), &mut frame)?;
-            let cells = cells_over_height(&frame, mapping, body.height);
-            let key = key_of(step, steps.len() > 1, &frame, cells);
-            let place = readings.iter().position(|one| one.key == key).unwrap_or_else(|| {
-                let run = Run { cells, expected: Expected::promised(mapping), ..Run::default() };
-                readings.push(Reading { key, run, start: None, rows: Vec::new(), steps: 0 });
-                readings.len() - 1
+    for files in given {
+        let are_folders = have_steps_in_folders(files);
+        for path in files {
+            let mut notes = Vec::new();
+            let mut steps = steps_of(path, &mut notes)?;
+            steps.retain(|step| match &members(&step.file, &mapping.join)[..] {
+                [first, _, ..] => joined.insert(first.clone()),
+                _ => true,
             });
-            readings[place].take(step, &frame, mapping, body)?;
-            readings[place].run.notes.append(&mut notes);
-            Ok(())
-        })?;
+            if let Some(table) = steps.iter().find(|step| step.kind == Kind::Table) {
+                let reason = "it is a table among files with arrays: score them separately";
+                return Err(ImportError::content(&table.file, reason));
+            }
+            read_states(&steps, Wanted(&names), &mut |step, mut frame| {
+                join(step, &mapping.join, Wanted(&names), &mut frame)?;
+                each_time(step, &frame, mapping, &mut |time, frame, count| {
+                    let cells = cells_over_height(frame, mapping, body.height);
+                    let is_one_of_many = steps.len() > 1 || count > 1;
+                    let key = key_of(step, is_one_of_many, are_folders, frame, cells);
+                    let place = readings.iter().position(|known| known.key == key).unwrap_or_else(|| {
+                        let run = Run { cells, expected: Expected::promised(mapping), ..Run::default() };
+                        let reading =
+                            Reading { key, are_folders, run, start: None, rows: Vec::new(), steps: 0 };
+                        readings.push(reading);
+                        readings.len() - 1
+                    });
+                    readings[place].take(step, frame, time, mapping, body)?;
+                    readings[place].run.notes.append(&mut notes);
+                    Ok(())
+                })
+            })?;
+        }
     }
     readings.into_iter().map(|reading| reading.done(mapping, body)).collect()
+}
+
+/// Hands over the states of a frame, with their time where its arrays run over times, and how many there are.
+fn each_time(
+    step: &Step,
+    frame: &Frame,
+    mapping: &Mapping,
+    take: &mut dyn FnMut(Option<f64>, &Frame, usize) -> Result<(), ImportError>,
+) -> Result<(), ImportError> {
+    let refused = |why: String| ImportError::content(&step.file, why);
+    let times = times_in(frame, mapping);
+    if times.is_empty() {
+        let names_time = |column: Column| {
+            let spelled = mapping.columns.get(column).into_iter().flat_map(|typed| spellings(typed));
+            spelled.filter_map(|spelled| spelled.axes).any(|axes| axes.contains(&Axis::Time))
+        };
+        if Column::ALL.into_iter().any(names_time) {
+            return Err(refused("its times are not known: name their array as `t` in [columns]".to_owned()));
+        }
+        return take(None, frame, 1);
+    }
+    let used = |array: &Array| use_of(array, frame, mapping);
+    let states = states_by_time(frame, &times, &used).map_err(refused)?;
+    for place in 0..states.count() {
+        if let Some((time, frame)) = states.state(place) {
+            take(Some(time), &frame, states.count())?;
+        }
+    }
+    Ok(())
+}
+
+/// The times over which the arrays of a frame run: those of the array that the mapping names, or of the file's own list.
+fn times_in(frame: &Frame, mapping: &Mapping) -> Vec<f64> {
+    let spelled = mapping.columns.t.as_deref().into_iter().flat_map(spellings);
+    let of_array = |array: &Array, component: Option<usize>| -> Vec<f64> {
+        array
+            .values
+            .iter()
+            .skip(component.unwrap_or(0))
+            .step_by(component.map_or(1, |_| array.components))
+            .copied()
+            .collect()
+    };
+    let named = spelled
+        .filter_map(|spelled| Some((frame.array(spelled.name, spelled.on)?, spelled.component)))
+        .find(|(array, _)| !array.values.is_empty());
+    match named {
+        // Each point of a mesh has the time of its state.
+        Some((array, _)) if array.on != Association::Whole && frame.cells.is_some() => Vec::new(),
+        Some((array, component)) => {
+            let times = of_array(array, component);
+            if times.len() > 1 || !frame.times.is_empty() { times } else { Vec::new() }
+        }
+        None => frame.times.clone(),
+    }
+}
+
+/// How the mapping uses an array, if it does.
+fn use_of(array: &Array, frame: &Frame, mapping: &Mapping) -> Option<Use> {
+    let mut found: Option<Use> = None;
+    let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
+    let columns = Column::ALL.into_iter().filter(|column| *column != Column::Time);
+    let columns =
+        columns.filter_map(|column| Some((mapping.columns.get(column)?, column.quantity().is_some())));
+    let others = id.into_iter().chain(mapping.rows.equals.keys()).map(|typed| (typed, false));
+    for (typed, is_quantity) in columns.chain(others) {
+        // The first alternative that is there is the one that is read.
+        let first = spellings(typed).find(|spelled| frame.array(spelled.name, spelled.on).is_some());
+        let Some(spelled) = first.filter(|spelled| {
+            frame.array(spelled.name, spelled.on).is_some_and(|named| std::ptr::eq(named, array))
+        }) else {
+            continue;
+        };
+        let usage = found.get_or_insert_default();
+        usage.is_quantity |= is_quantity;
+        usage.has_component |= spelled.component.is_some();
+        usage.axes = usage.axes.take().or(spelled.axes);
+    }
+    found
 }
 
 /// What distinguishes runs: folder, file name, cells over the height, points.
 type Key = (PathBuf, String, Option<usize>, usize);
 
-/// The key of a state's run. Of files with one state each, the name counts without its numbers.
-fn key_of(step: &Step, is_one_of_many: bool, frame: &Frame, cells: Option<usize>) -> Key {
+/// The key of a state's run. Of files with one state each, the name counts without its numbers, and where the folders are
+/// the steps, these too.
+fn key_of(step: &Step, is_one_of_many: bool, are_folders: bool, frame: &Frame, cells: Option<usize>) -> Key {
     let file = step.named.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_one_of_many { file.into_owned() } else { without_numbers(&file) };
     let points = if cells.is_some() { 0 } else { frame.coordinates.len() };
-    (step.named.parent().unwrap_or(Path::new("")).to_owned(), name, cells, points)
+    let folder = step.named.parent().unwrap_or(Path::new(""));
+    let folder = if are_folders {
+        folder.with_file_name(without_numbers(&folder.file_name().unwrap_or_default().to_string_lossy()))
+    } else {
+        folder.to_owned()
+    };
+    (folder, name, cells, points)
 }
 
 /// A name with each number replaced by one `#`.
@@ -162,6 +286,8 @@ fn without_numbers(name: &str) -> String {
 /// A run that is being read.
 struct Reading {
     key: Key,
+    /// Whether folders count the steps.
+    are_folders: bool,
     run: Run,
     start: Option<Start>,
     rows: Vec<SampleRow>,
@@ -174,16 +300,19 @@ impl Reading {
         &mut self,
         step: &Step,
         frame: &Frame,
+        listed: Option<f64>,
         mapping: &Mapping,
         body: SolvedBody,
     ) -> Result<(), ImportError> {
         let columns = FrameRows::find(frame, &step.file, mapping, body)?;
-        let (time, from) = self.time_of(step, frame, &columns, mapping, body)?;
+        let beside = columns.beside()?;
+        let (time, from) = self.time_of(step, frame, listed, &columns, mapping, body)?;
         if self.steps == 0 {
             let cells =
                 self.run.cells.map_or(String::new(), |cells| format!("; {cells} cells over the height"));
             let note = |note: &String| format!("{note}; time from {from}{cells}");
-            self.run.notes.extend(columns.notes.iter().map(note));
+            let notes = columns.notes.iter().chain(beside.iter().flat_map(|beside| &beside.notes));
+            self.run.notes.extend(notes.map(note));
             self.run.sample = Some(match (columns.on, &frame.cells) {
                 (Association::Cells, _) => Sample::Centres,
                 (_, Some(cells)) if cells.dimension() > 0 => Sample::Nodes,
@@ -197,8 +326,16 @@ impl Reading {
             self.start = mapping.displacement.is_some().then(|| columns.start());
         }
         self.run.notes.extend(frame.notes.iter().cloned());
-        self.run.expected.add(columns.columns());
-        columns.take_rows(time, self.start.as_ref(), &mut self.rows)?;
+        for doubt in &frame.doubts {
+            let told = format!("{}: {doubt}", step.file.display());
+            if self.run.doubts.len() < MOST_DOUBTS {
+                self.run.doubts.push(told);
+            }
+        }
+        for columns in std::iter::once(&columns).chain(&beside) {
+            self.run.expected.add(columns.columns());
+            columns.take_rows(time, self.start.as_ref(), &mut self.rows)?;
+        }
         if !self.run.files.contains(&step.named) {
             self.run.files.push(step.named.clone());
         }
@@ -211,16 +348,22 @@ impl Reading {
         &self,
         step: &Step,
         frame: &Frame,
+        listed: Option<f64>,
         columns: &FrameRows,
         mapping: &Mapping,
         body: SolvedBody,
     ) -> Result<(f64, String), ImportError> {
         let refused = |why: String| ImportError::content(&step.file, why);
-        let declared = declared_time(&step.file, self.steps, mapping, body).map_err(refused)?;
+        let named = if self.are_folders { step.named.as_path() } else { step.file.as_path() };
+        let declared = declared_time(named, self.steps, self.are_folders, mapping, body).map_err(refused)?;
         if let Some(seconds) = declared {
             return Ok((seconds, "the mapping's [time] or --set-time-step".to_owned()));
         }
-        let of_array = columns.time_of_array()?.map(|time| (time, "an array of the file".to_owned()));
+        let of_array = match listed {
+            Some(time) => Some(time),
+            None => columns.time_of_array()?,
+        };
+        let of_array = of_array.map(|time| (time, "an array of the file".to_owned()));
         let of_step = || step.time.map(|time| (time, step.named.display().to_string()));
         let of_file = || frame.time.map(|time| (time, "the file".to_owned()));
         let (time, from) = of_array.or_else(of_step).or_else(of_file).ok_or_else(|| {
@@ -244,11 +387,14 @@ impl Reading {
     fn done(self, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
         let Self { mut run, start, rows, .. } = self;
         run.states = states_of(&rows)?;
+        run.note_repeated(rows.len());
         drop(rows);
         if start.is_some() && run.states.len() < 2 {
             for state in &mut run.states {
-                state.displacement.clear();
-                state.horizontal_displacement.clear();
+                state.change(&|state| {
+                    state.displacement.clear();
+                    state.horizontal_displacement.clear();
+                });
             }
             let note = "a single state has no displacement: give the first state too, from which it counts";
             run.notes.push(note.to_owned());
@@ -274,7 +420,7 @@ impl Run {
     pub fn leave_out(&mut self, quantities: &[Quantity]) {
         for quantity in quantities {
             for state in &mut self.states {
-                match quantity {
+                state.change(&|state| match quantity {
                     Quantity::Pressure => state.pressure.clear(),
                     Quantity::EffectiveStress => state.effective_stress.clear(),
                     Quantity::Displacement => {
@@ -283,25 +429,40 @@ impl Run {
                     }
                     Quantity::Settlement => state.surface_displacement = None,
                     Quantity::LoadFactor => {}
-                }
+                });
             }
             self.expected.leave_out(*quantity);
         }
         self.without.extend(quantities);
     }
 
+    /// Notes how many rows repeat another one with equal values; they count once.
+    fn note_repeated(&mut self, rows: usize) {
+        let kept = self.states.iter().flat_map(|state| state.sets(Sample::Points));
+        let kept: usize = kept.map(|(_, state)| state.initial_height.len()).sum();
+        if kept < rows {
+            let note = format!(
+                "{} of {rows} rows repeat the place and the values of another and count once",
+                rows - kept
+            );
+            self.notes.push(note);
+        }
+    }
+
     /// Adds the settlement curve, if the mapping names a file for it.
     fn attach_settlement(&mut self, mapping: &Mapping, body: SolvedBody) -> Result<(), ImportError> {
         let Some(series) = &mapping.settlement else { return Ok(()) };
-        let folder = self.files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
-        let (matched, file) = attach_settlement(series, folder, &mut self.states, mapping, body)?;
-        self.unended.extend((!is_ended(&file)?).then_some(file));
+        let curve = Curve::read(series, self.files.first().map(PathBuf::as_path), mapping, body)?;
+        let matched = curve.attach(&mut self.states);
+        let file = curve.file;
+        let is_told = curve.is_ended || self.unended.contains(&file);
         self.expected.settlement = matched > 0;
         self.notes.push(format!(
             "settlement from {} at {matched} of {} times, the nearest within 0.1 % each",
-            series.file,
+            if series.file.is_empty() { file.display().to_string() } else { series.file.clone() },
             self.states.len()
         ));
+        self.unended.extend((!is_told).then_some(file));
         Ok(())
     }
 }
@@ -328,7 +489,7 @@ mod tests {
 
     fn reading() -> Reading {
         let key = (PathBuf::new(), String::new(), None, 0);
-        Reading { key, run: Run::default(), start: None, rows: Vec::new(), steps: 0 }
+        Reading { key, are_folders: false, run: Run::default(), start: None, rows: Vec::new(), steps: 0 }
     }
 
     const BODY: SolvedBody = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
@@ -350,6 +511,7 @@ mod tests {
                         displacement: f64::NAN,
                         horizontal_displacement: f64::NAN,
                         others: 0,
+                        set: (0, None),
                     }
                 }));
             }
@@ -365,7 +527,8 @@ mod tests {
         let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
         let mapping = Mapping { optional: vec!["u_y".to_owned()], ..mapping };
         let file = PathBuf::from("a.vtu");
-        let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
+        let step =
+            Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None, others: Vec::new() };
         for lacking in 0..3_usize {
             let mut reading = reading();
             for place in 0..3_usize {
@@ -375,6 +538,7 @@ mod tests {
                     components: 1,
                     tuples: 2,
                     values: vec![1.0, 0.5],
+                    shape: Vec::new(),
                 };
                 let names = if place == lacking { &["p"][..] } else { &["p", "u"] };
                 let frame = Frame {
@@ -383,7 +547,7 @@ mod tests {
                     arrays: names.iter().map(|name| array(name)).collect(),
                     ..Frame::default()
                 };
-                reading.take(&step, &frame, &mapping, BODY).expect("a state");
+                reading.take(&step, &frame, None, &mapping, BODY).expect("a state");
             }
             let run = reading.done(&mapping, BODY).expect("three states");
             let absent = run.expected.absent(&run.states);
@@ -399,7 +563,8 @@ mod tests {
         let source = StudySource { name: "m.toml".to_owned(), text: text.to_owned() };
         let mapping = Mapping::read(&source).expect("a mapping");
         let file = PathBuf::from("a.vtu");
-        let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
+        let step =
+            Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None, others: Vec::new() };
         let mut reading = reading();
         for (time, [along, up]) in [(1.0, [0.0, 0.0]), (2.0, [0.02, -0.01])] {
             let frame = Frame {
@@ -411,10 +576,11 @@ mod tests {
                     components: 1,
                     tuples: 1,
                     values: vec![1.0],
+                    shape: Vec::new(),
                 }],
                 ..Frame::default()
             };
-            reading.take(&step, &frame, &mapping, BODY).expect("a state");
+            reading.take(&step, &frame, None, &mapping, BODY).expect("a state");
         }
         let last = reading.done(&mapping, BODY).expect("two states").states.remove(1);
         let found =
@@ -493,8 +659,9 @@ mod tests {
     fn states_of_one_file_belong_together_by_its_whole_name() {
         let key = |name: &str, is_one_of_many| {
             let file = PathBuf::from(name);
-            let step = Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None };
-            key_of(&step, is_one_of_many, &Frame::default(), Some(4))
+            let step =
+                Step { named: file.clone(), file, kind: Kind::Vtu, place: 0, time: None, others: Vec::new() };
+            key_of(&step, is_one_of_many, false, &Frame::default(), Some(4))
         };
         assert_eq!(key("run-10.xdmf", false), key("run-20.xdmf", false));
         assert_ne!(key("run-10.xdmf", true), key("run-20.xdmf", true), "each of them is a series");
@@ -512,6 +679,7 @@ mod tests {
             components: 1,
             tuples: 1,
             values: vec![value],
+            shape: Vec::new(),
         };
         for (declared, of_array, of_step, of_file, wanted) in [
             ("list = [2.0]", Some(3.0), Some(5.0), Some(11.0), Some((120.0, "mapping"))),
@@ -537,12 +705,13 @@ mod tests {
                 kind: Kind::Vtu,
                 place: 0,
                 time: of_step,
+                others: Vec::new(),
             };
             let mut arrays = vec![array("p", Association::Points, 1.0)];
             arrays.extend(of_array.map(|time| array("TIME", Association::Whole, time)));
             let frame = Frame { time: of_file, coordinates: vec![[0.0; 3]], arrays, ..Frame::default() };
             let columns = FrameRows::find(&frame, &file, &mapping, BODY).expect("its columns");
-            let found = reading().time_of(&step, &frame, &columns, &mapping, BODY);
+            let found = reading().time_of(&step, &frame, None, &columns, &mapping, BODY);
             match wanted {
                 None => {
                     let nowhere = "its time is given nowhere: score the .pvd or .series that lists it, give --set-time-step \

@@ -8,13 +8,24 @@ use oedometer_formats::{Frame, ImportError, Step, Wanted, read_states, steps_of}
 use regex_lite::{Captures, Regex, escape};
 use std::path::{Path, PathBuf};
 
-/// The time that the mapping declares for a file, s; `place` counts the files of a run.
+/// Whether the folders of files count the steps: `Cycle000001/data.pvtu`, `Cycle000002/data.pvtu`.
+pub fn have_steps_in_folders(files: &[PathBuf]) -> bool {
+    let parent = |path: &PathBuf| path.parent().map(Path::to_owned);
+    files.len() > 1
+        && files
+            .windows(2)
+            .all(|pair| pair[0].file_name() == pair[1].file_name() && parent(&pair[0]) != parent(&pair[1]))
+}
+
+/// The time that the mapping declares for a file, s; `place` counts the files of a run, and `are_folders` says whether their
+/// folders count the steps.
 ///
 /// # Errors
 /// When the list of times is too short, or the name has no number of a step.
 pub fn declared_time(
     path: &Path,
     place: usize,
+    are_folders: bool,
     mapping: &Mapping,
     body: SolvedBody,
 ) -> Result<Option<f64>, String> {
@@ -32,7 +43,19 @@ pub fn declared_time(
         return Ok(Some(seconds(*given)));
     }
     let Some(step) = time.step else { return Ok(None) };
-    let number = step_of(&name, time.pattern.as_deref());
+    let number = match &time.pattern {
+        // So many parts of the path as the pattern has.
+        Some(pattern) if pattern.contains('/') => {
+            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            let from = parts.len().saturating_sub(pattern.matches('/').count() + 1);
+            step_of(&parts[from..].join("/"), Some(pattern))
+        }
+        None if are_folders => {
+            let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
+            step_of(&folder.to_string_lossy(), None)
+        }
+        pattern => step_of(&name, pattern.as_deref()),
+    };
     let number = number.ok_or_else(|| match &time.pattern {
         Some(pattern) => format!("its name does not match the pattern `{pattern}` of [time]"),
         None => "its name has no number of a step".to_owned(),
@@ -152,7 +175,7 @@ mod tests {
         let source = crate::study::file::StudySource { name: "m.toml".to_owned(), text };
         let mapping = Mapping::read(&source).expect("a mapping");
         let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 250.0 };
-        declared_time(Path::new("folder").join(name).as_path(), place, &mapping, body)
+        declared_time(Path::new("folder").join(name).as_path(), place, false, &mapping, body)
     }
 
     #[test]

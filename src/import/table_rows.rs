@@ -1,15 +1,15 @@
 //! Reads text tables by their declared layout as rows in SI.
 
+use crate::import::csv_text::{CsvText, number_of};
 use crate::import::expected::left_out;
 use crate::import::mapping::units::{SettlementSeries, VerticalSense};
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::samples::{SampleRow, SampledState};
 use crate::import::step_times::declared_time;
-use oedometer_formats::{ImportError, excerpt, input_file};
-use std::fs::File;
+use oedometer_formats::{ImportError, excerpt};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// Names of columns that a message lists.
@@ -21,21 +21,35 @@ const NEAR: f64 = 1e-3;
 struct Table<'a> {
     path: &'a Path,
     header: csv::StringRecord,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<Cursor<Vec<u8>>>,
     line: csv::StringRecord,
+    has_decimal_comma: bool,
+    is_ended: bool,
 }
 
 impl<'a> Table<'a> {
     fn open(path: &'a Path, layout: &TableLayout) -> Result<Self, ImportError> {
-        let file = input_file::open(path).map_err(ImportError::io(path))?;
-        let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b',');
+        let CsvText { text, delimiter, has_decimal_comma, names, is_ended } = CsvText::read(path, layout)?;
+        let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b'#');
         let mut reader = csv::ReaderBuilder::new()
-            .delimiter(as_byte(layout.delimiter))
+            .delimiter(delimiter)
             .comment(layout.comment.map(as_byte))
             .trim(csv::Trim::All)
-            .from_reader(file);
-        let header = reader.headers().map_err(|error| ImportError::content(path, error.to_string()))?.clone();
-        Ok(Self { path, header, reader, line: csv::StringRecord::new() })
+            .has_headers(names.is_none())
+            .from_reader(Cursor::new(text));
+        let header = match names {
+            Some(names) => csv::StringRecord::from(names),
+            None => {
+                let header = reader.headers();
+                header.map_err(|error| ImportError::content(path, error.to_string()))?.clone()
+            }
+        };
+        Ok(Self { path, header, reader, line: csv::StringRecord::new(), has_decimal_comma, is_ended })
+    }
+
+    /// The place of the first of several names, separated by `|`, that is a column.
+    fn place_of(&self, typed: &str) -> Option<usize> {
+        self.place(typed).or_else(|| typed.split('|').find_map(|name| self.place(name.trim())))
     }
 
     fn place(&self, name: &str) -> Option<usize> {
@@ -44,7 +58,7 @@ impl<'a> Table<'a> {
 
     /// The place of a column that must be there; `what` ends the sentence about one that is missing.
     fn find(&self, name: &str, what: &str) -> Result<usize, ImportError> {
-        self.place(name).ok_or_else(|| {
+        self.place_of(name).ok_or_else(|| {
             let names = self.header.iter().take(MOST_NAMES).map(|column| format!("`{}`", excerpt(column)));
             let more = self.header.len().saturating_sub(MOST_NAMES);
             let more = (more > 0).then(|| format!("and {more} more"));
@@ -70,7 +84,8 @@ impl<'a> Table<'a> {
     /// The number in a column of the line.
     fn number(&self, place: usize) -> Result<f64, ImportError> {
         let typed = self.line.get(place).unwrap_or_default();
-        typed.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+        let number = number_of(typed, self.has_decimal_comma);
+        number.filter(|number| number.is_finite()).ok_or_else(|| {
             let column = excerpt(self.header.get(place).unwrap_or_default());
             let typed = excerpt(typed);
             self.error_in_line(format!(
@@ -87,6 +102,33 @@ struct Places {
     equals: Vec<(usize, f64)>,
     /// Columns whose meaning is not declared: they distinguish rows.
     others: Vec<usize>,
+    /// Quantities with one column per height.
+    wide: Vec<Wide>,
+}
+
+/// Quantities with one column per height, at the same heights.
+struct Wide {
+    heights: Vec<f64>,
+    /// The column of each height, for each quantity.
+    quantities: Vec<(Column, Vec<usize>)>,
+}
+
+impl Wide {
+    /// Those of a mapping; quantities with the same heights are together.
+    fn of(table: &Table, mapping: &Mapping) -> Result<Vec<Self>, ImportError> {
+        let mut sets: Vec<Self> = Vec::new();
+        for (column, named) in mapping.columns.wide() {
+            let what = format!(" for `{}`", column.name());
+            let places = named.iter().map(|(name, _)| table.find(name, &what));
+            let places = places.collect::<Result<Vec<usize>, ImportError>>()?;
+            let heights: Vec<f64> = named.iter().map(|(_, height)| *height).collect();
+            match sets.iter_mut().find(|set| set.heights == heights) {
+                Some(set) => set.quantities.push((column, places)),
+                None => sets.push(Self { heights, quantities: vec![(column, places)] }),
+            }
+        }
+        Ok(sets)
+    }
 }
 
 impl Places {
@@ -96,7 +138,7 @@ impl Places {
         }
         let find = |column: Column, name: &String| {
             if mapping.optional.iter().any(|optional| optional == column.name()) {
-                return Ok(table.place(name));
+                return Ok(table.place_of(name));
             }
             let what = match (column, column.quantity()) {
                 (Column::X, _) if mapping.declared_by == DeclaredBy::Convention => {
@@ -104,19 +146,27 @@ impl Places {
                      m, to a column `x`, or name another one with --mapping"
                         .to_owned()
                 }
+                (Column::Y, _) => {
+                    " (the heights of the rows; a settlement curve alone is named by [settlement], with `p` and `u_y` empty in \
+                     [columns])"
+                        .to_owned()
+                }
                 (_, Some(quantity)) => format!(" (to leave it out, {})", left_out(column, quantity)),
                 _ => String::new(),
             };
             table.find(name, &what).map(Some)
         };
+        let wide = Wide::of(table, mapping)?;
         let mut columns = [None; Column::ALL.len()];
         for column in Column::ALL {
-            columns[column as usize] =
-                mapping.columns.get(column).map(|name| find(column, name)).transpose()?.flatten();
+            // The heights of columns are in the mapping.
+            let is_there = column != Column::Y || wide.is_empty();
+            let name = mapping.columns.get(column).filter(|_| is_there);
+            columns[column as usize] = name.map(|name| find(column, name)).transpose()?.flatten();
         }
         let equals = mapping.rows.equals.iter().map(|(name, value)| Ok((table.find(name, "")?, *value)));
         let others = (0..table.header.len()).filter(|place| !columns.contains(&Some(*place))).collect();
-        Ok(Self { columns, equals: equals.collect::<Result<_, ImportError>>()?, others })
+        Ok(Self { columns, equals: equals.collect::<Result<_, ImportError>>()?, others, wide })
     }
 
     /// Whether the line of a table counts.
@@ -133,7 +183,8 @@ impl Places {
     }
 }
 
-/// Adds the rows of a table; `place` counts the files of a run.
+/// Adds the rows of a table; `place` counts the files of a run. Returns whether its last line ends: a table that is cut
+/// inside its last number still reads as a table, with another number.
 ///
 /// # Errors
 /// What cannot be read, is not a number or lies outside the body, with its line.
@@ -143,12 +194,12 @@ pub fn take_rows(
     mapping: &Mapping,
     body: SolvedBody,
     rows: &mut Vec<SampleRow>,
-) -> Result<(), ImportError> {
+) -> Result<bool, ImportError> {
     let mut table = Table::open(path, &mapping.csv)?;
     let places = Places::of(&table, mapping)?;
     let time_column = places.columns[Column::Time as usize];
     let time_of_file =
-        if time_column.is_none() { declared_time(path, place, mapping, body) } else { Ok(None) };
+        if time_column.is_none() { declared_time(path, place, false, mapping, body) } else { Ok(None) };
     let time_of_file = time_of_file.map_err(|why| table.error(why))?;
     if time_column.or(time_of_file.map(|_| 0)).is_none() {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -167,6 +218,10 @@ pub fn take_rows(
             Ok(mapping.units.time.seconds(time, body.seconds_per_time_factor))
         };
         let seconds = time_of_file.map_or_else(of_line, Ok)?;
+        if !places.wide.is_empty() {
+            take_wide(&table, &places.wide, seconds, mapping, body, rows)?;
+            continue;
+        }
         let mut others = DefaultHasher::new();
         for place in &places.others {
             table.line.get(*place).hash(&mut others);
@@ -176,60 +231,111 @@ pub fn take_rows(
         })?;
         rows.push(row.sample(mapping, body, &|reason| table.error_in_line(reason))?);
     }
-    if rows.len() == before { Err(table.error("there are no rows".to_owned())) } else { Ok(()) }
+    if rows.len() == before { Err(table.error("there are no rows".to_owned())) } else { Ok(table.is_ended) }
 }
 
-/// Gives each state the surface displacement at the nearest time of a settlement curve; returns how many states got one,
-/// and the file of the curve.
-///
-/// # Errors
-/// What cannot be read or is not a number.
-pub fn attach_settlement(
-    series: &SettlementSeries,
-    folder: &Path,
-    states: &mut [SampledState],
+/// Adds the rows of a line with one column per height.
+fn take_wide(
+    table: &Table,
+    sets: &[Wide],
+    seconds: f64,
     mapping: &Mapping,
     body: SolvedBody,
-) -> Result<(usize, PathBuf), ImportError> {
-    let beside = folder.join(&series.file);
-    let path = if beside.is_file() { beside } else { Path::new(&series.file).to_owned() };
-    let mut table = Table::open(&path, &mapping.csv)?;
-    let place = |name| table.find(name, " of the settlement curve");
-    let (time, settlement) = (place(&series.t)?, place(&series.s)?);
-    let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
-    let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
-    let mut curve = Vec::new();
-    while table.next()? {
-        let seconds = mapping.units.time.seconds(table.number(time)?, body.seconds_per_time_factor);
-        curve.push((seconds, table.number(settlement)? * upward));
+    rows: &mut Vec<SampleRow>,
+) -> Result<(), ImportError> {
+    for (number, set) in (0_u8..).zip(sets) {
+        for (place, height) in set.heights.iter().enumerate() {
+            let of = |column: Column| {
+                let places = set.quantities.iter().find(|(known, _)| *known == column);
+                places.map(|(_, places)| table.number(places[place])).transpose()
+            };
+            let row = RawRow {
+                time: seconds,
+                y: *height,
+                pressure: of(Column::Pressure)?,
+                stress: of(Column::EffectiveStress)?,
+                displacement: of(Column::Up)?,
+                horizontal_displacement: of(Column::Along)?,
+                set: (number, None),
+                ..RawRow::default()
+            };
+            rows.push(row.sample(mapping, body, &|reason| table.error_in_line(reason))?);
+        }
     }
-    let mut matched = 0;
-    for state in states {
-        let off = |point: &&(f64, f64)| (point.0 - state.time).abs();
-        let nearest = curve.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-        state.surface_displacement =
-            nearest.filter(|point| off(point) <= NEAR * state.time).map(|(_, displacement)| *displacement);
-        matched += usize::from(state.surface_displacement.is_some());
-    }
-    Ok((matched, path))
+    Ok(())
 }
 
-/// Whether the last line of a table ends. A table that is cut inside its last number still reads as a table, with another
-/// number.
-///
-/// # Errors
-/// When it cannot be read.
-pub fn is_ended(path: &Path) -> Result<bool, ImportError> {
-    let last = || {
-        let mut file = input_file::open(path)?;
-        if file.metadata()?.len() == 0 {
-            return Ok(b'\n');
+/// A settlement curve: times, s, with the displacement of the surface, m.
+pub struct Curve {
+    points: Vec<(f64, f64)>,
+    /// Its file.
+    pub file: PathBuf,
+    /// Whether the last line of the file ends.
+    pub is_ended: bool,
+}
+
+impl Curve {
+    /// Reads the curve that a mapping names, beside the results, in the current folder, or in the result itself.
+    ///
+    /// # Errors
+    /// What cannot be read or is not a number.
+    pub fn read(
+        series: &SettlementSeries,
+        result: Option<&Path>,
+        mapping: &Mapping,
+        body: SolvedBody,
+    ) -> Result<Self, ImportError> {
+        let folder = result.and_then(Path::parent).unwrap_or(Path::new(""));
+        let beside = folder.join(&series.file);
+        let file = match result {
+            Some(result) if series.file.is_empty() => result.to_owned(),
+            _ if beside.is_file() => beside,
+            _ => Path::new(&series.file).to_owned(),
+        };
+        let mut table = Table::open(&file, &mapping.csv)?;
+        let place = |name| table.find(name, " of the settlement curve");
+        let (time, settlement) = (place(&series.t)?, place(&series.s)?);
+        let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
+        let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
+        let mut points = Vec::new();
+        while table.next()? {
+            let seconds = mapping.units.time.seconds(table.number(time)?, body.seconds_per_time_factor);
+            if seconds < 0.0 {
+                return Err(table.error_in_line("the time is negative".to_owned()));
+            }
+            points.push((seconds, table.number(settlement)? * upward));
         }
-        let mut last = [0];
-        file.seek(SeekFrom::End(-1))?;
-        file.read_exact(&mut last).map(|()| last[0])
-    };
-    Ok([b'\n', b'\r'].contains(&last().map_err(ImportError::io(path))?))
+        if points.is_empty() {
+            return Err(table.error("there are no rows".to_owned()));
+        }
+        let is_ended = table.is_ended;
+        Ok(Self { points, file, is_ended })
+    }
+
+    /// Gives each state the displacement of the surface at the nearest time of the curve; returns how many states got one.
+    pub fn attach(&self, states: &mut [SampledState]) -> usize {
+        let mut matched = 0;
+        for state in states {
+            let off = |point: &&(f64, f64)| (point.0 - state.time).abs();
+            let nearest = self.points.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+            let near = nearest.filter(|point| off(point) <= NEAR * state.time);
+            state.surface_displacement = near.map(|(_, displacement)| *displacement);
+            matched += usize::from(state.surface_displacement.is_some());
+        }
+        matched
+    }
+
+    /// The states of a result that is nothing but the curve, by time.
+    pub fn states(&self) -> Vec<SampledState> {
+        let mut points = self.points.clone();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let state = |(time, displacement): (f64, f64)| SampledState {
+            time,
+            surface_displacement: Some(displacement),
+            ..SampledState::default()
+        };
+        points.into_iter().map(state).collect()
+    }
 }
 
 /// A sentence about a table whose last line does not end.

@@ -1,8 +1,8 @@
 //! Tables from the file to their states: units, signs, places, and mistakes with their line.
 
 use super::SampledState;
-use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
+use crate::import::mapping::{Mapping, TableLayout};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::runs_of;
 use crate::study::file::StudySource;
@@ -93,9 +93,14 @@ fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
 
 #[test]
 fn a_repeated_row_is_told_from_a_second_column_of_samples() {
-    let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
-    let states = states(CONVENTION, text).expect("rows");
-    assert_eq!(states[0].repeated, 1, "rows 1 and 2 differ in a column without meaning");
+    let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,4,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
+    let state = &states(CONVENTION, text).expect("rows")[0];
+    assert_eq!(state.repeated, 1, "rows 1 and 2 differ in a column without meaning");
+    assert_eq!(
+        (state.pressure.len(), state.repeated_at.map(|at| at[0])),
+        (4, Some(0.5)),
+        "equal values count once"
+    );
 }
 
 #[test]
@@ -205,21 +210,20 @@ fn a_table_ends_with_a_line_break_of_any_kind_or_has_nothing() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("a.csv");
     for (text, is_ended) in [
-        ("", true),
-        ("1\n", true),
-        ("1\r\n", true),
-        ("1\r", true),
-        ("1", false),
-        ("1\n2", false),
-        ("1 ", false),
+        ("t,y\n1,2\n", true),
+        ("t,y\r\n1,2\r\n", true),
+        ("t,y\r1,2\r", true),
+        ("t,y\n1,2", false),
+        ("t,y\n1,2 ", false),
+        ("t y\n1 2", false),
     ] {
         std::fs::write(&path, text).expect("a file");
-        assert_eq!(super::table_rows::is_ended(&path).ok(), Some(is_ended), "{text:?}");
+        let read = crate::import::csv_text::CsvText::read(&path, &TableLayout::default()).expect("a table");
+        assert_eq!(read.is_ended, is_ended, "{text:?}");
     }
     let what =
         "does not end with a line break, so it may be cut inside its last number: end the last line with one";
     assert_eq!(super::not_ended(&path), format!("{} {what}", path.display()));
-    assert!(super::table_rows::is_ended(folder.path()).is_err());
 }
 
 #[test]

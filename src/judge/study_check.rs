@@ -287,8 +287,7 @@ fn state_of(snapshot: &Snapshot, record: &Record) -> SampledState {
         effective_stress: samples.effective_stress.clone(),
         displacement: samples.displacement.clone(),
         horizontal_displacement: plane.horizontal_displacement,
-        surface_displacement: None,
-        repeated: 0,
+        ..SampledState::default()
     }
 }
 

@@ -11,6 +11,7 @@ mod distinct;
 mod ends;
 mod escapes;
 mod every_command;
+mod files;
 mod first_hour;
 mod foreign;
 mod gate;

@@ -10,7 +10,7 @@ const ANY_FILE: u64 = 256 << 20;
 const PER_BYTE: u64 = 64;
 
 /// Memory that a file may still take: a small file that claims much is refused before anything is allocated.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Budget {
     left: u64,
 }

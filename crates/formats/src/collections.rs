@@ -11,9 +11,12 @@ const MOST_ENTRIES: usize = 10_000;
 /// Largest collection that is searched for a file name, bytes.
 const LARGEST: u64 = 1 << 20;
 /// Extensions of files that list others, the preferred first.
-const COLLECTIONS: [&str; 3] = ["pvd", "series", "xdmf"];
+const COLLECTIONS: [&str; 4] = ["pvd", "series", "xdmf", "pvtu"];
 /// Extensions of files with one state each.
-const STATES: [&str; 8] = ["vtu", "vtk", "vtp", "npz", "npy", "h5", "hdf5", "csv"];
+const STATES: [&str; 12] =
+    ["vtu", "vtk", "vtp", "npz", "npy", "h5", "hdf5", "vtkhdf", "e", "nc", "msh", "csv"];
+/// Files of a folder that ADIOS2 writes as one file.
+const ADIOS2: [&str; 3] = ["md.idx", "md.0", "data.0"];
 
 /// A file of a collection and its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +25,8 @@ pub(crate) struct Member {
     pub file: PathBuf,
     /// Its time, in the unit of the program that wrote it.
     pub time: Option<f64>,
+    /// Which part of a state it is.
+    pub part: String,
 }
 
 /// A series as `ParaView` writes and reads it.
@@ -44,7 +49,8 @@ pub(crate) fn of_pvd(path: &Path, text: &str) -> Result<Vec<Member>, String> {
             "" => None,
             typed => Some(time_of(typed)?),
         };
-        Ok(Member { file: beside(path, attribute(set, "file")), time })
+        let part = attribute(set, "part").to_owned();
+        Ok(Member { file: beside(path, attribute(set, "file")), time, part })
     };
     all(document.root(), "DataSet").map(member).collect()
 }
@@ -56,11 +62,22 @@ pub(crate) fn of_blocks(path: &Path, text: &str) -> Result<Vec<PathBuf>, String>
     Ok(files.filter(|file| !file.is_empty()).map(|file| beside(path, file)).collect())
 }
 
+/// Files of the pieces of a `.pvtu` or `.pvtp`.
+pub(crate) fn of_pieces(path: &Path, text: &str) -> Result<Vec<PathBuf>, String> {
+    let document = parse(text)?;
+    let files = all(document.root(), "Piece").map(|piece| attribute(piece, "Source"));
+    Ok(files.filter(|file| !file.is_empty()).map(|file| beside(path, file)).collect())
+}
+
 /// Files of a series.
 pub(crate) fn of_series(path: &Path, text: &str) -> Result<Vec<Member>, String> {
     let series: Series =
         serde_json::from_str(text).map_err(|error| format!("it is not a series of files: {error}"))?;
-    let member = |one: SeriesFile| Member { file: beside(path, &one.name), time: Some(one.time) };
+    let member = |listed: SeriesFile| Member {
+        file: beside(path, &listed.name),
+        time: Some(listed.time),
+        part: String::new(),
+    };
     Ok(series.files.into_iter().map(member).collect())
 }
 
@@ -78,6 +95,10 @@ pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
 /// A sentence for a folder that was given instead of its files.
 pub(crate) fn of_folder(folder: &Path) -> String {
     let files = files_of(folder);
+    if ADIOS2.iter().any(|name| folder.join(name).is_file()) || ends_with(folder, "bp") {
+        return "it is a file of ADIOS2, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU (dolfinx.io.VTKFile)"
+            .to_owned();
+    }
     let first = |endings: &[&'static str]| {
         let of = |ending: &&'static str| Some((*ending, files.iter().find(|file| ends_with(file, ending))?));
         endings.iter().find_map(of)
@@ -135,7 +156,10 @@ mod tests {
         let pvd = r#"<VTKFile type="Collection"><Collection><DataSet timestep="4.5" part="" file="a.vtu"/>
             <DataSet file="b.vtu"/></Collection></VTKFile>"#;
         let members = of_pvd(Path::new("in/col.pvd"), pvd).expect("a collection");
-        assert_eq!(members[0], Member { file: PathBuf::from("in/a.vtu"), time: Some(4.5) });
+        assert_eq!(
+            members[0],
+            Member { file: PathBuf::from("in/a.vtu"), time: Some(4.5), part: String::new() }
+        );
         assert_eq!(members[1].time, None);
         let series = r#"{"file-series-version":"1.0","files":[{"name":"c.vtm","time":1e0}]}"#;
         assert_eq!(of_series(Path::new("s"), series).expect("a series")[0].time, Some(1.0));

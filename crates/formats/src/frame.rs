@@ -1,6 +1,17 @@
 //! The form that every format is read into: points, cells, and named arrays on them.
 
+use crate::bytes::whole;
+use crate::cells::Cells;
 use std::collections::BTreeSet;
+
+/// Arrays that mark points and cells of another piece, or hidden ones.
+const GHOSTS: [&str; 2] = ["vtkGhostType", "vtkGhostLevels"];
+/// Arrays of the places of points, where the format does not say which they are.
+pub(crate) const PLACES: [&str; 5] = ["geometry", "coordinates", "points", "nodes", "vertices"];
+/// Bits of `vtkGhostType` that hide a point: duplicate, hidden.
+const HIDDEN_POINT: u8 = 1 | 2;
+/// Bits of `vtkGhostType` that hide a cell: duplicate, refined, hidden.
+const HIDDEN_CELL: u8 = 1 | 8 | 32;
 
 /// What an array belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,90 +48,30 @@ pub struct Array {
     pub tuples: usize,
     /// `[tuple][component]`; empty if the array was not asked for.
     pub values: Vec<f64>,
+    /// Lengths of its axes, if the file has more to say of them than tuples and components.
+    pub shape: Vec<usize>,
 }
 
-/// Cells as lists of points.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cells {
-    /// Type of each cell, as VTK numbers them.
-    pub types: Vec<u8>,
-    /// End of each cell in `connectivity`.
-    pub ends: Vec<usize>,
-    /// Points of the cells, one cell after the other, corners first.
-    pub connectivity: Vec<u32>,
+impl Array {
+    /// Whether a name is its own: the last part of a path is enough.
+    pub fn is_named(&self, name: &str) -> bool {
+        self.name == name || last_part(&self.name) == name
+    }
+
+    /// Lengths of its axes.
+    pub fn axes(&self) -> Vec<usize> {
+        match (&self.shape[..], self.components) {
+            ([], 1) => vec![self.tuples],
+            ([], _) => vec![self.tuples, self.components],
+            (shape, _) => shape.to_vec(),
+        }
+    }
 }
 
-impl Cells {
-    /// Number of cells.
-    pub fn count(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// Points of a cell.
-    pub fn points(&self, cell: usize) -> &[u32] {
-        let start = if cell == 0 { 0 } else { self.ends[cell - 1] };
-        &self.connectivity[start..self.ends[cell]]
-    }
-
-    /// Corners of a cell: its first points, without those at the middle of sides.
-    pub fn corners(&self, cell: usize) -> &[u32] {
-        let points = self.points(cell);
-        let corners = match self.types.get(cell) {
-            Some(21 | 35) => 2,
-            Some(22 | 34) => 3,
-            Some(23 | 24 | 28 | 30) => 4,
-            Some(27 | 37) => 5,
-            Some(26 | 31 | 32) => 6,
-            Some(25 | 29 | 33) => 8,
-            _ => points.len(),
-        };
-        &points[..corners.min(points.len())]
-    }
-
-    /// For each of a number of points, whether it is a corner of a cell.
-    pub fn are_corners(&self, points: usize) -> Vec<bool> {
-        let mut are_corners = vec![false; points];
-        for cell in 0..self.count() {
-            for corner in self.corners(cell) {
-                if let Some(is_corner) = are_corners.get_mut(*corner as usize) {
-                    *is_corner = true;
-                }
-            }
-        }
-        are_corners
-    }
-
-    /// Highest dimension of the cells.
-    pub fn dimension(&self) -> usize {
-        let dimension = |kind: &u8| match kind {
-            1 | 2 => 0,
-            3 | 4 | 21 | 35 => 1,
-            5..=9 | 22 | 23 | 28 | 30 | 34 | 36 => 2,
-            _ => 3,
-        };
-        self.types.iter().map(dimension).max().unwrap_or(0)
-    }
-
-    /// Checks that the lists fit each other and a number of points.
-    pub(crate) fn check(&self, points: usize) -> Result<(), String> {
-        if self.types.len() != self.ends.len() {
-            return Err(format!("there are {} cells and types for {}", self.ends.len(), self.types.len()));
-        }
-        if self.ends.windows(2).any(|pair| pair[0] > pair[1]) {
-            return Err("the offsets of the cells decrease".to_owned());
-        }
-        let end = self.ends.last().copied().unwrap_or(0);
-        if end != self.connectivity.len() {
-            return Err(format!(
-                "the cells have {} points, and their offsets end at {end}",
-                self.connectivity.len()
-            ));
-        }
-        match self.connectivity.iter().find(|point| **point as usize >= points) {
-            Some(point) => Err(format!("a cell names the point {point} of {points}")),
-            None => Ok(()),
-        }
-    }
+/// The part of a path behind its last `/`; units like `[m/s]` are no path.
+fn last_part(path: &str) -> &str {
+    let end = path.find('[').unwrap_or(path.len());
+    path[..end].rfind('/').map_or(path, |slash| &path[slash + 1..])
 }
 
 /// One state of a result, as a file holds it.
@@ -134,14 +85,48 @@ pub struct Frame {
     pub cells: Option<Cells>,
     /// Arrays.
     pub arrays: Vec<Array>,
+    /// Points that belong to another piece, or are hidden: they shape cells and are no samples. Empty if there are none.
+    pub ghosts: Vec<bool>,
+    /// Times that the file lists beside its arrays: one axis of an array may run over them.
+    pub times: Vec<f64>,
     /// One sentence for each thing that was left out.
     pub notes: Vec<String>,
+    /// One sentence for each thing that the file says in two ways.
+    pub doubts: Vec<String>,
 }
 
 impl Frame {
-    /// The array of a name, on what is asked for or on anything.
+    /// The array of a name, on what is asked for or on anything. Of several whose path ends with it, the first.
     pub fn array(&self, name: &str, on: Option<Association>) -> Option<&Array> {
-        self.arrays.iter().find(|array| array.name == name && on.is_none_or(|on| array.on == on))
+        let mut there = self.arrays.iter().filter(|array| on.is_none_or(|on| array.on == on));
+        there.clone().find(|array| array.name == name).or_else(|| there.find(|array| array.is_named(name)))
+    }
+
+    /// The arrays whose path ends with a name that is none's whole name, if they are several.
+    pub fn namesakes(&self, name: &str) -> Vec<&Array> {
+        let is_whole = self.arrays.iter().any(|array| array.name == name);
+        let alike: Vec<&Array> = self.arrays.iter().filter(|array| array.is_named(name)).collect();
+        if is_whole || alike.len() < 2 { Vec::new() } else { alike }
+    }
+
+    /// Takes the places of the points from an array that is named like them, if there are none.
+    pub(crate) fn place_from_array(&mut self) {
+        let is_place = |array: &&Array| {
+            let name = last_part(&array.name).to_ascii_lowercase();
+            let axes = array.axes();
+            // Written once, for all times.
+            let axes = if axes.len() == 3 && axes[0] == 1 { &axes[1..] } else { &axes[..] };
+            PLACES.contains(&name.as_str())
+                && axes.len() == 2
+                && (2..=3).contains(&axes[1])
+                && array.values.len() == axes[0] * axes[1]
+        };
+        if self.coordinates.is_empty()
+            && let Some(array) = self.arrays.iter().find(is_place)
+        {
+            let components = array.axes().last().copied().unwrap_or(3);
+            self.coordinates = points_of(&array.values, components);
+        }
     }
 
     /// Memory of its numbers, bytes.
@@ -174,37 +159,104 @@ impl Frame {
         self.cells = self.cells.take().or(other.cells);
         self.time = self.time.or(other.time);
         self.notes.extend(other.notes);
+        self.doubts.extend(other.doubts);
         Ok(())
     }
 
-    /// Appends the points, cells and arrays of another part of the same state. The parts must have the same arrays.
-    pub(crate) fn append(&mut self, part: Self) -> Result<(), String> {
-        let shift = u32::try_from(self.coordinates.len()).map_err(|_| "too many points".to_owned())?;
-        if self.arrays.len() != part.arrays.len() {
-            return Err(format!("its parts have different arrays: {} and {}", self.names(), part.names()));
-        }
-        for (own, other) in self.arrays.iter_mut().zip(part.arrays) {
-            if (&own.name, own.on, own.components) != (&other.name, other.on, other.components) {
-                return Err(format!("its parts have different arrays: `{}` and `{}`", own.name, other.name));
+    /// Leaves out the cells that another piece has as well, or that are hidden, and marks such points.
+    pub(crate) fn leave_out_ghosts(&mut self) -> Result<(), String> {
+        for name in GHOSTS {
+            for on in [Association::Points, Association::Cells] {
+                let is_it = |array: &Array| array.name == name && array.on == on;
+                let Some(place) = self.arrays.iter().position(is_it) else { continue };
+                let array = self.arrays.remove(place);
+                let flags: Vec<u8> = whole(&array.values).map_err(|why| format!("`{name}`: {why}"))?;
+                let bits = match (name, on) {
+                    ("vtkGhostType", Association::Points) => HIDDEN_POINT,
+                    ("vtkGhostType", _) => HIDDEN_CELL,
+                    _ => u8::MAX,
+                };
+                let are_ghosts: Vec<bool> = flags.iter().map(|flag| flag & bits != 0).collect();
+                if !are_ghosts.contains(&true) {
+                    continue;
+                }
+                if on == Association::Points {
+                    self.ghosts = are_ghosts;
+                } else {
+                    self.keep_cells(&are_ghosts.iter().map(|is_ghost| !is_ghost).collect::<Vec<bool>>());
+                }
             }
+        }
+        Ok(())
+    }
+
+    /// Keeps the cells that a list says, and their data.
+    fn keep_cells(&mut self, is_kept: &[bool]) {
+        if let Some(cells) = &mut self.cells {
+            cells.keep(is_kept);
+        }
+        let kept = |tuple: usize| is_kept.get(tuple).copied().unwrap_or(true);
+        for array in self.arrays.iter_mut().filter(|array| array.on == Association::Cells) {
+            let components = array.components;
+            let mut tuple = 0;
+            array.values.retain(|_| {
+                tuple += 1;
+                kept((tuple - 1) / components)
+            });
+            array.tuples = (0..array.tuples).filter(|tuple| kept(*tuple)).count();
+        }
+    }
+
+    /// Appends the points, cells and arrays of another part of the same state. The parts must have the same arrays, but
+    /// for one without points.
+    pub(crate) fn append(&mut self, part: Self) -> Result<(), String> {
+        if part.coordinates.is_empty() && !self.coordinates.is_empty() {
+            return Ok(());
+        }
+        if self.coordinates.is_empty() && !part.coordinates.is_empty() {
+            let (notes, time) = (std::mem::take(&mut self.notes), self.time);
+            *self = part;
+            self.notes.splice(0..0, notes);
+            self.time = self.time.or(time);
+            return Ok(());
+        }
+        let before = self.coordinates.len();
+        let shift = u32::try_from(before).map_err(|_| "too many points".to_owned())?;
+        let mut others = part.arrays;
+        for own in &mut self.arrays {
+            let is_same = |other: &Array| {
+                (&own.name, own.on, own.components) == (&other.name, other.on, other.components)
+            };
+            let Some(place) = others.iter().position(is_same) else {
+                return Err(format!("its parts have different arrays: one lacks `{}`", own.name));
+            };
+            let other = others.swap_remove(place);
             if own.on != Association::Whole {
                 own.tuples += other.tuples;
                 own.values.extend(other.values);
             }
         }
+        if let Some(other) = others.first() {
+            return Err(format!("its parts have different arrays: one lacks `{}`", other.name));
+        }
+        if !(self.ghosts.is_empty() && part.ghosts.is_empty()) {
+            self.ghosts.resize(before, false);
+            self.ghosts.extend(part.ghosts);
+            self.ghosts.resize(before + part.coordinates.len(), false);
+        }
         self.coordinates.extend(part.coordinates);
         match (&mut self.cells, part.cells) {
-            (Some(cells), Some(others)) => {
-                let end = cells.connectivity.len();
-                cells.types.extend(others.types);
-                cells.ends.extend(others.ends.iter().map(|other| end + other));
-                cells
-                    .connectivity
-                    .extend(others.connectivity.iter().map(|point| point.saturating_add(shift)));
+            (Some(cells), Some(others)) => cells.append(&others, shift),
+            (None, Some(others)) => {
+                let mut cells = Cells::default();
+                cells.append(&others, shift);
+                self.cells = Some(cells);
             }
-            (own, others) => *own = own.take().or(others),
+            (_, None) => {}
         }
+        self.time = self.time.or(part.time);
         self.notes.extend(part.notes);
+        self.doubts.extend(part.doubts);
         Ok(())
     }
 }
@@ -216,7 +268,7 @@ pub struct Wanted<'a>(pub &'a BTreeSet<String>);
 impl Wanted<'_> {
     /// Whether the values of an array are wanted.
     pub(crate) fn has(self, name: &str) -> bool {
-        self.0.contains(name)
+        self.0.contains(name) || self.0.contains(last_part(name)) || GHOSTS.contains(&name)
     }
 }
 
@@ -231,15 +283,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn corners_of_a_quadratic_cell_are_its_first_points() {
-        let cells = Cells { types: vec![23, 9], ends: vec![8, 12], connectivity: (0..12).collect() };
-        assert_eq!(cells.corners(0), [0, 1, 2, 3]);
-        assert_eq!(cells.corners(1), [8, 9, 10, 11]);
-        assert_eq!((cells.dimension(), cells.check(12)), (2, Ok(())));
-        assert!(cells.check(11).is_err_and(|why| why.contains("the point 11 of 11")));
-    }
-
-    #[test]
     fn parts_of_a_state_are_joined_with_their_cells() {
         let part = |height: f64| Frame {
             coordinates: vec![[0.0, height, 0.0]; 2],
@@ -250,6 +293,7 @@ mod tests {
                 components: 1,
                 tuples: 2,
                 values: vec![height; 2],
+                shape: Vec::new(),
             }],
             ..Frame::default()
         };
@@ -269,6 +313,7 @@ mod tests {
             components: 1,
             tuples: 1,
             values: vec![value],
+            shape: Vec::new(),
         };
         let frame = |arrays: Vec<Array>| Frame { coordinates: vec![[0.0; 3]], arrays, ..Frame::default() };
         let mut own = frame(vec![array("p", Association::Points, 1.0)]);

@@ -1,13 +1,17 @@
-//! HDF5: data sets by their paths, states over times, and tables of records.
+//! HDF5: data sets by their paths, with a list of times if there is one, and tables of records. Layouts of programs have
+//! files of their own: `exodus`, `pflotran`, `vtkhdf`.
 //!
 //! The groups are walked once and the data sets kept: the library would walk a group again for each path.
 
 use crate::bytes::{Budget, Scalar};
-use crate::frame::{Array, Association, Frame, Wanted, points_of};
-use crate::input_file;
+use crate::frame::{Array, Association, Frame, PLACES, Wanted};
+use crate::{exodus, input_file, pflotran, vtkhdf};
 use hdf5_pure::{ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, File, FileAccessProperties, Group};
 use std::collections::HashMap;
 use std::path::Path;
+
+/// Data sets that list the times.
+const TIMES: [&str; 2] = ["times", "time"];
 
 /// Fields of a record that are its place.
 const PLACE: [&str; 3] = ["coord_x", "coord_y", "coord_z"];
@@ -18,8 +22,19 @@ const MOST: usize = 200_000;
 /// Most data sets that are read as one state.
 const MOST_OF_A_STATE: usize = 10_000;
 
+/// How the data sets of a file belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layout {
+    /// Each by itself.
+    Plain,
+    Exodus,
+    Pflotran,
+    VtkHdf,
+}
+
 /// An open file.
 pub(crate) struct Store {
+    layout: Layout,
     sets: Vec<Listed>,
     /// Places in the list by path.
     by_path: HashMap<String, usize>,
@@ -46,6 +61,7 @@ impl Store {
         let access = FileAccessProperties::new().with_chunk_cache(pieces);
         let file = File::from_bytes_with_options(bytes, access).map_err(|error| damaged(&error))?;
         let mut store = Self {
+            layout: Layout::Plain,
             sets: Vec::new(),
             by_path: HashMap::new(),
             listed: 0,
@@ -54,7 +70,46 @@ impl Store {
         };
         store.list(&file.root(), "", 0)?;
         store.by_path = store.sets.iter().enumerate().map(|(place, set)| (set.path.clone(), place)).collect();
+        store.layout = match () {
+            () if exodus::is_layout(&store) => Layout::Exodus,
+            () if vtkhdf::is_layout(&store) => Layout::VtkHdf,
+            () if pflotran::is_layout(&store) => Layout::Pflotran,
+            () => Layout::Plain,
+        };
         Ok(store)
+    }
+
+    /// Whether the file has a data set.
+    pub fn has(&self, path: &str) -> bool {
+        self.by_path.contains_key(path)
+    }
+
+    /// Lengths of the axes of a data set.
+    pub fn shape(&self, path: &str) -> Option<&[u64]> {
+        self.by_path.get(path).and_then(|place| self.sets.get(*place)).map(|set| &set.shape[..])
+    }
+
+    /// Paths of all data sets.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.sets.iter().map(|set| set.path.as_str())
+    }
+
+    /// The texts of a data set of letters, one per row, without what fills them up.
+    pub fn texts(&mut self, path: &str) -> Result<Vec<String>, String> {
+        let named = |why: String| format!("the data set `{path}`: {why}");
+        let known = self.by_path.get(path).and_then(|place| self.sets.get(*place));
+        let Listed { shape, set, .. } = known.ok_or_else(|| named("the file does not have it".to_owned()))?;
+        let width = set.element_size().map_err(|error| named(damaged(&error)))?;
+        let total = product(shape).map_err(named)?.saturating_mul(width);
+        self.budget.take(total).map_err(named)?;
+        let bytes = set.read_raw().map_err(|error| named(damaged(&error)))?;
+        let rows = usize::try_from(shape.first().copied().unwrap_or(1)).unwrap_or(0);
+        let length = bytes.len().checked_div(rows).unwrap_or(0).max(1);
+        let text = |row: &[u8]| {
+            let end = row.iter().position(|symbol| *symbol == 0).unwrap_or(row.len());
+            String::from_utf8_lossy(&row[..end]).trim().to_owned()
+        };
+        Ok(bytes.chunks_exact(length).map(text).collect())
     }
 
     /// Renews the memory budget for another state.
@@ -85,61 +140,74 @@ impl Store {
         Ok(numbers)
     }
 
-    /// Times of the states, if the file has a list of them.
-    pub fn times(&mut self) -> Result<Vec<f64>, String> {
-        let is_list = |set: &&Listed| is_named(&set.path, &["times", "time"]) && set.shape.len() == 1;
-        match self.sets.iter().find(is_list).map(|set| set.path.clone()) {
-            Some(path) => self.numbers(&path, None),
-            None => Ok(Vec::new()),
+    /// The states of the file, each with its time if the file's layout gives it one. A file without such a layout is one
+    /// state, whose arrays may run over the times that it lists.
+    pub fn times(&mut self) -> Result<Vec<Option<f64>>, String> {
+        match self.layout {
+            Layout::Plain => Ok(vec![None]),
+            Layout::Exodus => exodus::times(self),
+            Layout::Pflotran => Ok(pflotran::times(self)),
+            Layout::VtkHdf => vtkhdf::times(self),
         }
     }
 
-    /// A state by its place in the list of times; the only state if there is no list.
+    /// A state by its place in the list of states.
     pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
         self.renew_budget();
+        let mut frame = match self.layout {
+            Layout::Plain => self.plain_frame(wanted),
+            Layout::Exodus => exodus::frame(self, place, wanted),
+            Layout::Pflotran => pflotran::frame(self, place, wanted),
+            Layout::VtkHdf => vtkhdf::frame(self, place, wanted),
+        }?;
+        frame.leave_out_ghosts()?;
+        Ok(frame)
+    }
+
+    /// All data sets, whole.
+    fn plain_frame(&mut self, wanted: Wanted) -> Result<Frame, String> {
         if self.sets.len() > MOST_OF_A_STATE {
             return Err(format!(
                 "it has more than {MOST_OF_A_STATE} data sets: name them by an XDMF beside it"
             ));
         }
-        let times = self.times()?;
-        let steps = times.len() as u64;
-        let mut frame = Frame { time: times.get(place).copied(), ..Frame::default() };
+        let mut frame = Frame::default();
         for number in 0..self.sets.len() {
-            let Listed { path, shape: whole, .. } = &self.sets[number];
-            let (path, whole) = (path.clone(), whole.clone());
-            if is_named(&path, &["times", "time"]) || whole.is_empty() {
-                continue;
-            }
             if self.records(number, wanted, &mut frame)? {
                 continue;
             }
-            let is_place = is_named(&path, &["geometry", "coordinates", "points", "nodes"]);
-            let name = path.rsplit('/').next().unwrap_or_default().to_owned();
-            let by_time = steps > 0 && whole[0] == steps;
-            let is_once = whole[0] == 1 && whole.len() > 1 && is_place;
-            let shape = if by_time || is_once { &whole[1..] } else { &whole[..] };
-            let tuples =
-                usize::try_from(shape.first().copied().unwrap_or(1)).map_err(|_| "it claims too much")?;
-            let components =
-                usize::try_from(product(shape.get(1..).unwrap_or_default())?).unwrap_or(1).max(1);
-            let rows = match (by_time, is_once) {
-                (true, _) => Some((place as u64, 1)),
-                (_, true) => Some((0, 1)),
-                _ => None,
-            };
-            if is_place && (2..=3).contains(&components) {
-                frame.coordinates = points_of(&self.numbers(&path, rows)?, components);
+            let Listed { path, shape, set } = &self.sets[number];
+            let (path, shape) = (path.clone(), shape.clone());
+            let is_number = set.datatype().is_ok_and(|kind| scalar_of(&kind).is_some());
+            let is_time = is_named(&path, &TIMES);
+            if !is_number {
+                continue;
             }
-            let mut array = Array { name, on: Association::Points, components, tuples, values: Vec::new() };
-            if wanted.has(&array.name) {
-                array.values = self.numbers(&path, rows)?;
+            let count = |length: u64| usize::try_from(length).map_err(|_| "it claims too much".to_owned());
+            let shape = shape.into_iter().map(count).collect::<Result<Vec<usize>, String>>()?;
+            let too_much = || "its shape has more numbers than any file".to_owned();
+            let components = shape.iter().skip(1).try_fold(1_usize, |all, axis| all.checked_mul(*axis));
+            let is_place = is_named(&path, &PLACES);
+            let mut array = Array {
+                on: if shape.is_empty() { Association::Whole } else { Association::Points },
+                components: components.ok_or_else(too_much)?.max(1),
+                tuples: shape.first().copied().unwrap_or(1),
+                values: Vec::new(),
+                name: path,
+                shape,
+            };
+            if is_time || is_place || wanted.has(&array.name) {
+                array.values = self.numbers(&array.name, None)?;
+            }
+            if is_time && frame.times.is_empty() {
+                frame.times.clone_from(&array.values);
             }
             frame.arrays.push(array);
         }
         if frame.arrays.is_empty() {
             return Err("it has no numbers".to_owned());
         }
+        frame.place_from_array();
         Ok(frame)
     }
 
@@ -166,6 +234,7 @@ impl Store {
                 components: 1,
                 tuples,
                 values: Vec::new(),
+                shape: Vec::new(),
             };
             if is_wanted(&array.name) {
                 for record in bytes.chunks_exact((size as usize).max(1)) {

@@ -1,7 +1,9 @@
 //! Opens files that a user or another file names: regular files only, up to the size of any result.
 //!
-//! A device or a pipe may never end, and a file that refers to other files may refer to one of these.
+//! A device or a pipe may never end, and a file that refers to other files may refer to one of these. What gzip packed is
+//! unpacked, and text in UTF-16 or behind a byte order mark becomes plain UTF-8, before any reader sees it.
 
+use flate2::read::MultiGzDecoder;
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
@@ -10,6 +12,10 @@ use std::path::Path;
 pub const LARGEST: u64 = 8 << 30;
 /// Largest text file that is read, bytes: a study of a million cases takes less.
 pub const LARGEST_TEXT: u64 = 16_000_000;
+/// Bytes that a packed file may become: so many in any case, and more for each of its own.
+const UNPACKED: (u64, u64) = (16 << 20, 200);
+/// First bytes of gzip.
+const GZIP: &[u8] = &[0x1f, 0x8b, 8];
 
 /// Opens a file.
 ///
@@ -39,6 +45,25 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read_at_most(path, LARGEST_TEXT)?).map_err(|_| refused("it is not UTF-8".to_owned()))
 }
 
+/// The first bytes of a file, as [`read`] gives them.
+///
+/// # Errors
+/// Those of [`open`], and when it cannot be read.
+pub fn head(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path)?.take(most as u64).read_to_end(&mut bytes)?;
+    if bytes.starts_with(GZIP) {
+        let mut unpacked = Vec::new();
+        MultiGzDecoder::new(open(path)?).take(most as u64).read_to_end(&mut unpacked).map_err(damaged)?;
+        bytes = unpacked;
+    }
+    // A cut inside a pair is no damage here.
+    let is_wide = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+    let even = if is_wide { bytes.len() / 2 * 2 } else { bytes.len() };
+    bytes.truncate(even);
+    Ok(plain(bytes))
+}
+
 fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let about = file.metadata()?;
@@ -46,7 +71,46 @@ fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(usize::try_from(about.len()).unwrap_or(0));
     // A file may grow while it is read.
     file.take(most).read_to_end(&mut bytes)?;
+    if bytes.starts_with(GZIP) {
+        bytes = unpacked(&bytes, most)?;
+    }
+    Ok(plain(bytes))
+}
+
+/// The content of a file that gzip packed. Each member ends with a checksum, which is compared.
+fn unpacked(packed: &[u8], most: u64) -> io::Result<Vec<u8>> {
+    let (any, per_byte) = UNPACKED;
+    let most = most.min(any + per_byte * packed.len() as u64);
+    let mut bytes = Vec::new();
+    MultiGzDecoder::new(packed).take(most + 1).read_to_end(&mut bytes).map_err(damaged)?;
+    if bytes.len() as u64 > most {
+        return Err(refused(format!("it unpacks to more than {most} bytes: unpack it first")));
+    }
     Ok(bytes)
+}
+
+fn damaged(error: io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("its gzip is damaged or cut: {error}"))
+}
+
+/// Bytes without a byte order mark; text in UTF-16 as UTF-8. What is no UTF-16 behind its mark stays as it is.
+fn plain(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
+        bytes.drain(..3);
+        return bytes;
+    }
+    let from_bytes: fn([u8; 2]) -> u16 = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => u16::from_le_bytes,
+        Some([0xfe, 0xff]) => u16::from_be_bytes,
+        _ => return bytes,
+    };
+    let (pairs, rest) = bytes[2..].as_chunks();
+    let text: Option<String> =
+        char::decode_utf16(pairs.iter().map(|pair| from_bytes(*pair))).map(Result::ok).collect();
+    match text.filter(|_| rest.is_empty()) {
+        Some(text) => text.into_bytes(),
+        None => bytes,
+    }
 }
 
 fn check(about: &Metadata, most: u64) -> io::Result<()> {
@@ -97,7 +161,55 @@ mod tests {
         assert!(read_text(&at("large")).is_err_and(|error| error.to_string().contains("at most 16000000")));
         std::fs::write(at("text"), "a").expect("a file");
         assert_eq!(read_text(&at("text")).expect("a text"), "a");
-        std::fs::write(at("bytes"), [0xff, 0xfe]).expect("a file");
+        std::fs::write(at("bytes"), [0xff, 0xfe, 0x61]).expect("a file");
         assert!(read_text(&at("bytes")).is_err_and(|error| error.to_string().contains("UTF-8")));
+    }
+
+    #[test]
+    fn packed_text_and_every_byte_order_mark_are_the_same_text() {
+        use std::io::Write;
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.csv");
+        let text = "t,y,p\n1,2,3µ\n";
+        let wide = |order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+            std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(order).collect()
+        };
+        let pack = |bytes: &[u8]| {
+            let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+            packer.write_all(bytes).expect("memory");
+            packer.finish().expect("memory")
+        };
+        let marked = ["\u{feff}".as_bytes(), text.as_bytes()].concat();
+        let packed = pack(text.as_bytes());
+        for bytes in [
+            text.as_bytes().to_vec(),
+            marked.clone(),
+            wide(u16::to_le_bytes),
+            wide(u16::to_be_bytes),
+            packed.clone(),
+            [pack(&text.as_bytes()[..4]), pack(&text.as_bytes()[4..])].concat(),
+            pack(&wide(u16::to_le_bytes)),
+        ] {
+            std::fs::write(&path, &bytes).expect("a file");
+            assert_eq!(read(&path).expect("text"), text.as_bytes());
+            assert_eq!(read_text(&path).expect("text"), text);
+            assert_eq!(head(&path, 4096).expect("text"), text.as_bytes());
+        }
+        // Each cut and each changed byte of what is packed is told, but in the head, which says nothing of the text.
+        for cut in 3..packed.len() {
+            std::fs::write(&path, &packed[..cut]).expect("a file");
+            assert!(read(&path).is_err_and(|error| error.to_string().contains("gzip")), "{cut}");
+        }
+        for at in 10..packed.len() {
+            let mut bytes = packed.clone();
+            bytes[at] ^= 0x20;
+            std::fs::write(&path, &bytes).expect("a file");
+            // A bit behind the last code stands for nothing.
+            let found = read(&path);
+            assert!(found.is_err() || found.is_ok_and(|bytes| bytes == text.as_bytes()), "{at}");
+        }
+        let bomb = pack(&vec![0; 100 << 20]);
+        std::fs::write(&path, &bomb).expect("a file");
+        assert!(read(&path).is_err_and(|error| error.to_string().contains("unpack it first")));
     }
 }

@@ -3,7 +3,8 @@
 //! Format: "VTK Legacy Formats", docs.vtk.org; cells of versions up to 4 and from 5.1 on.
 
 use crate::bytes::{Budget, Scalar, excerpt, number_of_word, whole};
-use crate::frame::{Array, Association, Cells, Frame, Wanted, points_of};
+use crate::cells::Cells;
+use crate::frame::{Array, Association, Frame, Wanted, points_of};
 use crate::vtu::is_time;
 
 /// A position in a file.
@@ -32,8 +33,12 @@ pub(crate) fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
         match word.to_ascii_uppercase().as_str() {
             "DATASET" => {
                 let kind = reading.cursor.word().unwrap_or_default();
-                if !["UNSTRUCTURED_GRID", "POLYDATA", "STRUCTURED_GRID"].contains(&kind.as_str()) {
-                    return Err(format!("a data set of the type `{}` is not read", excerpt(&kind)));
+                let known = ["UNSTRUCTURED_GRID", "POLYDATA", "STRUCTURED_GRID"];
+                if !known.contains(&kind.to_ascii_uppercase().as_str()) {
+                    return Err(format!(
+                        "a data set of the type `{}` is not read: write an unstructured grid",
+                        excerpt(&kind)
+                    ));
                 }
             }
             "DIMENSIONS" => reading.cursor.skip_words(3),
@@ -137,14 +142,38 @@ impl Reading<'_> {
                 if self.cursor.peek().is_some_and(|word| word.parse::<usize>().is_ok()) {
                     components = self.cursor.count()?;
                 }
-                if self.cursor.peek().as_deref() == Some("LOOKUP_TABLE") {
+                if self.cursor.peek().is_some_and(|word| word.eq_ignore_ascii_case("LOOKUP_TABLE")) {
                     self.cursor.skip_words(2);
                 }
                 self.array(name, scalar, self.tuples(), components)
             }
-            "VECTORS" | "NORMALS" | "TENSORS" => {
+            "VECTORS" | "NORMALS" | "TENSORS" | "TENSORS6" => {
                 let (name, scalar) = (self.cursor.name()?, self.cursor.scalar()?);
-                self.array(name, scalar, self.tuples(), if keyword == "TENSORS" { 9 } else { 3 })
+                let components = match keyword {
+                    "TENSORS" => 9,
+                    "TENSORS6" => 6,
+                    _ => 3,
+                };
+                self.array(name, scalar, self.tuples(), components)
+            }
+            "TEXTURE_COORDINATES" => {
+                let (name, components) = (self.cursor.name()?, self.cursor.count()?);
+                let scalar = self.cursor.scalar()?;
+                self.array(name, scalar, self.tuples(), components)
+            }
+            "GLOBAL_IDS" | "PEDIGREE_IDS" => {
+                let (name, scalar) = (self.cursor.name()?, self.cursor.scalar()?);
+                self.array(name, scalar, self.tuples(), 1)
+            }
+            // Colours: bytes in binary, shares of 1 in text.
+            "LOOKUP_TABLE" => {
+                self.cursor.name()?;
+                let colours = self.cursor.count()?;
+                self.cursor.numbers(self.colour(), colours, 4).map(|_| ())
+            }
+            "COLOR_SCALARS" => {
+                let (name, components) = (self.cursor.name()?, self.cursor.count()?);
+                self.array(name, self.colour(), self.tuples(), components)
             }
             "FIELD" => {
                 self.cursor.name()?;
@@ -169,6 +198,11 @@ impl Reading<'_> {
         }
     }
 
+    /// Type of the colours of a table.
+    fn colour(&self) -> Scalar {
+        if self.cursor.is_binary { Scalar::U8 } else { Scalar::F32 }
+    }
+
     fn array(
         &mut self,
         name: String,
@@ -181,7 +215,8 @@ impl Reading<'_> {
             .numbers(scalar, tuples, components)
             .map_err(|why| format!("the array `{name}`: {why}"))?;
         if self.on == Association::Whole && is_time(&name) {
-            self.frame.time = values.first().copied();
+            // Of several numbers none is the time.
+            self.frame.time = values.first().copied().filter(|_| values.len() == 1);
         }
         if self.on != Association::Whole && tuples != self.tuples() {
             return Err(format!(
@@ -191,7 +226,14 @@ impl Reading<'_> {
             ));
         }
         let values = if self.wanted.has(&name) { values } else { Vec::new() };
-        self.frame.arrays.push(Array { name, on: self.on, components: components.max(1), tuples, values });
+        self.frame.arrays.push(Array {
+            name,
+            on: self.on,
+            components: components.max(1),
+            tuples,
+            values,
+            shape: Vec::new(),
+        });
         Ok(())
     }
 }
@@ -301,7 +343,7 @@ mod tests {
         let [on_points, on_cells] = ["POINT_DATA 2\n", "CELL_DATA 2\n"];
         for (whole, behind, wanted) in [
             ("FIELD f 1\nTIME 1 1 double\n2.5\n", String::new(), Some(2.5)),
-            ("FIELD f 1\nTimeValue 1 2 double\n2.5 3.5\n", String::new(), Some(2.5)),
+            ("FIELD f 1\nTimeValue 1 2 double\n2.5 3.5\n", String::new(), None),
             ("FIELD f 1\ncycle 1 1 int\n4\n", String::new(), None),
             ("", format!("{on_points}{}", field("Time", 2)), None),
             ("", format!("{on_cells}{}", field("time", 2)), None),

@@ -1,4 +1,4 @@
-//! Readers of the result files of other programs: VTU, PVD and legacy VTK, XDMF and HDF5, NPZ and NPY.
+//! Readers of the result files of other programs: VTU, PVTU, PVD and legacy VTK, XDMF and HDF5, Exodus II, gmsh, NPZ and NPY.
 //!
 //! A file is recognised by its content ([`Kind::of`]), its states are listed ([`steps_of`]), and each state is read into
 //! one form, a [`Frame`] ([`read_states`]). Every reader refuses damaged files with a sentence and bounds the memory by
@@ -8,23 +8,33 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod bytes;
+mod cells;
 mod collections;
+mod exodus;
 mod frame;
+mod gmsh;
 mod hdf5;
 pub mod input_file;
 mod legacy_vtk;
 mod numpy;
+mod pflotran;
 mod steps;
+mod times;
+mod unread;
 mod vtk_data;
+mod vtkhdf;
 mod vtu;
 mod xdmf;
 mod xdmf_states;
 mod xml;
+mod xpath;
 
 pub use bytes::excerpt;
+pub use cells::Cells;
 pub use collections::collection_of;
-pub use frame::{Array, Association, Cells, Frame, Wanted};
+pub use frame::{Array, Association, Frame, Wanted};
 pub use steps::{Kind, Step, read_states, steps_of};
+pub use times::{Axis, States, Use, states_by_time};
 
 use std::path::{Path, PathBuf};
 

@@ -25,6 +25,9 @@ pub(crate) fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     let mut skipped = Vec::new();
     for entry in &entries {
         let name = String::from_utf8_lossy(entry.file_path().as_bytes()).into_owned();
+        if name == "[Content_Types].xml" {
+            return Err("it is a workbook of Excel: save the sheet as CSV".to_owned());
+        }
         let name = name.strip_suffix(".npy").unwrap_or(&name);
         let of_member = |why: String| format!("the member `{name}`: {why}");
         let content = member(&archive, entry).map_err(of_member)?;
@@ -35,6 +38,11 @@ pub(crate) fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
             }
             None => skipped.push(format!("`{name}` ({})", excerpt(&header.kind))),
         }
+    }
+    if frame.arrays.is_empty() && skipped.is_empty() {
+        return Err(
+            "it is a zip without arrays of NumPy (a workbook of Excel: save the sheet as CSV)".to_owned()
+        );
     }
     if !skipped.is_empty() {
         frame.notes.push(format!(
@@ -142,7 +150,8 @@ impl Header {
                 values = by_rows(&values, &self.shape);
             }
         }
-        Ok(Array { name, on, components: components.max(1), tuples, values })
+        let shape = if self.shape.len() > 2 { self.shape.clone() } else { Vec::new() };
+        Ok(Array { name, on, components: components.max(1), tuples, values, shape })
     }
 }
 

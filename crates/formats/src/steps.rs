@@ -1,18 +1,17 @@
 //! From a file to its states: its kind, the states that it holds or refers to, and how each is read.
 
 use crate::bytes::Budget;
-use crate::collections::{Member, of_blocks, of_folder, of_pvd, of_series};
+use crate::collections::{Member, of_blocks, of_folder, of_pieces, of_pvd, of_series};
 use crate::frame::{Frame, Wanted};
 use crate::hdf5::Store;
-use crate::{ImportError, input_file, legacy_vtk, numpy, vtu, xdmf, xml};
+use crate::{ImportError, gmsh, input_file, legacy_vtk, numpy, unread, vtu, xdmf, xml};
 use std::collections::{HashMap, HashSet};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Deepest nesting of collections.
 const DEEPEST: usize = 8;
 /// Bytes at the start of a file by which it is recognised.
-const LOOK: u64 = 4096;
+const LOOK: usize = 4096;
 /// Most files that a collection may name.
 const MOST: usize = 100_000;
 
@@ -31,6 +30,12 @@ pub enum Kind {
     Series,
     /// `.vtm`: files of one time.
     Blocks,
+    /// `.pvtu`, `.pvtp`: pieces of one state, as parallel programs write them.
+    Pieces,
+    /// gmsh's mesh with data.
+    Gmsh,
+    /// gmsh's views.
+    GmshViews,
     /// A zip of `NumPy` arrays.
     Npz,
     /// A `NumPy` array.
@@ -48,13 +53,16 @@ impl Kind {
     /// When it cannot be read.
     pub fn of(path: &Path) -> Result<Self, ImportError> {
         let io = ImportError::io(path);
-        let mut head = Vec::new();
         let about = std::fs::metadata(path).map_err(&io)?;
         if about.is_dir() {
             return Err(ImportError::content(path, of_folder(path)));
         }
-        input_file::open(path).map_err(&io)?.take(LOOK).read_to_end(&mut head).map_err(&io)?;
-        Ok(Self::of_head(&head))
+        let head = input_file::head(path, LOOK).map_err(&io)?;
+        let kind = Self::of_head(&head);
+        match unread::named(&head, kind) {
+            Some(why) => Err(ImportError::content(path, why)),
+            None => Ok(kind),
+        }
     }
 
     /// The kind of a file that begins with these bytes.
@@ -71,8 +79,14 @@ impl Kind {
         if head.starts_with(b"# vtk DataFile") {
             return Self::LegacyVtk;
         }
+        if head.starts_with(b"$MeshFormat") {
+            return Self::Gmsh;
+        }
         let text = String::from_utf8_lossy(head);
         let text = text.trim_start_matches('\u{feff}').trim_start();
+        if gmsh::are_views(text) {
+            return Self::GmshViews;
+        }
         if text.starts_with('{') && text.contains("\"files\"") {
             return Self::Series;
         }
@@ -89,6 +103,8 @@ impl Kind {
                     Self::Blocks
                 } else if tag.contains("\"Collection\"") {
                     Self::Collection
+                } else if ["\"PUnstructuredGrid\"", "\"PPolyData\""].iter().any(|kind| tag.contains(kind)) {
+                    Self::Pieces
                 } else {
                     Self::Vtu
                 }
@@ -111,6 +127,8 @@ pub struct Step {
     pub time: Option<f64>,
     /// The file that the user gave: a collection, or the file itself.
     pub named: PathBuf,
+    /// Further files of this state, which a collection lists as its parts.
+    pub others: Vec<PathBuf>,
 }
 
 /// Lists the states of a file; notes say what is left out.
@@ -147,6 +165,7 @@ impl Listing<'_> {
             place,
             time,
             named: PathBuf::new(),
+            others: Vec::new(),
         };
         self.looked_at += 1;
         if self.looked_at > MOST {
@@ -157,9 +176,7 @@ impl Listing<'_> {
             Kind::Series => of_series(path, &read_text(path)?).map_err(refused)?,
             Kind::Hdf5 => {
                 let times = Store::open(path).and_then(|mut store| store.times()).map_err(refused)?;
-                let of_place = |(place, own): (usize, &f64)| step(place, Some(*own));
-                self.steps.extend(times.iter().enumerate().map(of_place));
-                self.steps.extend(times.is_empty().then(|| step(0, time)));
+                self.steps.extend(times.iter().enumerate().map(|(place, own)| step(place, own.or(time))));
                 return Ok(());
             }
             Kind::Xdmf => {
@@ -182,7 +199,9 @@ impl Listing<'_> {
         let refused = |why: String| ImportError::content(path, why);
         let (mut absent, mut twice) = (0, 0);
         let mut seen: HashMap<&Path, Option<f64>> = HashMap::new();
-        for Member { file, time: own } in members {
+        // Places among the steps of the first part of a state, by its time.
+        let mut first_parts: HashMap<u64, (&str, usize)> = HashMap::new();
+        for Member { file, time: own, part } in members {
             if self.above.contains(file) || self.above.len() > DEEPEST {
                 return Err(refused(format!("it refers to {}, which refers back to it", file.display())));
             }
@@ -201,9 +220,21 @@ impl Listing<'_> {
                 absent += 1;
                 continue;
             }
+            let first = own.and_then(|own| first_parts.get(&own.to_bits()).copied());
+            if let Some((other, place)) = first
+                && other != part
+            {
+                self.looked_at += 1;
+                self.steps[place].others.push(file.clone());
+                continue;
+            }
             self.above.push(file.clone());
+            let before = self.steps.len();
             self.list(file, own.or(time))?;
             self.above.pop();
+            if let Some(own) = own.filter(|_| self.steps.len() == before + 1) {
+                first_parts.entry(own.to_bits()).or_insert((part, before));
+            }
         }
         if absent == members.len() {
             return Err(refused(format!("none of its {absent} files is there")));
@@ -266,9 +297,9 @@ pub fn read_states(
                     take(step, reader.frame(step.place, wanted).map_err(refused)?)?;
                 }
             }
-            kind => {
+            _ => {
                 for step in steps {
-                    take(step, single_state(path, kind, wanted)?)?;
+                    take(step, single_state(step, wanted)?)?;
                 }
             }
         }
@@ -276,8 +307,24 @@ pub fn read_states(
     Ok(())
 }
 
-/// Reads a file with one state.
-fn single_state(path: &Path, kind: Kind, wanted: Wanted) -> Result<Frame, ImportError> {
+/// Reads a state in one file, or in parts that a collection lists.
+fn single_state(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
+    if step.others.is_empty() {
+        return state_of(&step.file, step.kind, wanted, 0, &mut None);
+    }
+    let files = [&[step.file.clone()], &step.others[..]].concat();
+    parts_of(&step.named, files, true, wanted, 1, &mut None)
+}
+
+/// Reads a file with one state; what it refers to shares the memory that all these files may take.
+fn state_of(
+    path: &Path,
+    kind: Kind,
+    wanted: Wanted,
+    depth: usize,
+    budget: &mut Option<Budget>,
+) -> Result<Frame, ImportError> {
+    let refused = |why: String| ImportError::content(path, why);
     let frame = match kind {
         Kind::Vtu => vtu::read(&read(path)?, wanted),
         Kind::LegacyVtk => legacy_vtk::read(&read(path)?, wanted),
@@ -286,40 +333,60 @@ fn single_state(path: &Path, kind: Kind, wanted: Wanted) -> Result<Frame, Import
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             numpy::read_npy(&read(path)?, &name, wanted)
         }
-        Kind::Blocks => return blocks(path, wanted, 0, &mut None),
+        Kind::Gmsh => gmsh::read_mesh(&read(path)?, wanted),
+        Kind::GmshViews => gmsh::read_views(&read(path)?, wanted),
+        Kind::Blocks => {
+            let files = of_blocks(path, &read_text(path)?).map_err(refused)?;
+            let mut seen = HashSet::new();
+            if let Some(twice) = files.iter().find(|file| !seen.insert(*file)) {
+                return Err(refused(format!("it lists the block {} twice", twice.display())));
+            }
+            return parts_of(path, files, true, wanted, depth + 1, budget);
+        }
+        Kind::Pieces => {
+            let mut files = of_pieces(path, &read_text(path)?).map_err(refused)?;
+            let all = files.len();
+            let mut seen = HashSet::new();
+            files.retain(|file| seen.insert(file.clone()));
+            let mut frame = parts_of(path, files, false, wanted, depth + 1, budget)?;
+            if seen.len() < all {
+                let twice = all - seen.len();
+                frame.notes.push(format!(
+                    "{}: {twice} of its {all} pieces are listed twice and read once",
+                    path.display()
+                ));
+            }
+            return Ok(frame);
+        }
         _ => Err("it holds no arrays".to_owned()),
     };
-    frame.map_err(|why| ImportError::content(path, why))
+    let mut frame = frame.map_err(refused)?;
+    frame.leave_out_ghosts().map_err(refused)?;
+    Ok(frame)
 }
 
-/// Joins the blocks of the highest dimension: loads on edges are blocks too, and repeat points. All blocks together,
-/// however deep, share the memory that their files may take.
-fn blocks(
+/// Joins the files of one state. Of blocks those of the highest dimension: loads on edges are blocks too, and repeat
+/// points. All files together, however deep, share the memory that they may take.
+fn parts_of(
     path: &Path,
+    files: Vec<PathBuf>,
+    are_blocks: bool,
     wanted: Wanted,
     depth: usize,
     budget: &mut Option<Budget>,
 ) -> Result<Frame, ImportError> {
     let refused = |why: String| ImportError::content(path, why);
     if depth > DEEPEST {
-        return Err(refused("its blocks refer to each other".to_owned()));
+        return Err(refused("its files refer to each other".to_owned()));
     }
     let mut parts = Vec::new();
-    let files = of_blocks(path, &read_text(path)?).map_err(refused)?;
     if budget.is_none() {
         *budget = Some(Budget::of_file(size_of_all(&files)));
     }
-    let mut seen = HashSet::new();
     for file in files {
-        if !seen.insert(file.clone()) {
-            return Err(refused(format!("it lists the block {} twice", file.display())));
-        }
-        // An empty block takes time all the same.
+        // An empty part takes time all the same.
         let least = 1 << 12;
-        let frame = match Kind::of(&file)? {
-            Kind::Blocks => blocks(&file, wanted, depth + 1, budget)?,
-            kind => single_state(&file, kind, wanted)?,
-        };
+        let frame = state_of(&file, Kind::of(&file)?, wanted, depth, budget)?;
         let taken = budget.as_mut().map_or(Ok(()), |budget| budget.take(frame.bytes().max(least)));
         taken.map_err(refused)?;
         parts.push((file, frame));
@@ -329,7 +396,7 @@ fn blocks(
     let mut whole: Option<Frame> = None;
     let mut notes = Vec::new();
     for (file, frame) in parts {
-        if dimension(&frame) < highest {
+        if are_blocks && dimension(&frame) < highest {
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             notes.push(format!("left out the block {name}: its cells are edges or faces of other blocks"));
             continue;
@@ -339,7 +406,8 @@ fn blocks(
             None => whole = Some(frame),
         }
     }
-    let mut whole = whole.ok_or_else(|| refused("it has no block".to_owned()))?;
+    let what = if are_blocks { "block" } else { "piece" };
+    let mut whole = whole.ok_or_else(|| refused(format!("it has no {what}")))?;
     whole.notes.extend(notes);
     Ok(whole)
 }

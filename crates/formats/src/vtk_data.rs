@@ -61,22 +61,34 @@ pub(crate) enum Place<'a> {
 }
 
 impl Encoding<'_> {
-    /// The numbers at a place. Any other count than the expected one is an error.
+    /// The numbers at a place, and a doubt where the header of the data says otherwise. Any other count than the
+    /// expected one is an error.
     pub fn numbers(
         &self,
         place: Place,
         scalar: Scalar,
         expected: Option<usize>,
         budget: &mut Budget,
-    ) -> Result<Vec<f64>, String> {
+    ) -> Result<(Vec<f64>, Option<String>), String> {
         let joined: Vec<u8>;
+        let mut doubt = None;
         let (data, is_raw) = match place {
             Place::Text(text) => {
                 budget.take(4 * text.len() as u64)?;
-                return counted(numbers_of_text(text, expected.unwrap_or(usize::MAX))?, expected);
+                let numbers = numbers_of_text(text, expected.unwrap_or(usize::MAX))?;
+                return Ok((counted(numbers, expected)?, None));
             }
             Place::Inline(text) => {
                 joined = text.bytes().filter(|symbol| !symbol.is_ascii_whitespace()).collect();
+                let size = expected.and_then(|expected| expected.checked_mul(scalar.size()));
+                if let Some((bytes, declared)) = size.and_then(|size| self.misdeclared(&joined, size)) {
+                    doubt = Some(format!(
+                        "its header declares {declared} bytes, and {} are there, as many as its numbers take: they are read",
+                        bytes.len()
+                    ));
+                    budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
+                    return Ok((scalar.decode(&bytes, self.is_little), doubt));
+                }
                 (joined.as_slice(), false)
             }
             Place::Appended(offset) => {
@@ -97,7 +109,29 @@ impl Encoding<'_> {
             ));
         }
         budget.take(8 * (bytes.len() / scalar.size()) as u64)?;
-        counted(scalar.decode(&bytes, self.is_little), expected)
+        Ok((counted(scalar.decode(&bytes, self.is_little), expected)?, doubt))
+    }
+
+    /// The bytes of inline data that are as many as expected though their header declares another number, and that
+    /// number: some writers count wrongly.
+    fn misdeclared(&self, data: &[u8], expected: usize) -> Option<(Vec<u8>, usize)> {
+        if self.is_packed {
+            return None;
+        }
+        let width = self.header.size();
+        let symbols = width.div_ceil(3) * 4;
+        let head = BASE64.decode(data.get(..symbols)?).ok()?;
+        let declared = *self.sizes(head.get(..width)?).ok()?.first()?;
+        if declared == expected {
+            return None;
+        }
+        // Some writers encode the header by itself, which then ends with padding.
+        let bytes = if data[..symbols].ends_with(b"=") {
+            BASE64.decode(&data[symbols..]).ok()?
+        } else {
+            BASE64.decode(data).ok()?.split_off(width)
+        };
+        (bytes.len() == expected).then_some((bytes, declared))
     }
 
     fn sizes(&self, bytes: &[u8]) -> Result<Vec<usize>, String> {

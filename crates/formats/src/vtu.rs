@@ -4,7 +4,8 @@
 //! headers of 32 and 64 bits; both byte orders.
 
 use crate::bytes::{Budget, Scalar, whole};
-use crate::frame::{Array, Association, Cells, Frame, Wanted, points_of};
+use crate::cells::Cells;
+use crate::frame::{Array, Association, Frame, Wanted, points_of};
 use crate::vtk_data::{Appended, Encoding, Place, split};
 use crate::xml::{all, attribute, child, parse};
 use roxmltree::Node;
@@ -30,6 +31,7 @@ pub(crate) fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
         wanted,
         budget: Budget::of_file(bytes.len()),
         has_cells: kind == "UnstructuredGrid",
+        doubts: Vec::new(),
     };
     let mut frame: Option<Frame> = None;
     for piece in all(root, "Piece") {
@@ -47,6 +49,7 @@ pub(crate) fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
         }
         frame.arrays.extend(reader.array(array, Association::Whole, None)?);
     }
+    frame.doubts.append(&mut reader.doubts);
     Ok(frame)
 }
 
@@ -90,6 +93,7 @@ struct Reader<'a> {
     wanted: Wanted<'a>,
     budget: Budget,
     has_cells: bool,
+    doubts: Vec<String>,
 }
 
 impl Reader<'_> {
@@ -141,12 +145,20 @@ impl Reader<'_> {
         }
         let components = match node.attribute("NumberOfComponents") {
             None => 1,
-            Some(typed) => match typed.trim().parse() {
-                Ok(components) if (1..=1000).contains(&components) => components,
+            Some(typed) => match typed.trim().parse::<usize>() {
+                // As VTK reads 0, and DOLFINx writes it.
+                Ok(components) if components <= 1000 => components.max(1),
                 _ => return Err(format!("the array `{name}` has `{typed}` components")),
             },
         };
-        let mut array = Array { name, on, components, tuples: tuples.unwrap_or(1), values: Vec::new() };
+        let mut array = Array {
+            name,
+            on,
+            components,
+            tuples: tuples.unwrap_or(1),
+            values: Vec::new(),
+            shape: Vec::new(),
+        };
         if self.wanted.has(&array.name) {
             let expected = tuples.map(|tuples| product(tuples, components)).transpose()?;
             array.values = self.numbers(node, expected)?;
@@ -175,8 +187,11 @@ impl Reader<'_> {
                 }
             },
         };
-        let numbers = found
-            .and_then(|(scalar, place)| self.encoding.numbers(place, scalar, expected, &mut self.budget));
-        numbers.map_err(|why| format!("the array `{}`: {why}", attribute(node, "Name")))
+        let named = |why: String| format!("the array `{}`: {why}", attribute(node, "Name"));
+        let (scalar, place) = found.map_err(named)?;
+        let read = self.encoding.numbers(place, scalar, expected, &mut self.budget);
+        let (numbers, doubt) = read.map_err(named)?;
+        self.doubts.extend(doubt.map(named));
+        Ok(numbers)
     }
 }

@@ -1,62 +1,201 @@
 //! The states of an XDMF document and the mesh of each: its own, one that it refers to, or that of the state before.
 //!
-//! A state refers to a mesh as `OpenGeoSys` and meshio do, by an `XInclude` with the position of its elements
-//! (`element(/1/1/2/1/2)`) or the name of a grid (`xpointer(//Grid[@Name="mesh"]/*[self::Topology or self::Geometry])`),
-//! or as XDMF itself does, by a `Reference` with a path (`/Xdmf/Domain/Grid[1]/Geometry`).
+//! A state refers to a mesh by an `XInclude` or, as XDMF itself does, by a `Reference` with a path (`xpath`). Programs that
+//! write one temporal collection per function have several grids for a time: they are one state. Grids of a spatial
+//! collection are its parts.
 
-use crate::bytes::excerpt;
+use crate::bytes::{excerpt, numbers_of_text};
+use crate::collections::time_of;
 use crate::xml::{all, attribute, child};
-use roxmltree::{Document, Node};
+use crate::xpath::Pointers;
+use roxmltree::{Document, Node, NodeId};
 use std::collections::HashMap;
 
 /// Parts of a mesh.
 const PARTS: [&str; 2] = ["Geometry", "Topology"];
+/// Most times of a collection.
+const MOST_TIMES: usize = 1_000_000;
+/// Deepest nesting of collections.
+const DEEPEST: usize = 64;
 
 /// A state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct State<'a> {
-    /// Its grid.
-    pub grid: Node<'a, 'a>,
+    /// Its time, if it has one.
+    pub time: Option<f64>,
+    /// Its parts, one unless a spatial collection has several.
+    pub parts: Vec<Part<'a>>,
+    /// Other functions of the state, with meshes of their own.
+    pub beside: Vec<Part<'a>>,
+    /// Collections that its grids are of.
+    collections: Vec<Option<NodeId>>,
+}
+
+/// A mesh with the grids that have arrays on it.
+#[derive(Clone, Debug)]
+pub(crate) struct Part<'a> {
+    /// The grids.
+    pub grids: Vec<Node<'a, 'a>>,
     /// The places of its points, if there are any.
     pub geometry: Option<Node<'a, 'a>>,
     /// Its cells, if there are any.
     pub topology: Option<Node<'a, 'a>>,
 }
 
+/// A grid without grids in it.
+struct Leaf<'a> {
+    grid: Node<'a, 'a>,
+    time: Option<f64>,
+    /// The collection of times that it is of.
+    collection: Option<NodeId>,
+    /// The spatial collection that it is a part of.
+    body: Option<NodeId>,
+}
+
 /// The states of a document, in its order. Each reference must point at a mesh.
 pub(crate) fn states_of<'a>(document: &'a Document<'a>) -> Result<Vec<State<'a>>, String> {
-    let is_state = |grid: &Node| !["Collection", "Tree"].contains(&attribute(*grid, "GridType"));
-    let grids: Vec<Node> = all(document.root(), "Grid").filter(is_state).collect();
+    let mut leaves = Vec::new();
+    for domain in document.root_element().children().filter(|node| node.has_tag_name("Domain")) {
+        for grid in grids_in(domain) {
+            add_leaves(grid, None, None, None, 0, &mut leaves)?;
+        }
+    }
     // meshio writes the mesh as a grid of its own beside the collection.
-    let has_times = grids.iter().any(|grid| child(*grid, "Time").is_some());
+    let has_times = leaves.iter().any(|leaf| leaf.time.is_some());
     let only = PARTS.map(|name| {
         let mut parts = all(document.root(), name);
         parts.next().filter(|_| parts.next().is_none())
     });
+    let mut pointers = Pointers::of(document);
     let mut found_before = HashMap::new();
     let mut latest = [None, None];
-    let mut states = Vec::new();
-    for grid in grids {
-        for part in mesh_parts(grid, &mut found_before)? {
+    let mut states: Vec<State> = Vec::new();
+    let mut by_time: HashMap<u64, usize> = HashMap::new();
+    for leaf in leaves {
+        for part in mesh_parts(leaf.grid, &mut pointers, &mut found_before)? {
             latest[usize::from(part.has_tag_name(PARTS[1]))] = Some(part);
         }
-        if !has_times || child(grid, "Time").is_some() {
-            let [geometry, topology] = [0, 1].map(|part| latest[part].or(only[part]));
-            states.push(State { grid, geometry, topology });
+        if has_times && leaf.time.is_none() {
+            continue;
+        }
+        let [geometry, topology] = [0, 1].map(|part| latest[part].or(only[part]));
+        let part = Part { grids: vec![leaf.grid], geometry, topology };
+        let known = leaf.time.and_then(|time| by_time.get(&time.to_bits())).copied();
+        match known.map(|place| &mut states[place]) {
+            Some(state) if leaf.body.is_some() || !state.collections.contains(&leaf.collection) => {
+                state.add(part, &leaf);
+            }
+            _ => {
+                if let Some(time) = leaf.time {
+                    by_time.insert(time.to_bits(), states.len());
+                }
+                let collections = vec![leaf.collection];
+                states.push(State { time: leaf.time, parts: vec![part], beside: Vec::new(), collections });
+            }
         }
     }
     if states.is_empty() { Err("it has no grid".to_owned()) } else { Ok(states) }
 }
 
+impl<'a> State<'a> {
+    /// Adds a grid of the same time: to the part of its mesh, as a part of a spatial collection, or beside them.
+    fn add(&mut self, part: Part<'a>, leaf: &Leaf<'a>) {
+        let is_same = |known: &&mut Part| (known.geometry, known.topology) == (part.geometry, part.topology);
+        if !self.collections.contains(&leaf.collection) {
+            self.collections.push(leaf.collection);
+        }
+        match self.parts.iter_mut().chain(&mut self.beside).find(is_same) {
+            Some(known) => known.grids.extend(part.grids),
+            None if leaf.body.is_some() => self.parts.push(part),
+            None => self.beside.push(part),
+        }
+    }
+}
+
+fn grids_in<'a>(node: Node<'a, 'a>) -> impl Iterator<Item = Node<'a, 'a>> {
+    node.children().filter(|child| child.has_tag_name("Grid"))
+}
+
+/// Adds the grids in a grid, each with its time: its own, that of its collection's list, or that of the collection.
+fn add_leaves<'a>(
+    grid: Node<'a, 'a>,
+    time: Option<f64>,
+    collection: Option<NodeId>,
+    body: Option<NodeId>,
+    depth: usize,
+    leaves: &mut Vec<Leaf<'a>>,
+) -> Result<(), String> {
+    if depth > DEEPEST {
+        return Err("its collections are too deep".to_owned());
+    }
+    let kind = attribute(grid, "GridType");
+    if !["Collection", "Tree"].contains(&kind) {
+        let own = time_in(grid)?.first().copied();
+        leaves.push(Leaf { grid, time: own.or(time), collection, body });
+        return Ok(());
+    }
+    let is_body = attribute(grid, "CollectionType") == "Spatial" || kind == "Tree";
+    let times = time_in(grid)?;
+    for (place, inside) in grids_in(grid).enumerate() {
+        if is_body {
+            let own = times.first().copied().or(time);
+            add_leaves(inside, own, collection, Some(grid.id()), depth + 1, leaves)?;
+        } else {
+            let own = times.get(place).copied().or(time);
+            add_leaves(inside, own, Some(grid.id()), None, depth + 1, leaves)?;
+        }
+    }
+    Ok(())
+}
+
+/// The times that a grid declares: one, a list, or a start, a step and a count.
+fn time_in(grid: Node) -> Result<Vec<f64>, String> {
+    let Some(time) = child(grid, "Time") else { return Ok(Vec::new()) };
+    if time.has_attribute("Value") {
+        return Ok(vec![time_of(attribute(time, "Value"))?]);
+    }
+    let text = child(time, "DataItem").map_or_else(|| text_of(time), text_of);
+    let numbers = numbers_of_text(&text, MOST_TIMES)?;
+    if numbers.iter().any(|time| !time.is_finite()) {
+        return Err("one of its times is not finite".to_owned());
+    }
+    if attribute(time, "TimeType") != "HyperSlab" {
+        return Ok(numbers);
+    }
+    let [start, step, count] = numbers[..] else {
+        return Err("a slab of times needs a start, a step and a count".to_owned());
+    };
+    if !(0.0..=MOST_TIMES as f64).contains(&count) {
+        return Err(format!("a slab of {count} times is invalid"));
+    }
+    Ok((0_u32..)
+        .map(f64::from)
+        .take_while(|place| *place < count)
+        .map(|place| start + step * place)
+        .collect())
+}
+
+/// All of the text in an element, also where an entity stands in it.
+pub(crate) fn text_of(node: Node) -> String {
+    node.children().filter(Node::is_text).filter_map(|part| part.text()).collect()
+}
+
 /// Geometry and topology that a grid contains or refers to.
 fn mesh_parts<'a>(
     grid: Node<'a, 'a>,
-    found_before: &mut HashMap<&'a str, Vec<Node<'a, 'a>>>,
+    pointers: &mut Pointers<'a>,
+    found_before: &mut HashMap<String, Vec<Node<'a, 'a>>>,
 ) -> Result<Vec<Node<'a, 'a>>, String> {
     let mut parts = Vec::new();
     for element in grid.children().filter(Node::is_element) {
         let pointer = if element.has_tag_name("include") {
-            attribute(element, "xpointer")
+            if !attribute(element, "href").is_empty() {
+                let file = excerpt(attribute(element, "href"));
+                return Err(format!(
+                    "a state refers to the mesh in another file, `{file}`, which is not read"
+                ));
+            }
+            attribute(element, "xpointer").to_owned()
         } else if !is_part(&element) {
             continue;
         } else {
@@ -65,63 +204,30 @@ fn mesh_parts<'a>(
                     parts.push(element);
                     continue;
                 }
-                Some("XML") => element.text().unwrap_or_default().trim(),
-                Some(path) => path,
+                Some("XML") => text_of(element).trim().to_owned(),
+                Some(path) => path.to_owned(),
             }
         };
-        if !found_before.contains_key(pointer) {
-            let found = referenced(grid.document(), pointer).map(parts_of).unwrap_or_default();
-            found_before.insert(pointer, found);
+        if !found_before.contains_key(&pointer) {
+            let found = pointers.elements(&pointer);
+            found_before.insert(pointer.clone(), parts_of(&found));
         }
-        let found = &found_before[pointer];
+        let found = &found_before[&pointer];
         if found.is_empty() {
-            return Err(format!("a state refers to the mesh `{}`, which is missing", excerpt(pointer)));
+            return Err(format!("a state refers to the mesh `{}`, which is missing", excerpt(&pointer)));
         }
         parts.extend(found);
     }
     Ok(parts)
 }
 
-/// The element that a pointer or a path leads to.
-fn referenced<'a>(document: &'a Document<'a>, pointer: &str) -> Option<Node<'a, 'a>> {
-    let inside = |function: &str| pointer.strip_prefix(function)?.strip_suffix(')');
-    if let Some(places) = inside("element(") {
-        // `/1/1/2`: counted from 1, the root first.
-        let step = |element: Node<'a, 'a>, place: &str| {
-            let place = place.parse::<usize>().ok()?.checked_sub(1)?;
-            element.children().filter(Node::is_element).nth(place)
-        };
-        return places.strip_prefix('/')?.split('/').try_fold(document.root(), step);
-    }
-    let path = inside("xpointer(").unwrap_or(pointer);
-    let (start, rest) = match path.strip_prefix("//") {
-        Some(path) => {
-            let end = path.find(']').map_or(path.len(), |end| end + 1);
-            let (step, rest) = path.split_at(end);
-            (select(document.root().descendants(), step)?, rest)
-        }
-        None => (document.root(), path),
+/// The elements that are parts of a mesh, or those of their children that are. Of several meshes the first.
+fn parts_of<'a>(elements: &[Node<'a, 'a>]) -> Vec<Node<'a, 'a>> {
+    let inside = |element: &Node<'a, 'a>| -> Vec<Node<'a, 'a>> {
+        if is_part(element) { vec![*element] } else { element.children().filter(is_part).collect() }
     };
-    let steps = rest.split('/').filter(|step| !step.is_empty()).take_while(|step| !step.starts_with('*'));
-    steps.into_iter().try_fold(start, |element, step| select(element.children(), step))
-}
-
-/// The element that a step of a path selects: `Grid`, `Grid[2]`, `Grid[@Name="mesh"]`.
-fn select<'a>(mut elements: impl Iterator<Item = Node<'a, 'a>>, step: &str) -> Option<Node<'a, 'a>> {
-    let (name, which) = step.trim_end_matches(']').split_once('[').unwrap_or((step, "1"));
-    let mut alike = elements.by_ref().filter(|element| element.has_tag_name(name));
-    match which.strip_prefix("@Name=") {
-        Some(quoted) => {
-            let wanted = quoted.trim_matches(['"', '\'']);
-            alike.find(|element| attribute(*element, "Name") == wanted)
-        }
-        None => alike.nth(which.parse::<usize>().ok()?.checked_sub(1)?),
-    }
-}
-
-/// An element that is a part of a mesh, or those of its children that are.
-fn parts_of<'a>(element: Node<'a, 'a>) -> Vec<Node<'a, 'a>> {
-    if is_part(&element) { vec![element] } else { element.children().filter(is_part).collect() }
+    let all: Vec<Node> = elements.iter().flat_map(inside).collect();
+    PARTS.iter().filter_map(|name| all.iter().find(|part| part.has_tag_name(*name)).copied()).collect()
 }
 
 fn is_part(element: &Node) -> bool {
@@ -139,7 +245,10 @@ mod tests {
         let document = parse(&text).expect("XML");
         let text = |part: Option<Node>| part.map_or("none", |part| part.text().expect("a text")).to_owned();
         let states = states_of(&document)?;
-        Ok(states.iter().map(|state| [text(state.geometry), text(state.topology)]).collect())
+        Ok(states
+            .iter()
+            .map(|state| [text(state.parts[0].geometry), text(state.parts[0].topology)])
+            .collect())
     }
 
     const HELD: &str = "<Grid Name=\"one\"><Time Value=\"1\"/><Geometry>a</Geometry><Topology>A</Topology></Grid>\

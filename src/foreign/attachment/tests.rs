@@ -41,7 +41,7 @@ fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_c
     use crate::case::Task;
     use oedometer_mpm::scene::SceneKind::{CosineLayer, Mandel, Terzaghi};
     let settled = |scene, state: SampledState| {
-        let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, state).settlement;
+        let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, &state).settlement;
         (!settlement.is_nan()).then_some(settlement)
     };
     let mut samples = [([0.0, 0.0], 0.0), ([1.0, 0.0], -3.0), ([0.5, 0.0], -1.0)];
@@ -83,8 +83,8 @@ fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
     for (sample, wanted) in
         [(Sample::Points, [1, 0, 0]), (Sample::Centres, [0, 1, 0]), (Sample::Nodes, [0, 0, 1])]
     {
-        let column = snapshot_of(&Case::seed(Task::Solve, SceneKind::Terzaghi), sample, given.clone());
-        let layer = snapshot_of(&Case::seed(Task::Solve, SceneKind::CosineLayer), sample, given.clone());
+        let column = snapshot_of(&Case::seed(Task::Solve, SceneKind::Terzaghi), sample, &given);
+        let layer = snapshot_of(&Case::seed(Task::Solve, SceneKind::CosineLayer), sample, &given);
         for (found, is_plane) in [(column, false), (layer, true)] {
             let all = [&found.points, &found.centres, &found.nodes];
             assert_eq!(all.map(|samples| samples.initial_height.len()), wanted, "{sample:?}");

@@ -1,9 +1,11 @@
 //! The declared meaning of the columns of a file.
 
+pub mod names;
 pub mod preset;
 pub mod units;
 
 use crate::case::quantity::{Quantity, Sample};
+use crate::import::mapping::names::ColumnName;
 use crate::import::mapping::units::{
     DisplacementSource, HorizontalSense, Hydrostatic, LengthUnit, RowFilter, SettlementSeries, StatedPlace,
     StressKind, StressMeaning, StressSign, StressUnit, Time, TimeUnit, VerticalSense,
@@ -137,15 +139,15 @@ pub struct ColumnNames {
     /// Height or depth; `y` by default.
     #[serde(default = "height_column")]
     pub y: String,
-    /// Excess pore pressure.
-    pub p: Option<String>,
+    /// Excess pore pressure; of a table with one column per height, `{ "p0" = 0.0, "p1" = 0.1 }`.
+    pub p: Option<ColumnName>,
     /// Horizontal displacement of the skeleton.
-    pub u_x: Option<String>,
+    pub u_x: Option<ColumnName>,
     /// Vertical displacement of the skeleton.
-    pub u_y: Option<String>,
+    pub u_y: Option<ColumnName>,
     /// Vertical effective stress.
-    pub effective_stress: Option<String>,
-    /// Volume or weight of each place; equal weights by default.
+    pub effective_stress: Option<ColumnName>,
+    /// Volume or weight of each place; equal weights by default, of data on cells the volumes of the cells.
     pub volume: Option<String>,
 }
 
@@ -156,26 +158,41 @@ impl ColumnNames {
             Column::Time => self.t.as_ref(),
             Column::X => self.x.as_ref(),
             Column::Y => Some(&self.y),
+            Column::Volume => self.volume.as_ref(),
+            quantity => self.of_quantity(quantity).and_then(ColumnName::single),
+        }
+    }
+
+    /// What the key of a quantity names.
+    pub fn of_quantity(&self, column: Column) -> Option<&ColumnName> {
+        match column {
             Column::Pressure => self.p.as_ref(),
             Column::Along => self.u_x.as_ref(),
             Column::Up => self.u_y.as_ref(),
             Column::EffectiveStress => self.effective_stress.as_ref(),
-            Column::Volume => self.volume.as_ref(),
+            Column::Time | Column::X | Column::Y | Column::Volume => None,
         }
+    }
+
+    /// The columns of a quantity that has one per height, with these.
+    pub fn by_height(&self, column: Column) -> Option<&[(String, f64)]> {
+        match self.of_quantity(column) {
+            Some(ColumnName::ByHeight(columns)) => Some(columns),
+            _ => None,
+        }
+    }
+
+    /// Quantities that have one column per height.
+    pub fn wide(&self) -> impl Iterator<Item = (Column, &[(String, f64)])> {
+        Column::ALL.into_iter().filter_map(|column| Some((column, self.by_height(column)?)))
     }
 
     /// Removes the columns that an empty name takes out.
     fn leave_out_empty(&mut self) {
-        let optional = [
-            &mut self.t,
-            &mut self.x,
-            &mut self.p,
-            &mut self.u_x,
-            &mut self.u_y,
-            &mut self.effective_stress,
-            &mut self.volume,
-        ];
-        for name in optional {
+        for name in [&mut self.t, &mut self.x, &mut self.volume] {
+            *name = name.take().filter(|name| !name.is_empty());
+        }
+        for name in [&mut self.p, &mut self.u_x, &mut self.u_y, &mut self.effective_stress] {
             *name = name.take().filter(|name| !name.is_empty());
         }
     }
@@ -187,9 +204,9 @@ fn height_column() -> String {
 
 impl Default for ColumnNames {
     fn default() -> Self {
-        let named = |name: &str| Some(name.to_owned());
+        let named = |name: &str| Some(ColumnName::Single(name.to_owned()));
         Self {
-            t: named("t"),
+            t: Some("t".to_owned()),
             x: None,
             y: height_column(),
             p: named("p"),
@@ -241,7 +258,8 @@ pub struct Position {
     pub y: StatedPlace,
 }
 
-/// Coordinates in the file at the end from which `sign` counts, in the file's unit of length.
+/// Coordinates in the file at the end from which `sign` counts, in the file's unit of length, and the pressure in it where
+/// nothing is in excess.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Origin {
@@ -249,21 +267,27 @@ pub struct Origin {
     pub x: f64,
     /// At the base, or at the initial surface.
     pub y: f64,
+    /// Pressure of the air, in the unit of stresses, where the file has absolute pressures: 101325.0 Pa.
+    pub p: f64,
 }
 
-/// Layout of a file.
+/// Layout of a table. What is not declared is found where the file leaves one choice.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TableLayout {
-    /// Separator of the columns.
-    pub delimiter: char,
-    /// Mark at the start of a comment line.
+    /// Separator of the columns; `" "` stands for any blanks.
+    pub delimiter: Option<char>,
+    /// Sign between the whole part of a number and its fraction: `.` or `,`.
+    pub decimal: Option<char>,
+    /// Whether the first line names the columns; without names they are called `1`, `2`, ….
+    pub header: Option<bool>,
+    /// Mark at the start of a comment line. A comment above the numbers may name the columns.
     pub comment: Option<char>,
 }
 
 impl Default for TableLayout {
     fn default() -> Self {
-        Self { delimiter: ',', comment: Some('#') }
+        Self { delimiter: None, decimal: None, header: None, comment: Some('#') }
     }
 }
 
@@ -341,7 +365,23 @@ impl Mapping {
         self.settlement.take_if(|_| quantities.contains(&Quantity::Settlement));
     }
 
+    /// Whether it names quantities at places, and not a settlement curve alone.
+    pub fn has_fields(&self) -> bool {
+        let columns = &self.columns;
+        let named = Column::ALL.into_iter().any(|column| columns.of_quantity(column).is_some());
+        named || self.displacement.is_some()
+    }
+
+    /// Takes the times of a case, s, for those of the files in their order, where it says so.
+    pub fn follow_case(&mut self, times: &[f64], seconds_per_time_factor: f64) {
+        if self.time.case {
+            let unit = self.units.time.seconds(1.0, seconds_per_time_factor);
+            self.time.list = times.iter().map(|time| time / unit).collect();
+        }
+    }
+
     /// The values that no file can have, and what would be right.
+    #[expect(clippy::too_many_lines, reason = "a list of what is wrong, one after the other")]
     fn faults(&self) -> Vec<Diagnostic> {
         let columns = &self.columns;
         let mut faults = Vec::new();
@@ -356,9 +396,24 @@ impl Mapping {
         };
         let quantities = [&columns.p, &columns.u_y, &columns.u_x, &columns.effective_stress];
         refuse(
-            quantities.iter().all(|name| name.is_none()) && self.displacement.is_none(),
+            quantities.iter().all(|name| name.is_none())
+                && self.displacement.is_none()
+                && self.settlement.is_none(),
             "no column to score is named",
-            "name `p`, `u_y`, `u_x` or `effective_stress` in [columns]",
+            "name `p`, `u_y`, `u_x` or `effective_stress` in [columns], or a curve in [settlement]",
+        );
+        let is_wide = columns.wide().next().is_some();
+        let is_narrow =
+            |column: Column| columns.of_quantity(column).is_some_and(|name| name.single().is_some());
+        refuse(
+            is_wide && Column::ALL.into_iter().any(is_narrow),
+            "some quantities have one column per height, and another one has a single column",
+            "give its height too, like u_y = { \"top\" = 1.0 }",
+        );
+        refuse(
+            is_wide && columns.x.is_some(),
+            "columns with their heights have no place along a layer",
+            "take `x` out of [columns], or write one row per place",
         );
         let is_current = self.position.y == StatedPlace::Current && self.displacement.is_none();
         for (place, given, component, has_component) in [
@@ -372,7 +427,7 @@ impl Mapping {
             );
         }
         refuse(
-            !(self.origin.x.is_finite() && self.origin.y.is_finite()),
+            ![self.origin.x, self.origin.y, self.origin.p].iter().all(|number| number.is_finite()),
             "an origin is invalid: expected a finite number",
             "write it as in the file",
         );
@@ -382,9 +437,19 @@ impl Mapping {
             "give what the volumes of all samples add up to",
         );
         refuse(
-            !self.csv.delimiter.is_ascii() || !self.csv.comment.is_none_or(|mark| mark.is_ascii()),
+            ![self.csv.delimiter, self.csv.comment].iter().flatten().all(char::is_ascii),
             "the delimiter or the comment mark is not an ASCII character",
             "use \",\" or \";\"",
+        );
+        refuse(
+            self.csv.decimal.is_some_and(|sign| sign != '.' && sign != ','),
+            "the `decimal` of [csv] is neither a point nor a comma",
+            "write decimal = \".\" or decimal = \",\"",
+        );
+        refuse(
+            self.csv.decimal == Some(',') && self.csv.delimiter == Some(','),
+            "a comma cannot both separate columns and begin a fraction",
+            "declare another `delimiter`",
         );
         refuse(
             self.time.step.is_some_and(|step| !(step.is_finite() && step > 0.0)),
@@ -395,6 +460,12 @@ impl Mapping {
             self.time.list.iter().chain(self.time.files.values()).any(|time| !time.is_finite()),
             "a time in [time] is invalid: expected a finite number",
             "give times in the unit of [units]",
+        );
+        refuse(
+            self.time.case
+                && !(self.time.list.is_empty() && self.time.files.is_empty() && self.time.step.is_none()),
+            "the files are at the times of the case, and [time] gives others",
+            "leave one of them",
         );
         refuse(
             self.time.pattern.as_ref().is_some_and(|pattern| pattern.matches("{step}").count() != 1),

@@ -24,7 +24,7 @@ impl Preset {
 
     /// The preset of the program that writes the arrays of a state, if one of them shows it.
     pub fn of_frame(frame: &Frame) -> Option<&'static Self> {
-        let is_sign = |preset: &Self, array: &Array| preset.signs.contains(&array.name.as_str());
+        let is_sign = |preset: &Self, array: &Array| preset.signs.iter().any(|sign| array.is_named(sign));
         PRESETS.iter().find(|preset| frame.arrays.iter().any(|array| is_sign(preset, array)))
     }
 
@@ -133,7 +133,10 @@ mod tests {
             "[columns]\np = \"pressure_interpolated\"\nu_y = \"\"\n[rows]\ncorners = false\n".to_owned();
         let own = StudySource { name: "map.toml".to_owned(), text };
         let mapping = named("ogs").mapping(Some(&own), false).expect("a mapping");
-        assert_eq!(mapping.columns.p.as_deref(), Some("pressure_interpolated"));
+        assert_eq!(
+            mapping.columns.get(crate::import::mapping::Column::Pressure).map(String::as_str),
+            Some("pressure_interpolated")
+        );
         assert_eq!((mapping.columns.u_y, mapping.rows.corners), (None, false));
         assert_eq!(mapping.columns.y, "coordinates[1]");
         assert!(!mapping.optional.contains(&"p".to_owned()) && mapping.optional.contains(&"y".to_owned()));

@@ -154,11 +154,13 @@ pub struct Time {
     pub files: BTreeMap<String, f64>,
     /// Times of the files, in the order in which they are given.
     pub list: Vec<f64>,
+    /// Whether the files, in their order, are at the times of the case.
+    pub case: bool,
     /// Seconds from one numbered step to the next, if file names have the number of the step.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub step: Option<f64>,
-    /// The file name with `{step}` where the number of the step stands and `*` for what differs; the last number of
-    /// the name by default.
+    /// The file name, or its path from a folder on, with `{step}` where the number of the step stands and `*` for what
+    /// differs; the last number of the name by default.
     pub pattern: Option<String>,
 }
 
@@ -215,7 +217,8 @@ pub enum StressKind {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SettlementSeries {
-    /// CSV file, relative to the results or to the current folder.
+    /// CSV file, relative to the results or to the current folder; the result itself by default.
+    #[serde(default)]
     pub file: String,
     /// Column of the time, in the unit of [units]; `t` by default.
     #[serde(default = "time_column")]
@@ -241,7 +244,7 @@ fn downward() -> VerticalSense {
 }
 #[cfg(test)]
 mod tests {
-    use crate::import::mapping::Mapping;
+    use crate::import::mapping::{Column, Mapping};
     use crate::import::raw_row::{RawRow, SolvedBody};
     use crate::study::file::StudySource;
     use crate::study::solver::Preset;
@@ -358,7 +361,6 @@ mod tests {
     #[test]
     #[expect(clippy::too_many_lines, reason = "one table of all presets")]
     fn every_preset_names_these_columns_and_no_others() {
-        let some = |name: &str| Some(name.to_owned());
         for (preset, [t, x, y, p, u_x, u_y, stress, volume], said) in [
             (
                 "ogs",
@@ -505,16 +507,16 @@ mod tests {
             let mapping = Mapping::resolve(Some(preset), None, true).expect("a mapping");
             let columns = &mapping.columns;
             let found = [
-                &columns.t,
-                &columns.x,
-                &some(&columns.y),
-                &columns.p,
-                &columns.u_x,
-                &columns.u_y,
-                &columns.effective_stress,
-                &columns.volume,
+                Column::Time,
+                Column::X,
+                Column::Y,
+                Column::Pressure,
+                Column::Along,
+                Column::Up,
+                Column::EffectiveStress,
+                Column::Volume,
             ]
-            .map(|name| name.clone().unwrap_or_default());
+            .map(|column| columns.get(column).cloned().unwrap_or_default());
             assert_eq!(found, [t, x, y, p, u_x, u_y, stress, volume], "{}", preset.name);
             // What a row of 7 Pa and 11 Pa becomes says the signs, and the place the configuration.
             let [_, along, height, pressure, effective, up, right] = taken(&mapping, 4.0, 2.0);

@@ -49,6 +49,8 @@ pub enum Lack {
     EndMissing,
     /// A value is far beyond what the load can bring about.
     ValueImpossible,
+    /// A file says a thing in two ways: a header that does not fit its data.
+    FileContradicts,
 }
 
 words!(
@@ -57,7 +59,7 @@ words!(
     LengthNotCovered "length-not-covered", PlacesMissing "places-missing", RowsRepeated "rows-repeated",
     SamplesDiffer "samples-differ", TimeMissing "time-missing", ZerosInside "zeros-inside",
     Undeclared "undeclared", QuantityMissing "quantity-missing", EndMissing "end-missing",
-    ValueImpossible "value-impossible",
+    ValueImpossible "value-impossible", FileContradicts "file-contradicts",
 );
 
 /// One thing that is missing from a result.
@@ -102,9 +104,13 @@ impl Whole<'_> {
         let repeated = |state: &SampledState| {
             let (repeated, all) = (state.repeated, state.initial_height.len());
             (repeated > 0).then(|| {
+                let at = state.repeated_at.map_or(String::new(), |[height, distance]| {
+                    let across = if distance.is_nan() { String::new() } else { format!(", x = {} m", short(distance)) };
+                    format!(", first at y = {} m{across}", short(height))
+                });
                 format!(
-                    "{repeated} of {all} rows repeat the place of another; where they are samples side by side, keep \
-                     the column that tells them apart"
+                    "{repeated} of {all} rows repeat the place of another with other values{at}; where they are samples side \
+                     by side, keep the column that tells them apart"
                 )
             })
         };
@@ -186,7 +192,7 @@ impl Whole<'_> {
 
     /// A note where samples lie at one height, or along a few verticals of a layer that were chosen for display.
     pub fn profiles(&self, states: &[SampledState]) -> Option<String> {
-        let state = states.first()?;
+        let state = states.first().filter(|state| !state.initial_height.is_empty())?;
         let heights = coverage::lines(&state.initial_height, self.parameters.height);
         let distances = coverage::lines(&state.initial_distance, self.parameters.length);
         let all = |lines: &[f64]| lines.iter().map(|line| short(*line)).collect::<Vec<_>>().join(", ");
@@ -201,6 +207,10 @@ impl Whole<'_> {
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {
+        // A settlement curve has no places.
+        if state.initial_height.is_empty() {
+            return None;
+        }
         let can_scatter = !state.initial_distance.is_empty();
         let is_one_height = |lines: &[f64]| lines.len() == 1;
         let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height)?;

@@ -77,7 +77,8 @@ fn between<'a>(lines: &'a [f64], gaps: &'a [f64]) -> impl Iterator<Item = Bare> 
         .map(|place| Bare { from: lines[place], to: lines[place + 1] })
 }
 
-/// Whether a gap is larger than its neighbours and than most around it.
+/// Whether a gap is larger than its neighbours and than most around it. Of a pattern, like the centres of triangles at thirds
+/// of each row of cells, a third of the gaps around are as large.
 fn is_bare(gaps: &[f64], place: usize) -> bool {
     let next = place + 1..(place + 2).min(gaps.len());
     let neighbours = gaps[place.saturating_sub(1)..place].iter().chain(&gaps[next]);
@@ -86,6 +87,10 @@ fn is_bare(gaps: &[f64], place: usize) -> bool {
     let after = place + 1..(place + 1 + AROUND).min(gaps.len());
     let mut around: Vec<f64> = gaps[before].iter().chain(&gaps[after]).copied().collect();
     around.sort_by(f64::total_cmp);
+    let as_large = around.iter().filter(|gap| **gap >= (1.0 - SAME_SPACING) * gaps[place]).count();
+    if 3 * as_large >= around.len() {
+        return false;
+    }
     let Some(median) = around.get(around.len() / 2) else { return false };
     gaps[place] > BARE * largest.max(*median)
 }
@@ -155,6 +160,21 @@ mod tests {
     fn points(cells: usize, shares: &[f64]) -> Vec<f64> {
         let place = |cell: usize| shares.iter().map(move |share| (cell as f64 + share) / cells as f64);
         (0..cells).flat_map(place).collect()
+    }
+
+    #[test]
+    fn centres_of_triangles_cover_their_cells_and_a_row_of_cells_that_is_missing_shows() {
+        let thirds = [1.0 / 3.0, 2.0 / 3.0];
+        for cells in [2, 3, 4, 8, 16] {
+            assert_eq!(bare(&points(cells, &thirds), 1.0), None, "{cells} cells");
+        }
+        for cells in [8, 16] {
+            for missing in [0, 1, cells / 2, cells - 1] {
+                let mut places = points(cells, &thirds);
+                places.drain(2 * missing..2 * missing + 2);
+                assert!(bare(&places, 1.0).is_some(), "{missing} of {cells}");
+            }
+        }
     }
 
     /// Places without order, the same in every run.

@@ -285,7 +285,7 @@ fn samples_at(state: &SampledState, places: &[usize]) -> SampledState {
         displacement: of(&state.displacement),
         horizontal_displacement: of(&state.horizontal_displacement),
         surface_displacement: state.surface_displacement,
-        repeated: 0,
+        ..SampledState::default()
     }
 }
 

@@ -153,8 +153,12 @@ pub fn score(
     for (state, time_factor) in states.iter().zip(times) {
         score.samples.push((time_factor, state.initial_height.len()));
         for (place, reference) in references.iter().enumerate() {
-            let compared = ScoredState { parameters, reference, state, time_factor, sample };
-            score.add(&compared, place == 0)?;
+            let mut is_settled = false;
+            for (sample, state) in state.sets(sample) {
+                let compared = ScoredState { parameters, reference, state, time_factor, sample, is_settled };
+                is_settled |= compared.displacement_of_surface().is_some();
+                score.add(&compared, place == 0)?;
+            }
         }
     }
     Ok(score)
@@ -167,12 +171,14 @@ struct ScoredState<'a> {
     state: &'a SampledState,
     time_factor: f64,
     sample: Sample,
+    /// Whether its settlement is known from other samples.
+    is_settled: bool,
 }
 
 impl Score {
     /// Adds the errors of a state against a reference, of the first reference the worst places too.
     fn add(&mut self, compared: &ScoredState<'_>, is_first: bool) -> Result<(), ExactError> {
-        let ScoredState { parameters, reference, state, time_factor, sample } = *compared;
+        let ScoredState { parameters, reference, state, time_factor, sample, .. } = *compared;
         let exact = ExactFields::of(reference, time_factor, state.places(parameters.height))?;
         let settled = if reference.is_plane() {
             reference.settlement(LONG_AFTER)?
@@ -317,6 +323,9 @@ impl ScoredState<'_> {
     /// sample has them.
     fn displacement_of_surface(&self) -> Option<f64> {
         let (state, parameters) = (self.state, self.parameters);
+        if self.is_settled {
+            return None;
+        }
         let mean_or_plate = [ReferenceKind::Mandel, ReferenceKind::Shelf(ShelfProblem::BarronFreeStrain)];
         if state.surface_displacement.is_some() || mean_or_plate.contains(&self.reference.kind()) {
             return state.surface_displacement;

@@ -237,6 +237,9 @@ impl Scored {
                 has_volumes: held.mapping.columns.volume.is_some(),
             };
             self.score.warnings.extend(whole.findings(states)?);
+            for set in beside_by_set(states) {
+                self.score.warnings.extend(Whole { has_volumes: false, ..whole }.findings(&set)?);
+            }
             self.score.warnings.extend(interior_zeros(parameters, states));
             self.run.notes.extend(whole.unit_of_volume(states));
             self.run.notes.extend(whole.profiles(states));
@@ -254,7 +257,14 @@ impl Scored {
         let absent = absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: one.sentence(when) });
         let unended =
             self.run.unended.iter().map(|file| Finding { name: Lack::EndMissing, sentence: not_ended(file) });
-        absent.chain(unended).collect()
+        let doubts = self.run.doubts.first().map(|doubt| {
+            let more = match self.run.doubts.len() {
+                1 => String::new(),
+                many => format!(" (and {} more)", many - 1),
+            };
+            Finding { name: Lack::FileContradicts, sentence: format!("{doubt}{more}") }
+        });
+        absent.chain(unended).chain(doubts).collect()
     }
 
     /// Notes why a quantity has no error.
@@ -265,7 +275,8 @@ impl Scored {
         let is_known = self.run.without.contains(&Quantity::Settlement)
             || self.score.unresolved.iter().any(|one| one.quantity == Quantity::Settlement);
         let is_plane = case.scene.has_plane_fields();
-        if displacement && !settlement && !is_known {
+        let is_curve = self.run.states.iter().all(|state| state.initial_height.is_empty());
+        if displacement && !settlement && !is_known && !is_curve {
             let why = if case.scene.has_plates() {
                 "it is that of the plate, where no sample lies: give a curve by [settlement] in the mapping"
             } else if is_plane {
@@ -282,6 +293,16 @@ impl Scored {
             );
         }
     }
+}
+
+/// The quantities at places of their own, by set, each over the times that have it.
+fn beside_by_set(states: &[SampledState]) -> Vec<Vec<SampledState>> {
+    let most = states.iter().map(|state| state.beside.len()).max().unwrap_or(0);
+    let of_set = |set: usize| {
+        let there = states.iter().filter_map(|state| Some((state.time, &state.beside.get(set)?.state)));
+        there.map(|(time, state)| SampledState { time, ..state.clone() }).collect()
+    };
+    (0..most).map(of_set).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Small files of every format, each edited in one place at a time: what is read of them, or why they are refused, whole.
 
-use crate::frame::{Cells, Frame, Wanted};
+use crate::cells::Cells;
+use crate::frame::{Frame, Wanted};
 use crate::{collection_of, read_states, steps_of};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -27,7 +27,7 @@ const SERIES_COLUMNS: [&str; 3] = ["cells", "order", "class"];
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Files of a result: CSV, VTU, PVD, .series, legacy VTK, NPZ, HDF5, XDMF. CSV files are one result, with --cells
+    /// Files of a result: CSV, VTU, PVTU, PVD, .series, legacy VTK, NPZ, HDF5, XDMF, Exodus, gmsh. CSV files are one result, with --cells
     /// one argument per mesh; other files are grouped by their meshes. Patterns with `*` and `?` are expanded
     #[arg(required_unless_present = "show_mapping", value_name = "FILE")]
     results: Vec<PathBuf>,
@@ -37,9 +37,12 @@ pub struct Arguments {
     /// Program that wrote the files, for the meaning of its arrays; --mapping overrides it key by key
     #[arg(long, value_enum)]
     preset: Option<Preset>,
-    /// Seconds from one numbered step to the next, if file names have the number of the step
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
-    set_time_step: Option<f64>,
+    /// Seconds from one numbered step to the next, if file names have the number of the step; comma-separated, one per
+    /// mesh, if each argument is a mesh
+    #[arg(
+        long, value_name = "SECONDS", value_parser = seconds, value_delimiter = ',', allow_hyphen_values = true
+    )]
+    set_time_step: Vec<f64>,
     /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
@@ -103,7 +106,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     tell_warnings(&asked.study);
     let case = asked.case();
     let without = quantities_of(&arguments.without)?;
-    let (mapping, mut runs) = scored_files::read(arguments, &without, case)?;
+    let (mapping, mut runs) = scored_files::read(arguments, &without, case, &asked.requested)?;
     for run in &mut runs {
         run.leave_out(&without);
     }

@@ -13,24 +13,53 @@ use clap::ValueEnum;
 use oedometer_formats::input_file;
 use std::path::Path;
 
-/// Reads the files of the command line, which may lack some quantities: their mapping, and their runs.
-pub fn read(arguments: &Arguments, without: &[Quantity], case: &Case) -> anyhow::Result<(Mapping, Vec<Run>)> {
+/// Reads the files of the command line, which may lack some quantities: their mapping, and their runs. `times` are the requested
+/// time factors.
+pub fn read(
+    arguments: &Arguments,
+    without: &[Quantity],
+    case: &Case,
+    times: &[f64],
+) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let body = SolvedBody::of(case);
     let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
     let mut mapping = mapping_of(arguments, case.scene.has_plane_fields(), is_tables)?;
     mapping.let_lack(without);
-    if let Some(step) = arguments.set_time_step {
-        if !(step.is_finite() && step > 0.0) {
-            return Err(Ended::usage(format!("`--set-time-step {step}` is invalid: give seconds above 0")));
-        }
-        mapping.time.step = Some(step);
+    let steps = &arguments.set_time_step;
+    if let Some(step) = steps.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
+        return Err(Ended::usage(format!("`--set-time-step {step}` is invalid: give seconds above 0")));
     }
-    let mut runs = if let Some(cells) = arguments.cells.as_ref().filter(|_| is_tables) {
-        // Each argument with tables is a mesh.
-        cells_of(cells, given.len())?;
-        let runs = given.chunks(1).map(|one| runs_of(one, &mapping, body));
-        runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect()
+    if steps.len() > 1 && steps.len() != given.len() {
+        return Err(Ended::usage(format!(
+            "`--set-time-step` has {} numbers for {} arguments with files: give one, or one per mesh",
+            steps.len(),
+            given.len()
+        )));
+    }
+    mapping.time.step = steps.first().copied().or(mapping.time.step);
+    if mapping.time.case {
+        if times.is_empty() {
+            return Err(Ended::usage(
+                "the mapping takes the times of the case: give them by --time-factor, in the order of the files".to_owned(),
+            ));
+        }
+        let seconds: Vec<f64> = times.iter().map(|factor| factor * body.seconds_per_time_factor).collect();
+        mapping.follow_case(&seconds, body.seconds_per_time_factor);
+    }
+    let is_by_mesh = arguments.cells.is_some() && is_tables;
+    let mut runs = if is_by_mesh || steps.len() > 1 {
+        // Each argument is a mesh.
+        if let Some(cells) = arguments.cells.as_ref().filter(|_| is_tables) {
+            cells_of(cells, given.len())?;
+        }
+        let mut runs = Vec::new();
+        for (place, files) in given.iter().enumerate() {
+            let mut own = mapping.clone();
+            own.time.step = steps.get(place).or(steps.first()).copied().or(mapping.time.step);
+            runs.extend(runs_of(std::slice::from_ref(files), &own, body)?);
+        }
+        runs
     } else {
         runs_of(&given, &mapping, body)?
     };

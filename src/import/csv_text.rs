@@ -1,0 +1,269 @@
+//! The text of a table: its separator, its decimal sign and the line that names its columns, declared or found where one
+//! choice is left.
+
+use crate::import::mapping::TableLayout;
+use oedometer_formats::{ImportError, excerpt, input_file};
+use std::path::Path;
+
+/// Separators in the order in which they are tried; a blank stands for any.
+const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
+
+/// A table as text with commas or another single separator, and what was found of it.
+#[derive(Debug)]
+pub struct CsvText {
+    /// The text, line by line as in the file.
+    pub text: Vec<u8>,
+    /// The separator in it.
+    pub delimiter: u8,
+    /// Whether a comma begins the fraction of a number.
+    pub has_decimal_comma: bool,
+    /// Names of the columns, where the text itself does not begin with them.
+    pub names: Option<Vec<String>>,
+    /// Whether its last line ends.
+    pub is_ended: bool,
+}
+
+/// How the lines of a table are split.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Dialect {
+    delimiter: char,
+    has_decimal_comma: bool,
+}
+
+impl CsvText {
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// When it cannot be read, or leaves more than one choice.
+    pub fn read(path: &Path, layout: &TableLayout) -> Result<Self, ImportError> {
+        let text = input_file::read(path).map_err(ImportError::io(path))?;
+        Self::of(text, layout).map_err(|why| ImportError::content(path, why))
+    }
+
+    fn of(text: Vec<u8>, layout: &TableLayout) -> Result<Self, String> {
+        let is_ended = text.last().is_none_or(|last| [b'\n', b'\r'].contains(last));
+        let lossy = String::from_utf8_lossy(&text);
+        let comment = layout.comment;
+        let is_comment = |line: &str| comment.is_some_and(|mark| line.trim_start().starts_with(mark));
+        let mut lines = lossy.lines().filter(|line| !line.trim().is_empty());
+        let comments: Vec<&str> = lines.clone().take_while(|line| is_comment(line)).collect();
+        let mut rows = lines.by_ref().filter(|line| !is_comment(line));
+        let (first, second) = (rows.next().unwrap_or_default(), rows.next());
+        // Numbers alone are no names, and below them there is nothing else to learn.
+        let is_first_data = layout.header == Some(false)
+            || (layout.header.is_none()
+                && dialects(first, layout).iter().any(|dialect| dialect.are_numbers(first)));
+        let sample = if is_first_data { Some(first) } else { second };
+        let header = if is_first_data { None } else { Some(first) };
+        let dialect = dialect_of(sample, header, layout)?;
+        let columns = dialect.split(sample.unwrap_or(first)).len();
+        let names = match header {
+            // The names may be separated otherwise than the numbers.
+            Some(header) if dialect.split(header).len() != columns => names_of(header, columns),
+            Some(_) => None,
+            None => {
+                let mark = comment.unwrap_or('#');
+                let above = comments.iter().rev().map(|line| line.trim_start().trim_start_matches(mark));
+                let named = above.filter_map(|line| names_of(line, columns)).next();
+                Some(named.unwrap_or_else(|| (1..=columns).map(|number| number.to_string()).collect()))
+            }
+        };
+        let drops_header = header.is_some() && names.is_some();
+        let has_decimal_comma = dialect.has_decimal_comma;
+        if dialect.delimiter != ' ' && !drops_header {
+            let delimiter = u8::try_from(dialect.delimiter).unwrap_or(b',');
+            return Ok(Self { delimiter, has_decimal_comma, names, is_ended, text });
+        }
+        // One line for each, so that messages name the lines of the file.
+        let mut rewritten = String::with_capacity(lossy.len());
+        let mut is_header = drops_header;
+        for line in lossy.lines() {
+            if is_comment(line) || line.trim().is_empty() {
+            } else if is_header {
+                is_header = false;
+            } else if dialect.delimiter == ' ' {
+                rewritten.push_str(&dialect.split(line).join(";"));
+            } else {
+                rewritten.push_str(line);
+            }
+            rewritten.push('\n');
+        }
+        let delimiter =
+            if dialect.delimiter == ' ' { b';' } else { u8::try_from(dialect.delimiter).unwrap_or(b',') };
+        Ok(Self { delimiter, has_decimal_comma, names, is_ended, text: rewritten.into_bytes() })
+    }
+}
+
+/// Names in a line, if there are as many as columns, whatever separates them.
+fn names_of(line: &str, columns: usize) -> Option<Vec<String>> {
+    let split = |separator: char| {
+        let dialect = Dialect { delimiter: separator, has_decimal_comma: false };
+        let names: Vec<String> =
+            dialect.split(line).iter().map(|name| name.trim().trim_matches('"').to_owned()).collect();
+        (names.len() == columns && names.iter().all(|name| !name.is_empty())).then_some(names)
+    };
+    SEPARATORS.into_iter().find_map(split)
+}
+
+/// The dialects that a layout leaves open for a line.
+fn dialects(line: &str, layout: &TableLayout) -> Vec<Dialect> {
+    let separators = SEPARATORS.into_iter().filter(|separator| match separator {
+        ' ' => true,
+        separator => line.contains(*separator),
+    });
+    let separators: Vec<char> = layout.delimiter.map_or_else(|| separators.collect(), |given| vec![given]);
+    let commas: Vec<bool> = layout.decimal.map_or_else(|| vec![false, true], |sign| vec![sign == ',']);
+    separators
+        .iter()
+        .flat_map(|delimiter| {
+            commas.iter().map(|comma| Dialect { delimiter: *delimiter, has_decimal_comma: *comma })
+        })
+        .filter(|dialect| !(dialect.has_decimal_comma && dialect.delimiter == ','))
+        .collect()
+}
+
+/// The dialect of a table by a line with numbers, and the line with the names.
+fn dialect_of(sample: Option<&str>, header: Option<&str>, layout: &TableLayout) -> Result<Dialect, String> {
+    let open = dialects(sample.or(header).unwrap_or_default(), layout);
+    let delimiter = layout.delimiter.unwrap_or_else(|| {
+        let has = |separator: &&char| header.is_some_and(|header| header.contains(**separator));
+        SEPARATORS[..3].iter().find(has).copied().unwrap_or(',')
+    });
+    let has_commas =
+        || delimiter != ',' && sample.is_some_and(|sample| sample.contains(',') && !sample.contains('.'));
+    let has_decimal_comma = layout.decimal.map_or_else(has_commas, |sign| sign == ',');
+    let fallback = Dialect { delimiter, has_decimal_comma };
+    let Some(sample) = sample else { return Ok(fallback) };
+    // As many names as columns, and as many numbers as can be.
+    let count = |dialect: &Dialect| dialect.split(sample).len();
+    let has_names = |dialect: &Dialect| {
+        header.is_none_or(|header| {
+            let own = Dialect { delimiter: dialect.delimiter, has_decimal_comma: false };
+            own.split(header).len() == count(dialect) || names_of(header, count(dialect)).is_some()
+        })
+    };
+    let mut fit: Vec<Dialect> = open
+        .into_iter()
+        .filter(|dialect| dialect.are_numbers(sample) && has_names(dialect) && count(dialect) > 1)
+        .collect();
+    // A sign of the fraction that no number has is none.
+    let has_fraction =
+        |dialect: &Dialect| dialect.has_decimal_comma && !dialect.split(sample).concat().contains(',');
+    fit.retain(|dialect| !has_fraction(dialect));
+    match fit[..] {
+        [] => Ok(fallback),
+        [only] => Ok(only),
+        [first, ..] => {
+            let columns = count(&first);
+            if fit.iter().all(|dialect| count(dialect) == columns)
+                && fit.iter().all(|one| one.delimiter == first.delimiter)
+            {
+                return Ok(first);
+            }
+            Err(format!(
+                "`{}` may have {} columns: say `delimiter` and `decimal` in [csv]",
+                excerpt(sample),
+                fit.iter().map(|dialect| count(dialect).to_string()).collect::<Vec<_>>().join(" or ")
+            ))
+        }
+    }
+}
+
+impl Dialect {
+    /// The fields of a line.
+    fn split(self, line: &str) -> Vec<&str> {
+        match self.delimiter {
+            ' ' => line.split_whitespace().collect(),
+            delimiter => line.split(delimiter).map(str::trim).collect(),
+        }
+    }
+
+    /// Whether all fields of a line are numbers.
+    fn are_numbers(self, line: &str) -> bool {
+        let fields = self.split(line);
+        !fields.is_empty() && fields.iter().all(|field| number_of(field, self.has_decimal_comma).is_some())
+    }
+}
+
+/// A number as programs write it: with a comma, or with Fortran's `D` before the exponent.
+pub fn number_of(typed: &str, has_decimal_comma: bool) -> Option<f64> {
+    if let Ok(number) = typed.parse() {
+        // What has a comma is none without.
+        return Some(number);
+    }
+    let plain: String = typed
+        .trim_matches('"')
+        .chars()
+        .map(|symbol| match symbol {
+            'd' | 'D' => 'e',
+            ',' if has_decimal_comma => '.',
+            symbol => symbol,
+        })
+        .collect();
+    let is_number = plain.chars().all(|symbol| symbol.is_ascii_digit() || "+-.eE".contains(symbol));
+    plain.parse().ok().filter(|_| is_number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names and fields of the first row with numbers, or what is asked.
+    fn told(text: &str, layout: &TableLayout) -> Result<String, String> {
+        let table = CsvText::of(text.as_bytes().to_vec(), layout)?;
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(table.delimiter)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .has_headers(table.names.is_none())
+            .from_reader(&table.text[..]);
+        let names = match &table.names {
+            Some(names) => names.clone(),
+            None => reader.headers().expect("a header").iter().map(str::to_owned).collect(),
+        };
+        let row = reader.records().next().expect("a row").expect("fields");
+        let numbers: Vec<String> = row
+            .iter()
+            .map(|field| {
+                number_of(field, table.has_decimal_comma).map_or("?".to_owned(), |number| number.to_string())
+            })
+            .collect();
+        let line = row.position().map_or(0, csv::Position::line);
+        Ok(format!("{} = {} in line {line}", names.join(" "), numbers.join(" ")))
+    }
+
+    #[test]
+    fn tables_of_every_writer_are_read_where_one_choice_is_left() {
+        let layout = TableLayout::default();
+        for (text, found) in [
+            ("t,y,p\n1,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            ("# t, y, p\n1.0,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            ("# column\n# t y p\n1.0 2.5 3\n", "t y p = 1 2.5 3 in line 3"),
+            ("# t y p\n1.0,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            ("t y p\n  1.0   2.5\t3\n", "t y p = 1 2.5 3 in line 2"),
+            ("t\ty\tp\n1\t2,5\t3\n", "t y p = 1 2.5 3 in line 2"),
+            ("t;y;p\n1;2,5;3\n", "t y p = 1 2.5 3 in line 2"),
+            ("t;y;p\n1;2.5;3\n", "t y p = 1 2.5 3 in line 2"),
+            ("t y p\n1,0 2,5 3,0\n", "t y p = 1 2.5 3 in line 2"),
+            ("t,y,p\n1.0D+00,2.5d0,0.3D1\n", "t y p = 1 2.5 3 in line 2"),
+            ("1,2.5,3\n4,5,6\n", "1 2 3 = 1 2.5 3 in line 1"),
+            ("1 2.5 3\n", "1 2 3 = 1 2.5 3 in line 1"),
+            ("\n# made by a\n\nt,y,p\n# in Pa\n1,2.5,3\n", "t y p = 1 2.5 3 in line 6"),
+            ("t,name,p\n1,clay,3\n", "t name p = 1 ? 3 in line 2"),
+            ("t,y,p\n1,2.5,nan\n", "t y p = 1 2.5 NaN in line 2"),
+            ("\"t\",\"y\",\"p\"\n1,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+        ] {
+            assert_eq!(told(text, &layout).as_deref(), Ok(found), "{text}");
+        }
+        // A comma may separate or begin a fraction.
+        let asked = told("1,0 2,5\n", &layout);
+        assert_eq!(asked.as_deref(), Ok("1 2 = 1 2.5 in line 1"));
+        let given = TableLayout { delimiter: Some(';'), decimal: Some(','), ..TableLayout::default() };
+        assert_eq!(told("t;y\n1,5;2\n", &given).as_deref(), Ok("t y = 1.5 2 in line 2"));
+        let named = TableLayout { header: Some(true), ..TableLayout::default() };
+        assert_eq!(told("1,2\n3,4\n", &named).as_deref(), Ok("1 2 = 3 4 in line 2"));
+        assert_eq!(number_of("1,234.5", true), None);
+        assert_eq!(number_of("1.0D-3", false), Some(1e-3));
+        assert_eq!(number_of("dead", false), None);
+    }
+}
