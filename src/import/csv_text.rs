@@ -150,14 +150,25 @@ fn dialect_of(sample: Option<&str>, header: Option<&str>, layout: &TableLayout) 
     let has_fraction =
         |dialect: &Dialect| dialect.has_decimal_comma && !dialect.split(sample).concat().contains(',');
     fit.retain(|dialect| !has_fraction(dialect));
+    let names = header.map(|header| fallback.split(header).len());
     match fit[..] {
+        [] if fallback.delimiter == ','
+            && names.is_some_and(|names| names > 1 && 2 * names == count(&fallback)) =>
+        {
+            Err(format!(
+                "`{}` has twice as many fields as there are names: where a comma begins fractions, separate the columns by \
+                 another sign",
+                excerpt(sample)
+            ))
+        }
         [] => Ok(fallback),
         [only] => Ok(only),
         [first, ..] => {
-            let columns = count(&first);
-            if fit.iter().all(|dialect| count(dialect) == columns)
-                && fit.iter().all(|one| one.delimiter == first.delimiter)
-            {
+            let numbers = |dialect: &Dialect| -> Vec<Option<f64>> {
+                let fields = dialect.split(sample);
+                fields.iter().map(|field| number_of(field, dialect.has_decimal_comma)).collect()
+            };
+            if fit.iter().all(|dialect| numbers(dialect) == numbers(&first)) {
                 return Ok(first);
             }
             Err(format!(
@@ -262,6 +273,10 @@ mod tests {
         assert_eq!(told("t;y\n1,5;2\n", &given).as_deref(), Ok("t y = 1.5 2 in line 2"));
         let named = TableLayout { header: Some(true), ..TableLayout::default() };
         assert_eq!(told("1,2\n3,4\n", &named).as_deref(), Ok("1 2 = 3 4 in line 2"));
+        let tabs = told("t\ty\tp\n4,0875\t0,0\t0,5\n", &layout);
+        assert_eq!(tabs.as_deref(), Ok("t y p = 4.0875 0 0.5 in line 2"));
+        let twice = told("t,y,p\n4,0875,0,05,1,0\n", &layout);
+        assert!(twice.is_err_and(|why| why.contains("twice as many fields")));
         assert_eq!(number_of("1,234.5", true), None);
         assert_eq!(number_of("1.0D-3", false), Some(1e-3));
         assert_eq!(number_of("dead", false), None);

@@ -289,6 +289,20 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
     let wrong = Finished { errors: "1\n2\n3\n4\n5\n".to_owned(), ..plain };
     assert_eq!(kept_words(&wrong), ["1", "2", "3", "4", "5"]);
     assert_eq!(last_words(&wrong), ". The last it said: 2 / 3 / 4 / 5");
+    // What MPI says of a process that ended is not what went wrong.
+    let mpi = "Error: matrix is singular\nstep 7\n-----\nMPI_ABORT was invoked on rank 0 in communicator MPI_COMM_WORLD\n\
+               with errorcode 1.\nPrimary job  terminated normally, but 1 process returned\na non-zero exit code.\n\
+               one\ntwo\nthree\nfour\nfive\nsix\nseven\neight\nnine\nten\n";
+    let crashed = Finished { errors: mpi.to_owned(), ..wrong };
+    assert_eq!(kept_words(&crashed)[0], "Error: matrix is singular");
+    let told = last_words(&crashed);
+    assert_eq!(
+        told,
+        ". It said first: Error: matrix is singular. The last it said: seven / eight / nine / ten"
+    );
+    let python = "Traceback (most recent call last):\n  File \"a.py\", line 1\nValueError: no mesh\nabort(1) on node 0\n";
+    let crashed = Finished { errors: python.to_owned(), ..crashed };
+    assert_eq!(first_message(&crashed.errors).as_deref(), Some("ValueError: no mesh"));
 }
 
 #[test]
