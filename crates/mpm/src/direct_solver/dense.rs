@@ -9,6 +9,7 @@
 use crate::wide::wide;
 use nalgebra::{DMatrixView, DMatrixViewMut};
 use std::array;
+use std::ops::Range;
 
 /// Columns that are eliminated one by one: products of narrower matrices are slower.
 const NARROW: usize = 16;
@@ -44,12 +45,16 @@ fn eliminate_one_by_one(matrix: &mut DMatrixViewMut<'_, f64>, pivot_rows: usize,
             continue;
         }
         let mut factors = done.column_mut(place);
-        let mut factors = factors.rows_range_mut(place + 1..);
-        factors /= pivot;
-        for mut column in later.column_iter_mut() {
-            let own = column[place];
-            column.rows_range_mut(place + 1..).axpy(-own, &factors, 1.0);
-        }
+        let factors = &mut factors.as_mut_slice()[place + 1..];
+        wide!({
+            for factor in &mut *factors {
+                *factor /= pivot;
+            }
+            for mut column in later.column_iter_mut() {
+                let (own, rest) = column.as_mut_slice()[place..].split_at_mut(1);
+                subtract_columns(rest, [&*factors], [own[0]]);
+            }
+        });
     }
 }
 
@@ -64,7 +69,14 @@ pub(crate) fn swap_rows(matrix: &mut DMatrixViewMut<'_, f64>, pivots: &[usize]) 
 pub(crate) fn solve_unit_lower(lower: DMatrixView<'_, f64>, mut right: DMatrixViewMut<'_, f64>) {
     let count = lower.nrows();
     if count <= NARROW {
-        lower.solve_lower_triangular_with_diag_mut(&mut right, 1.0);
+        let columns: Vec<_> = lower.column_iter().collect();
+        wide!(for mut values in right.column_iter_mut() {
+            let values = values.as_mut_slice();
+            for (place, column) in columns.iter().enumerate() {
+                let (done, rest) = values.split_at_mut(place + 1);
+                subtract_columns(rest, [&column.as_slice()[place + 1..]], [done[place]]);
+            }
+        });
         return;
     }
     let half = count / 2;
@@ -76,8 +88,8 @@ pub(crate) fn solve_unit_lower(lower: DMatrixView<'_, f64>, mut right: DMatrixVi
     solve_unit_lower(corner, below);
 }
 
-/// Columns of a product that are summed together, and terms of each sum: what the registers hold.
-const BLOCK: usize = 4;
+/// Rows and columns of a product whose sums stay in registers together, and terms between two visits to memory.
+const TILE: [usize; 3] = [8, 4, 64];
 
 /// `C ← C − A B`.
 pub(crate) fn subtract_product(
@@ -85,70 +97,160 @@ pub(crate) fn subtract_product(
     a: DMatrixView<'_, f64>,
     b: DMatrixView<'_, f64>,
 ) {
-    wide!({
-        let mut first = 0;
-        while first + BLOCK <= c.ncols() {
-            subtract_in_columns::<BLOCK>(&mut c.columns_mut(first, BLOCK), &a, &b, first);
-            first += BLOCK;
+    const COLUMNS: usize = TILE[1];
+    // The rows of A that a tile takes, term by term; those beyond the last are zero.
+    let mut panel = [[0.0; TILE[0]]; TILE[2]];
+    for first_term in (0..a.ncols()).step_by(TILE[2]) {
+        let terms = first_term..a.ncols().min(first_term + TILE[2]);
+        for first_row in (0..a.nrows()).step_by(TILE[0]) {
+            let rows = first_row..a.nrows().min(first_row + TILE[0]);
+            let panel = &mut panel[..terms.len()];
+            for (tile, term) in panel.iter_mut().zip(terms.clone()) {
+                tile.fill(0.0);
+                tile[..rows.len()].copy_from_slice(&a.column(term).as_slice()[rows.clone()]);
+            }
+            let whole = c.ncols() - c.ncols() % COLUMNS;
+            for first in (0..whole).step_by(COLUMNS) {
+                subtract_tile::<COLUMNS>(c, panel, &b, (rows.clone(), terms.start, first));
+            }
+            for first in whole..c.ncols() {
+                subtract_tile::<1>(c, panel, &b, (rows.clone(), terms.start, first));
+            }
         }
-        for first in first..c.ncols() {
-            subtract_in_columns::<1>(&mut c.columns_mut(first, 1), &a, &b, first);
+    }
+}
+
+/// Some terms of some rows of the product, in `N` columns from one on.
+#[inline(always)]
+fn subtract_tile<const N: usize>(
+    c: &mut DMatrixViewMut<'_, f64>,
+    panel: &[[f64; TILE[0]]],
+    b: &DMatrixView<'_, f64>,
+    (rows, first_term, first): (Range<usize>, usize, usize),
+) {
+    let columns: [_; N] = array::from_fn(|n| b.column(first + n));
+    let columns = columns.each_ref().map(|column| &column.as_slice()[first_term..]);
+    let sums = wide!({
+        let factors = columns.map(|column| &column[..panel.len()]);
+        let mut sums = [[0.0; TILE[0]]; N];
+        for (term, tile) in panel.iter().enumerate() {
+            for n in 0..N {
+                let factor = factors[n][term];
+                for (sum, value) in sums[n].iter_mut().zip(tile) {
+                    *sum += value * factor;
+                }
+            }
+        }
+        sums
+    });
+    for (n, sums) in sums.iter().enumerate() {
+        let mut column = c.column_mut(first + n);
+        for (value, sum) in column.as_mut_slice()[rows.clone()].iter_mut().zip(sums) {
+            *value -= sum;
+        }
+    }
+}
+
+/// Columns of a triangle that a substitution takes together.
+const SWEEP: usize = 4;
+
+/// `rest ← rest − Σ x_k column_k`, columns at least as long as the rest.
+#[inline(always)]
+fn subtract_columns<const N: usize>(rest: &mut [f64], columns: [&[f64]; N], factors: [f64; N]) {
+    let columns = columns.map(|column| &column[..rest.len()]);
+    for (row, value) in rest.iter_mut().enumerate() {
+        let mut sum = columns[0][row] * factors[0];
+        for n in 1..N {
+            sum += columns[n][row] * factors[n];
+        }
+        *value -= sum;
+    }
+}
+
+/// Columns of a column-major block with so many rows, `N` of them from one on.
+#[inline(always)]
+fn columns_of<const N: usize>(block: &[f64], rows: usize, first: usize) -> [&[f64]; N] {
+    array::from_fn(|n| &block[(first + n) * rows..][..rows])
+}
+
+/// Replaces the first values, as many as columns, by `L⁻¹` of them, and takes from those below what they are tied to: `L` is
+/// the part of a tall block below its diagonal, which is one. One sweep over the block.
+pub(crate) fn sweep_down(block: &[f64], values: &mut [f64], columns: usize) {
+    wide!({
+        let whole = columns - columns % SWEEP;
+        for first in (0..whole).step_by(SWEEP) {
+            sweep_down_columns::<SWEEP>(block, values, first);
+        }
+        for first in whole..columns {
+            sweep_down_columns::<1>(block, values, first);
         }
     });
 }
 
-/// The product in `N` columns, which are those of `B` from `first` on.
 #[inline(always)]
-fn subtract_in_columns<const N: usize>(
-    c: &mut DMatrixViewMut<'_, f64>,
-    a: &DMatrixView<'_, f64>,
-    b: &DMatrixView<'_, f64>,
-    first: usize,
-) {
-    let mut columns = c.column_iter_mut();
-    let mut columns: [_; N] = array::from_fn(|_| columns.next());
-    let mut columns =
-        columns.each_mut().map(|column| column.as_mut().map_or(&mut [][..], |one| one.as_mut_slice()));
-    let mut term = 0;
-    while term + BLOCK <= a.ncols() {
-        subtract_terms::<N, BLOCK>(&mut columns, a, b, [first, term]);
-        term += BLOCK;
-    }
-    for term in term..a.ncols() {
-        subtract_terms::<N, 1>(&mut columns, a, b, [first, term]);
-    }
-}
-
-/// `K` terms of the sums in `N` columns.
-#[inline(always)]
-fn subtract_terms<const N: usize, const K: usize>(
-    c: &mut [&mut [f64]; N],
-    a: &DMatrixView<'_, f64>,
-    b: &DMatrixView<'_, f64>,
-    [first, term]: [usize; 2],
-) {
-    let rows = a.nrows();
-    let factors: [[f64; K]; N] = array::from_fn(|n| array::from_fn(|k| b[(term + k, first + n)]));
-    let columns: [_; K] = array::from_fn(|k| a.column(term + k));
-    let a: [&[f64]; K] = array::from_fn(|k| &columns[k].as_slice()[..rows]);
-    let c = c.each_mut().map(|column| &mut column[..rows]);
-    for row in 0..rows {
-        for n in 0..N {
-            let mut sum = a[0][row] * factors[n][0];
-            for k in 1..K {
-                sum += a[k][row] * factors[n][k];
-            }
-            c[n][row] -= sum;
+fn sweep_down_columns<const N: usize>(block: &[f64], values: &mut [f64], first: usize) {
+    let columns = columns_of::<N>(block, values.len(), first);
+    let (done, rest) = values.split_at_mut(first + N);
+    let own = &mut done[first..];
+    for n in 1..N {
+        for k in 0..n {
+            own[n] -= columns[k][first + n] * own[k];
         }
     }
+    subtract_columns(rest, columns.map(|column| &column[first + N..]), array::from_fn(|n| own[n]));
+}
+
+/// `own ← own − B later`, `B` with a row for each of its own values.
+pub(crate) fn subtract_image(block: &[f64], later: &[f64], own: &mut [f64]) {
+    wide!({
+        let rows = own.len();
+        let whole = later.len() - later.len() % SWEEP;
+        for first in (0..whole).step_by(SWEEP) {
+            let columns = columns_of::<SWEEP>(block, rows, first);
+            subtract_columns(own, columns, array::from_fn(|n| later[first + n]));
+        }
+        for first in whole..later.len() {
+            subtract_columns(own, columns_of::<1>(block, rows, first), [later[first]]);
+        }
+    });
+}
+
+/// Replaces values by `U⁻¹` of them: `U` is the part of a block with so many rows on its diagonal and above it.
+pub(crate) fn sweep_up(block: &[f64], rows: usize, values: &mut [f64]) {
+    wide!({
+        let mut end = values.len();
+        while end >= SWEEP {
+            sweep_up_columns::<SWEEP>(block, rows, &mut values[..end]);
+            end -= SWEEP;
+        }
+        while end > 0 {
+            sweep_up_columns::<1>(block, rows, &mut values[..end]);
+            end -= 1;
+        }
+    });
+}
+
+#[inline(always)]
+fn sweep_up_columns<const N: usize>(block: &[f64], rows: usize, values: &mut [f64]) {
+    let first = values.len() - N;
+    let columns = columns_of::<N>(block, rows, first);
+    let (rest, own) = values.split_at_mut(first);
+    for n in (0..N).rev() {
+        own[n] /= columns[n][first + n];
+        for k in 0..n {
+            own[k] -= columns[n][first + k] * own[n];
+        }
+    }
+    subtract_columns(rest, columns, array::from_fn(|n| own[n]));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::wide::in_narrow_registers;
-    use nalgebra::DMatrix;
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
+    use std::ops::AddAssign;
 
     proptest! {
         #[test]
@@ -171,10 +273,30 @@ mod tests {
             });
             prop_assert!(lower.rows(0, pivot_rows).amax() <= 1.0, "the largest of a column is its pivot");
             let upper = factors.rows(0, columns).upper_triangle();
-            prop_assert!((&lower * upper - &swapped).amax() < 1e-12 * lower.amax().max(1.0).powi(2));
+            prop_assert!((&lower * &upper - &swapped).amax() < 1e-12 * lower.amax().max(1.0).powi(2));
             let mut right = swapped.clone();
             solve_unit_lower(lower.rows(0, columns), right.rows_mut(0, columns));
             prop_assert!((lower.rows(0, columns) * right.rows(0, columns) - swapped.rows(0, columns)).amax() < 1e-10);
+            // Of a vector `L⁻¹` below, `U⁻¹` above, in wide registers as in narrow ones.
+            let start: Vec<f64> = (0..rows).map(|row| (1.7 * row as f64).sin()).collect();
+            let mut values = start.clone();
+            sweep_down(factors.as_slice(), &mut values, columns);
+            let mut narrow = start.clone();
+            in_narrow_registers(|| sweep_down(factors.as_slice(), &mut narrow, columns));
+            prop_assert_eq!(&narrow, &values);
+            let own = DVector::from_column_slice(&values[..columns]);
+            let mut whole = &lower * &own;
+            whole.rows_mut(columns, below + own_below).add_assign(&DVector::from_column_slice(&values[columns..]));
+            prop_assert!((whole - DVector::from_vec(start)).amax() < 1e-9 * own.amax().max(1.0));
+            let scale = upper.diagonal().map(f64::abs).min();
+            prop_assume!(scale > 1e-3);
+            let mut solved = own.as_slice().to_vec();
+            sweep_up(factors.as_slice(), rows, &mut solved);
+            let solved = DVector::from_vec(solved);
+            prop_assert!((&upper * &solved - &own).amax() < 1e-9 * solved.amax().max(1.0));
+            let mut image = own.as_slice().to_vec();
+            subtract_image(upper.as_slice(), solved.as_slice(), &mut image);
+            prop_assert!(DVector::from_vec(image).amax() < 1e-9 * solved.amax().max(1.0));
         }
     }
 

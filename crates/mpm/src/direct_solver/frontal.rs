@@ -7,10 +7,12 @@
 //! to the front above. The order of all sums is fixed: any number of threads gives the same bits.
 
 use crate::direct_solver::Singular;
-use crate::direct_solver::dense::{factor_columns, solve_unit_lower, subtract_product, swap_rows};
+use crate::direct_solver::dense::{
+    factor_columns, solve_unit_lower, subtract_image, subtract_product, swap_rows, sweep_down, sweep_up,
+};
 use crate::direct_solver::sparse_matrix::SparseMatrix;
 use crate::time_limit::TimeLimit;
-use nalgebra::{DMatrix, DVectorViewMut};
+use nalgebra::DMatrix;
 
 /// Unknowns of a set that is cut no further: a front of some hundred rows is as fast as two of half of them.
 const SMALLEST_SET: usize = 96;
@@ -183,9 +185,9 @@ impl Front {
         self.right = DMatrix::zeros(count, boundary.len());
     }
 
-    /// Most unknowns that any front eliminates or has on its boundary.
+    /// Most unknowns that any front eliminates and has on its boundary.
     fn largest_part(&self) -> usize {
-        let own = self.boundary.len().max(self.count);
+        let own = self.boundary.len() + self.count;
         self.children.iter().map(Self::largest_part).fold(own, usize::max)
     }
 
@@ -285,13 +287,15 @@ impl Front {
         for (row, below) in self.pivots.iter().enumerate() {
             own.swap(row, row + below);
         }
-        let mut own = DVectorViewMut::from_slice(own, self.count);
-        self.left.rows(0, self.count).solve_lower_triangular_with_diag_mut(&mut own, 1.0);
-        let change = &mut gathered[..self.boundary.len()];
-        let below = self.left.rows_range(self.count..);
-        DVectorViewMut::from_slice(change, self.boundary.len()).gemv(1.0, &below, &own, 0.0);
+        let gathered = &mut gathered[..self.count + self.boundary.len()];
+        let (solved, change) = gathered.split_at_mut(self.count);
+        solved.copy_from_slice(own);
+        change.fill(0.0);
+        sweep_down(self.left.as_slice(), gathered, self.count);
+        let (solved, change) = gathered.split_at(self.count);
+        own.copy_from_slice(solved);
         for (place, change) in self.boundary.iter().zip(change) {
-            values[*place] -= *change;
+            values[*place] += change;
         }
     }
 
@@ -311,9 +315,9 @@ impl Front {
         for (value, place) in later.iter_mut().zip(&self.boundary) {
             *value = values[*place];
         }
-        let mut own = DVectorViewMut::from_slice(&mut values[self.first..][..self.count], self.count);
-        own.gemv(-1.0, &self.right, &DVectorViewMut::from_slice(later, self.boundary.len()), 1.0);
-        self.left.rows(0, self.count).solve_upper_triangular_mut(&mut own);
+        let own = &mut values[self.first..][..self.count];
+        subtract_image(self.right.as_slice(), later, own);
+        sweep_up(self.left.as_slice(), self.count + self.boundary.len(), own);
     }
 }
 
