@@ -134,7 +134,7 @@ mod tests {
             (XieLeo, "GC-SRI-patch", true, true, &[]),
             (XieLeo, "GC-SRI-patch", true, false, &[]),
             (XieLeo, "TL-GC-SRI-patch", false, false, &["TL-GC-SRI-patch"]),
-            (XieLeo, "PPP-step", false, false, &[]),
+            (XieLeo, "PPP", false, false, &[]),
             // Where nothing moves nobody has slopes, and a total method is the plain one.
             (Terzaghi, "GIMP-SRI-patch", false, false, &all),
             (Terzaghi, "GIMP-SRI-patch", true, true, &[]),

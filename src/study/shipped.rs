@@ -17,7 +17,7 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "standing-wave-step" "column-in-the-plane" "column-in-the-plane-steps" "layer-locking" "layer-mesh"
     "layer-smooth" "pressure-projection" "mandel" "self-weight" "self-weight-large" "self-weight-options" "self-weight-plane"
     "self-weight-waves" "at-rest"
-    "layered-conductivity" "layered-stiffness" "layered-node" "yield-front-moduli" "yield-front-integrators" "sealed-element" "footing"
+    "layered-conductivity" "layered-stiffness" "layered-node" "layered-water" "yield-front-moduli" "yield-front-integrators" "sealed-element" "footing"
     "stability-conductivity" "stability-stiffness" "stability-porosity" "stability-points"
     "stability-offset" "stability-flip" "stability-slow-growth" "hard-undrained" "hard-stiff-water"
     "hard-tiny-porosity" "hard-large-porosity" "hard-one-point" "hard-faces" "hard-jitter" "hard-empty-top"

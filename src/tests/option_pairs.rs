@@ -105,7 +105,7 @@ fn choices_of(case: &Case) -> BTreeSet<Choice> {
         ("recovery", method.recovery.name()),
         ("memory", memory(method.memory)),
         ("quadrature", method.quadrature.name()),
-        ("configuration", method.configuration_or(case.scene.configuration()).name()),
+        ("configuration", method.configuration_in(case.scene.configuration()).name()),
     ]
     .into();
     choices.extend(

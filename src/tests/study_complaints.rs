@@ -95,7 +95,7 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
         (
             format!("{gimp}, pressure = 'sri'"),
             "the method names no `recovery`",
-            "it can be constant, patch, patch-soils, nodal, null-space, ppp, ppp-step, ppp-monotone",
+            "it can be constant, patch, patch-soils, nodal, null-space, ppp",
         ),
         (
             format!("{gimp}, pressure = 'points', recovery = 'patch'"),

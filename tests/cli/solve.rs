@@ -462,7 +462,7 @@ fn a_projection_that_slows_waves_is_warned_of_where_waves_are_what_is_solved() {
         ("standing-wave", "PPP", true),
         ("standing-wave", "VP", false),
         ("terzaghi", "PPP", false),
-        ("dynamic-column", "TL-PPP-step", true),
+        ("dynamic-column", "TL-PPP", true),
     ] {
         let (code, _, err) = solve(scene, method);
         assert_eq!(code, 0, "{err}");

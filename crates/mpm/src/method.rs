@@ -115,11 +115,6 @@ pub enum Recovery {
     /// A nodal field stabilised by polynomial pressure projection (Dohrmann & Bochev 2004), with the parameter
     /// `1/(2G)` (White & Borja 2008).
     Ppp,
-    /// The stabilised field with the parameter of Sun, Ostien & Salinger (2013), which falls with the time step.
-    PppStep,
-    /// The stabilised field with the least parameter that makes the matrix of a column monotone (Rodrigo et al. 2016;
-    /// Monforte et al. 2019).
-    PppMonotone,
 }
 
 words!(Recovery: Constant "constant",
@@ -127,9 +122,7 @@ words!(Recovery: Constant "constant",
     PatchSoils "patch-soils",
     Nodal "nodal",
     NullSpace "null-space",
-    Ppp "ppp",
-    PppStep "ppp-step",
-    PppMonotone "ppp-monotone",);
+    Ppp "ppp",);
 
 impl Recovery {
     /// Why a recovery does not go with a place of the divergence or a strain gradient, where it does not.
@@ -155,7 +148,7 @@ impl Recovery {
 
     /// Whether it is a stabilised nodal field.
     pub fn is_projected(self) -> bool {
-        matches!(self, Self::Ppp | Self::PppStep | Self::PppMonotone)
+        self == Self::Ppp
     }
 }
 
@@ -259,10 +252,10 @@ fn is_whole(thousandths: &u32) -> bool {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 25] = {
+const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 23] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
-    use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp, PppMonotone, PppStep};
+    use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
     [
         ("MPM", Hat, Standard, Points, Constant),
@@ -280,8 +273,6 @@ const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 25] 
         ("GIMP-SRI-nodal", Cpgimp, Standard, Sri, Nodal),
         ("VP", Cpgimp, Standard, Points, Nodal),
         ("PPP", Cpgimp, Standard, Points, Ppp),
-        ("PPP-step", Cpgimp, Standard, Points, PppStep),
-        ("PPP-monotone", Cpgimp, Standard, Points, PppMonotone),
         ("VP-Bbar", Cpgimp, Bbar, Points, Nodal),
         ("GIMP-Bbar", Cpgimp, Bbar, Sri, Constant),
         ("GIMP-Bbar-patch", Cpgimp, Bbar, Sri, Patch),
@@ -413,9 +404,13 @@ impl Method {
         matches!(self.basis, Basis::Cpgimp | Basis::Cpdi)
     }
 
-    /// Whether the shape functions follow moving points, given the scene's own choice.
-    pub fn configuration_or(&self, scene: Configuration) -> Configuration {
-        self.configuration.unwrap_or(scene)
+    /// Configuration of the shape functions in a scene with a configuration of its own. Where nothing moves, shape functions
+    /// on the initial configuration (`TL-`) are those of the scene.
+    pub fn configuration_in(&self, scene: Configuration) -> Configuration {
+        match (self.configuration, scene) {
+            (Some(Configuration::Total), Configuration::Frozen) => scene,
+            (own, scene) => own.unwrap_or(scene),
+        }
     }
 }
 

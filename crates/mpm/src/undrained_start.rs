@@ -58,15 +58,13 @@ impl<const D: usize> Body<D> {
     fn settle_with_pressures(&mut self, threads: usize, time_limit: TimeLimit) -> Result<(), Singular> {
         let system = LinearSystem::of(self);
         let (unknowns, scales) = (&system.unknowns, &system.unknowns.scales);
-        let mut matrix = system.fixed.clone();
-        system.set_matrix(&mut matrix, 0.0, self.projection_parameter(0.0));
         let mut rest = system.start_residual.clone();
         for unknown in &unknowns.pressure {
             rest[*unknown] = 0.0;
         }
-        let mut factors = Factors::of_shape(&matrix, threads, time_limit);
-        factors.factor(&matrix)?;
-        let solution = solved_twice(&mut factors, &matrix, rest);
+        let mut factors = Factors::of_shape(&system.fixed, threads, time_limit);
+        factors.factor(&system.fixed)?;
+        let solution = solved_twice(&mut factors, &system.fixed, rest);
         let displacement =
             |number: Option<usize>| number.map_or(0.0, |number| scales.length * solution[number]);
         let field: Vec<Vector<D>> =

@@ -370,7 +370,7 @@ impl Checker<'_> {
         let cases = planned.iter().map(|planned| &planned.case).filter(|case| case.scene.has_waves());
         let shares = cases.filter_map(|case| {
             let method = case.method.own()?;
-            let share = method.share_of_wave_speed(&case.material, case.cell_size(), case.cells);
+            let share = method.share_of_wave_speed(&case.material, case.cells);
             Some((share, method, case.cells))
         });
         let slowest =

@@ -139,7 +139,7 @@ struct Giving<'a, const D: usize> {
 #[derive(Clone, Copy)]
 pub(crate) struct Given<const D: usize> {
     /// Volumes of grains and pores, m^D, and drag, N s/m; in layers that over the point's porosity, which the node's
-    /// replaces (docs/theory.md, Eq. 44).
+    /// replaces (docs/theory.md, Eq. 44), and the storage of the pores, m^D/Pa.
     pub masses: [f64; 4],
     /// Volume times velocity of both phases, m^D m/s.
     pub momenta: [Vector<D>; 2],
@@ -186,9 +186,13 @@ impl<'a, const D: usize> Giving<'a, D> {
         // n V = V − (1 − n_0) V_0
         let pores = volume - grains;
         if MASSES {
-            let resisting = if self.soils.len() > 1 { grains + pores } else { pores };
             let soil = &self.soils[usize::from(self.soil[point])];
-            given.masses = [grains, pores, drag_of_point(soil, resisting, ratio), 0.0];
+            let (resisting, storage) = if self.soils.len() > 1 {
+                (grains + pores, pores / soil.water_bulk_modulus)
+            } else {
+                (pores, 0.0)
+            };
+            given.masses = [grains, pores, drag_of_point(soil, resisting, ratio), storage];
         }
         if MOMENTA {
             let water = self.water_velocity.get(point).unwrap_or(&[0.0; D]);

@@ -27,8 +27,6 @@ pub struct LinearStepper<const D: usize> {
     time_limit: TimeLimit,
     /// Step size that the factors belong to, s.
     factored: Option<f64>,
-    /// Parameter of the projection in that step, 1/Pa.
-    projection: f64,
     /// State `x`.
     state: Vec<f64>,
     /// `g − K x`.
@@ -57,7 +55,6 @@ impl<const D: usize> LinearStepper<D> {
             factors: Factors::of_shape(&system.fixed, plan.schedule.threads, plan.schedule.time_limit),
             time_limit: plan.schedule.time_limit,
             factored: None,
-            projection: 0.0,
             state: zero.clone(),
             residual: system.start_residual.clone(),
             first_increment: zero.clone(),
@@ -80,8 +77,7 @@ impl<const D: usize> LinearStepper<D> {
                 return Err(StepFailure::out_of_time());
             }
             let system = &self.system;
-            self.projection = self.start.projection_parameter(SDIRK_GAMMA * dt);
-            system.set_matrix(&mut self.matrix, SDIRK_GAMMA * dt, self.projection);
+            self.matrix.set_combination(&system.fixed, SDIRK_GAMMA * dt, &system.proportional);
             let factored = self.factors.factor(&self.matrix);
             factored.map_err(|singular| no_pivot("the matrix of a step", singular, self.time_limit))?;
             self.factored = Some(dt);
@@ -117,9 +113,6 @@ impl<const D: usize> LinearStepper<D> {
             }
             for (site, unknown) in sites.iter().enumerate() {
                 self.residual[*unknown] += share * system.capacity.product(site, &self.increment) / stage;
-            }
-            for (row, column, value) in &system.projection {
-                self.residual[*row] += share * self.projection * value * self.increment[*column] / stage;
             }
         }
         self.rate_scale = 1.0 / stage;

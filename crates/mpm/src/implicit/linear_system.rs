@@ -29,8 +29,6 @@ pub struct LinearSystem<const D: usize> {
     pub proportional: SystemMatrix,
     /// Rows of `C`, one per site.
     pub capacity: SparseRows<f64>,
-    /// Part of `C` proportional to the parameter of a projection: row, column and value.
-    pub projection: Vec<(usize, usize, f64)>,
     /// `g − K x` at the start, where `x` is zero; 1/s in the storage's rows.
     pub start_residual: Vec<f64>,
     /// Vertical displacement of the loaded surface, its component of the load's shape, or displacement of the plate along
@@ -77,12 +75,8 @@ impl<const D: usize> LinearSystem<D> {
             operators.visit_storage(visitor);
         };
         let unknowns = &operators.unknowns;
-        let projection = operators.projection();
         let mut fixed = SystemMatrix::spanning(&unknowns.positions, unknowns.border, |visitor| {
             visit(&mut |(row, column, _, _)| visitor(row, column));
-            for (row, column, _) in &projection {
-                visitor(*row, *column);
-            }
         });
         let mut proportional = fixed.clone();
         // Each entry belongs to one of the two; looking up the place of a zero would cost time.
@@ -103,23 +97,11 @@ impl<const D: usize> LinearSystem<D> {
             proportional,
             capacity: SparseRows::of((0..unknowns.pressure.len()).map(|site| operators.capacity_row(site))),
             start_residual: operators.start_residual(),
-            projection,
             surface_displacement: operators.displacement_row(&body.settling_weights()),
             mean_displacement: operators.displacement_row(&outflow_weights),
             surface_outflow: SparseRows::of([outflow]),
             start_outflow,
             unknowns: operators.unknowns,
-        }
-    }
-}
-
-impl<const D: usize> LinearSystem<D> {
-    /// Sets a matrix of the pattern to that of a stage: `C + Δt K` in the rows of the storage, with a projection's parameter,
-    /// 1/Pa.
-    pub fn set_matrix(&self, matrix: &mut SystemMatrix, duration: f64, parameter: f64) {
-        matrix.set_combination(&self.fixed, duration, &self.proportional);
-        for (row, column, value) in &self.projection {
-            matrix.add(*row, *column, parameter * value);
         }
     }
 }
@@ -159,17 +141,9 @@ impl<const D: usize> Operators<'_, D> {
         let storage = self.body.storage_of(self.unknowns.rows.sites[site], self.porosity(site));
         let mut row = self.weighted_displacements(&unknowns.rows.divergence[site]);
         row.push((unknowns.pressure[site], storage * scales.pressure));
+        let projected = unknowns.rows.projection.get(site).into_iter().flatten();
+        row.extend(projected.map(|(other, value)| (unknowns.pressure[*other], value * scales.pressure)));
         row
-    }
-
-    /// What a projection adds to the rows of the storage, over its parameter.
-    fn projection(&self) -> Vec<(usize, usize, f64)> {
-        let (numbers, scale) = (&self.unknowns.pressure, self.unknowns.scales.pressure);
-        let rows = numbers.iter().zip(&self.unknowns.rows.projection);
-        rows.flat_map(|(row, entries)| {
-            entries.iter().map(|(site, value)| (*row, numbers[*site], scale * value))
-        })
-        .collect()
     }
 
     fn porosity(&self, site: usize) -> f64 {

@@ -113,10 +113,9 @@ impl<const D: usize> Trial<D> {
             let stored = body.storage_of(*place, porosity) * changed(*number);
             residual[*number] = stored + start.duration * body.site_values[*place];
         }
-        let parameter = body.projection_parameter(start.duration);
         for (number, row) in unknowns.pressure.iter().zip(&unknowns.rows.projection) {
             let projected = |(site, value): &(usize, f64)| value * changed(unknowns.pressure[*site]);
-            residual[*number] += parameter * row.iter().map(projected).sum::<f64>();
+            residual[*number] += row.iter().map(projected).sum::<f64>();
         }
     }
 }

@@ -12,60 +12,37 @@
 use crate::assembled::stiffness::entry_of;
 use crate::body::Body;
 use crate::direct_solver::system::{Factors, SystemMatrix};
-use crate::method::{Method, Recovery};
+use crate::method::{Method, WHOLE_PROJECTION};
 use crate::operators::recovery::points_in_cells;
 use crate::time_limit::TimeLimit;
-use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
 /// Rows of a matrix between sites.
 pub type SiteRows = Vec<Vec<(usize, f64)>>;
 
 impl Method {
-    /// Parameter `τ` of the projection in a soil and cells of a size (m) for a step or stage of a duration, s; 1/Pa.
-    ///
-    /// - `ppp`: `1/(2G)` (White & Borja 2008).
-    /// - `ppp-step`: `(3/M) [1 + tanh(2 − 12 c_v Δt/h²)]/2` with `M = E_oed` (Sun, Ostien & Salinger 2013): Darcy's flow
-    ///   itself damps the checkerboard in steps longer than `h²/(6 c_v)` (Vermeer & Verruijt 1981).
-    /// - `ppp-monotone`: `max(0, 2/M − 12 k Δt/(γ_w h²))`, the least for which the matrix of a column has no positive entry
-    ///   off its diagonal (Rodrigo, Gaspar, Hu & Zikatanov 2016): of `D K⁻¹ Dᵀ` `h/(6M)`, of the flow `−k Δt/(γ_w h)`,
-    ///   of `τ P` `−τ h/12`. Monforte et al. (2019) give `M` the inertia of the mixture too.
-    pub(crate) fn projection_parameter(&self, soil: &Material, cell_size: f64, duration: f64) -> f64 {
-        let modulus = soil.oedometric_modulus();
-        let flow = 12.0 * soil.coefficient_of_consolidation() * duration / (cell_size * cell_size);
-        let source = match self.recovery {
-            Recovery::Ppp => (1.0 + soil.poissons_ratio) / soil.youngs_modulus,
-            Recovery::PppStep => 3.0 / modulus / (1.0 + elementary::exp(2.0 * flow - 4.0)),
-            Recovery::PppMonotone => (2.0 - flow).max(0.0) / modulus,
-            Recovery::Constant
-            | Recovery::Patch
-            | Recovery::PatchSoils
-            | Recovery::Nodal
-            | Recovery::NullSpace => 0.0,
-        };
-        source * f64::from(self.projection) / 1000.0
+    /// Parameter `τ` of the projection in a soil, 1/Pa: `1/(2G)` (White & Borja 2008).
+    pub(crate) fn projection_parameter(&self, soil: &Material) -> f64 {
+        let source =
+            if self.has_projection() { (1.0 + soil.poissons_ratio) / soil.youngs_modulus } else { 0.0 };
+        source * f64::from(self.projection) / f64::from(WHOLE_PROJECTION)
     }
 
     /// Speed of the longest wave of a column of so many cells, `4H`, over that without a projection: the projection adds
     /// `τ (κh)²/12` to the storage `n/K_w` of a wave of number `κ`. One for a method without it.
-    pub fn share_of_wave_speed(&self, soil: &Material, cell_size: f64, cells: usize) -> f64 {
+    pub fn share_of_wave_speed(&self, soil: &Material, cells: usize) -> f64 {
         if !self.has_projection() {
             return 1.0;
         }
         let per_cell = 0.5 * std::f64::consts::PI / cells as f64;
         let storage = soil.porosity / soil.water_bulk_modulus;
-        let added = self.projection_parameter(soil, cell_size, 0.0) * per_cell * per_cell / 12.0;
+        let added = self.projection_parameter(soil) * per_cell * per_cell / 12.0;
         let modulus = |storage: f64| soil.oedometric_modulus() + 1.0 / storage;
         (modulus(storage + added) / modulus(storage)).sqrt()
     }
 }
 
 impl<const D: usize> Body<D> {
-    /// Parameter `τ` of the method's projection for a step or stage of a duration, s; 1/Pa.
-    pub(crate) fn projection_parameter(&self, duration: f64) -> f64 {
-        self.method.projection_parameter(&self.material, self.grid.cell_size, duration)
-    }
-
     /// The nodes that carry a pressure of their own, and the site of each node.
     pub(crate) fn nodal_sites(&self) -> (Vec<usize>, Vec<Option<usize>>) {
         let mut site_of_node = vec![None; self.nodes.len()];
@@ -81,7 +58,7 @@ impl<const D: usize> Body<D> {
         around.into_iter().filter_map(|(node, value)| Some((site_of_node[node]?, value))).collect()
     }
 
-    /// `P_jk/V_j` of each site; nothing for a method without projection.
+    /// `τ P_jk/V_j` of each site, 1/Pa, with the parameter of each point's soil; nothing for a method without projection.
     pub(crate) fn projection_rows(&self, sites: &[usize], site_of_node: &[Option<usize>]) -> SiteRows {
         if !self.method.has_projection() {
             return Vec::new();
@@ -95,16 +72,19 @@ impl<const D: usize> Body<D> {
                 }
             }
         };
-        let mut sums: SiteRows = vec![Vec::new(); self.grid.cell_count()];
+        let mut sums: Vec<(f64, Vec<(usize, f64)>)> = vec![(0.0, Vec::new()); self.grid.cell_count()];
         for point in 0..self.points.len() {
-            let (around, volume) = (self.sites_around(point, site_of_node), self.points.volume(point));
-            add(&around, volume);
+            let around = self.sites_around(point, site_of_node);
+            let weight = self.points.volume(point) * self.method.projection_parameter(self.soil_of(point));
+            add(&around, weight);
+            let (total, sum) = &mut sums[self.cells.of_point[point]];
+            *total += weight;
             for (site, value) in around {
-                *entry_of(&mut sums[self.cells.of_point[point]], site, 0.0) += volume * value;
+                *entry_of(sum, site, 0.0) += weight * value;
             }
         }
-        for cell in self.cells.occupied() {
-            add(&sums[cell], -1.0 / self.cells.volume(cell));
+        for (total, sum) in sums.iter().filter(|(total, _)| *total > 0.0) {
+            add(sum, -1.0 / total);
         }
         rows
     }
@@ -125,7 +105,7 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Factors of `I + τ Q V⁻¹ P` with the parameter of steps so short that it does not depend on them, as explicit ones are.
+/// Factors of `I + τ Q V⁻¹ P`.
 #[derive(Clone, Debug)]
 pub struct ProjectedStorage(Factors);
 
@@ -136,7 +116,6 @@ impl ProjectedStorage {
         if rows.is_empty() {
             return None;
         }
-        let parameter = body.projection_parameter(0.0);
         let positions: Vec<_> = sites.iter().map(|node| body.grid.node_position(*node)).collect();
         let mut matrix = SystemMatrix::spanning(&positions, 0, |visitor| {
             for (row, entries) in rows.iter().enumerate() {
@@ -149,7 +128,7 @@ impl ProjectedStorage {
             let coupling = body.coupling_of(sites[row], body.porosity_of(sites[row]));
             matrix.add(row, row, 1.0);
             for (column, value) in entries {
-                matrix.add(row, *column, parameter * coupling * value);
+                matrix.add(row, *column, coupling * value);
             }
         }
         let mut factors = Factors::of_shape(&matrix, 1, TimeLimit::default());
@@ -168,6 +147,10 @@ mod tests {
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+
+    /// `1/(2G)` of the seed soil, 1/Pa: E = 1 MPa, ν = 1/4, G = 400 kPa.
+    const PARAMETER: f64 = 1.0 / 8e5;
 
     fn layer(name: &str) -> Body<2> {
         let (column, method) = (Column::layer(), Method::named(name).expect("a known method"));
@@ -190,15 +173,15 @@ mod tests {
         };
         for (site, row) in rows.iter().enumerate() {
             let node = sites[site];
-            assert!(product(row, &|_| 1.0).abs() < 1e-14);
+            assert!(product(row, &|_| 1.0).abs() < 1e-14 * PARAMETER);
             // Two points a direction have ±1/4 of the sign, and a node the share 9/16, 3/16 or 1/16 of each.
-            assert!((product(row, &sign) / sign(node) - 0.0625).abs() < 1e-12, "{node}");
+            assert!((product(row, &sign) / sign(node) / PARAMETER - 0.0625).abs() < 1e-12, "{node}");
             // Symmetric but for the volumes of the rows.
             for (column, value) in row {
                 let back =
                     rows[*column].iter().find(|entry| entry.0 == site).expect("a pattern that is symmetric");
                 let volume = |site: usize| body.nodes.volume[sites[site]];
-                assert!((volume(site) * value - volume(*column) * back.1).abs() < 1e-15);
+                assert!((volume(site) * value - volume(*column) * back.1).abs() < 1e-15 * PARAMETER);
             }
         }
     }
@@ -214,7 +197,7 @@ mod tests {
         for (site, row) in rows.iter().enumerate() {
             let coupling = body.material.water_bulk_modulus / body.porosity_of(sites[site]);
             let projected: f64 = row.iter().map(|(column, value)| value * solved[*column]).sum();
-            let sum = solved[site] + body.projection_parameter(0.0) * coupling * projected;
+            let sum = solved[site] + coupling * projected;
             assert!((sum - given[site]).abs() < 1e-9, "{sum} for {}", given[site]);
         }
     }
@@ -222,9 +205,8 @@ mod tests {
     #[test]
     fn a_projection_slows_the_longest_wave_by_what_it_stores() {
         let soil = Material { porosity: 0.5, water_bulk_modulus: 1e9, ..Material::default() };
-        let share = |name: &str, cells| {
-            Method::named(name).expect("a method").share_of_wave_speed(&soil, 0.25, cells)
-        };
+        let share =
+            |name: &str, cells| Method::named(name).expect("a method").share_of_wave_speed(&soil, cells);
         assert_eq!(share("VP", 4), 1.0);
         // The storage n/K_w is 5e-10 1/Pa, and τ = 1/(2G) at eight cells (π/16)² τ/12.
         let added = (1.0 + soil.poissons_ratio) / soil.youngs_modulus * 0.038_553_142 / 12.0;
@@ -235,15 +217,45 @@ mod tests {
     }
 
     #[test]
-    fn parameters_are_those_of_their_sources() {
-        // E = 1 MPa, ν = 1/4: G = 400 kPa, M = 1200 kPa, c_v = k M/γ_w; h = 1/4 m.
-        let at = |name: &str, duration: f64| layer(name).projection_parameter(duration);
-        let steps = |flow: f64| flow / 12.0 * 0.0625 * 9.81e3 / (1e-4 * 1.2e6);
-        assert!((at("PPP", 5.0) * 8e5 - 1.0).abs() < 1e-12);
-        assert!((at("PPP-step", steps(2.0)) * 1.2e6 - 1.5).abs() < 1e-12, "half of 3/M at h²/(6 c_v)");
-        assert!((at("PPP-step", 0.0) * 1.2e6 - 1.5 * (1.0 + 2.0_f64.tanh())).abs() < 1e-12);
-        assert!((at("PPP-monotone", steps(0.5)) * 1.2e6 - 1.5).abs() < 1e-12);
-        assert_eq!(at("PPP-monotone", steps(2.5)), 0.0, "Darcy's flow is enough");
-        assert_eq!(at("VP", 0.0), 0.0);
+    fn the_parameter_is_that_of_the_source_times_the_share_of_the_method() {
+        let soil = Material::default();
+        let of = |method: Method| method.projection_parameter(&soil);
+        let method = Method::named("PPP").expect("a known method");
+        assert!((of(method) / PARAMETER - 1.0).abs() < 1e-12);
+        assert!((of(Method { projection: 125, ..method }) / PARAMETER - 0.125).abs() < 1e-12);
+        assert_eq!(of(Method::named("VP").expect("a known method")), 0.0);
+    }
+
+    #[test]
+    fn nodes_of_layers_store_what_the_water_of_each_soil_does() {
+        let layer = |thickness, water_bulk_modulus, youngs_modulus, porosity| SoilLayer {
+            thickness,
+            water_bulk_modulus: Some(water_bulk_modulus),
+            youngs_modulus: Some(youngs_modulus),
+            porosity: Some(porosity),
+            ..SoilLayer::default()
+        };
+        let layers = [layer(0.5, 5e6, 2e6, 0.25), layer(0.5, 2e9, 1e6, 0.4)];
+        let column = Column { soils: SoilLayers::of(&layers).expect("two"), ..Column::default() };
+        let method = Method::named("PPP").expect("a known method");
+        let problem = column_problem::<1>(SceneKind::Layered, &column, &Material::default(), method, 4, 2);
+        let body = Body::new(problem.expect("a column"));
+        let storage = |height: f64| {
+            let node = body.grid.flat_node(&[2 + (4.0 * height).round() as usize]);
+            body.storage_of(node, body.porosity_of(node))
+        };
+        let [below, above] = [0.25 / 5e6, 0.4 / 2e9];
+        for (height, exact) in [(0.25, below), (0.5, 0.5 * (below + above)), (0.75, above)] {
+            assert!(
+                (storage(height) / exact - 1.0).abs() < 1e-12,
+                "{height}: {} for {exact}",
+                storage(height)
+            );
+        }
+        // What the projection resists is that of the soil too.
+        let (sites, site_of_node) = body.nodal_sites();
+        let rows = body.projection_rows(&sites, &site_of_node);
+        let ends = [&rows[0], &rows[4]].map(|row| row.iter().map(|(_, value)| value.abs()).sum::<f64>());
+        assert!((ends[1] / ends[0] - 2.0).abs() < 1e-12, "{ends:?}");
     }
 }

@@ -67,13 +67,14 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Storage of the water `n/K_w`, 1/Pa, of a cell or point that is a site, with its porosity: the mean of the soils
-    /// in it.
+    /// Storage of the water `n/K_w`, 1/Pa, of a cell, point or node that is a site, with its porosity: the mean of the soils
+    /// in it or around it.
     #[inline]
     pub fn storage_of(&self, place: usize, porosity: f64) -> f64 {
-        // The water is that of all soils.
-        if self.soils.len() == 1 || self.method.has_projection() {
+        if !self.is_layered() {
             porosity / self.material.water_bulk_modulus
+        } else if self.method.has_projection() {
+            self.nodes.storage(place)
         } else if self.method.pressure.is_by_cells() {
             self.cells.storage[place]
         } else {
@@ -84,7 +85,7 @@ impl<const D: usize> Body<D> {
     /// Coupling modulus `Q = K_w/n`, Pa, of a site: one over its storage.
     #[inline]
     pub(crate) fn coupling_of(&self, place: usize, porosity: f64) -> f64 {
-        if self.soils.len() == 1 {
+        if !self.is_layered() {
             self.material.water_bulk_modulus / porosity
         } else {
             1.0 / self.storage_of(place, porosity)

@@ -265,7 +265,7 @@ impl SceneKind {
                 "a pressure projection has unknown pressures at the nodes, and the footing's follow from displacements",
             );
         }
-        let is_frozen = method.configuration.is_none_or(|kind| kind == Configuration::Frozen);
+        let is_frozen = method.configuration_in(self.configuration()) == Configuration::Frozen;
         ((self.has_plates() || self == Self::Footing) && (method.basis.is_spline() || !is_frozen)).then_some(
             "a rigid plate holds the nodes of a face: it takes weights that stay (`frozen`), of hats or domains and \
              not of splines, whose coefficients are no values there",

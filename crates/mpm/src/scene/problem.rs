@@ -225,7 +225,7 @@ pub fn column_problem<const D: usize>(
             layers => layers.iter().map(|layer| layer.soil(&soil)).collect(),
         },
         method,
-        configuration: method.configuration_or(scene.configuration()),
+        configuration: method.configuration_in(scene.configuration()),
         load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },
         load_shape: match definition.load {
             SceneLoad::Cosine => LoadShape::Cosine { length: column.extent() },

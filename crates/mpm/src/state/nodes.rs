@@ -297,6 +297,12 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
+    /// Storage of the water around a node of layers, `n/K_w`, 1/Pa: the mean over its points.
+    pub fn storage(&self, node: usize) -> f64 {
+        let [[.., storage]] = self.sums.masses[node];
+        storage / self.volume[node]
+    }
+
     /// Velocities from the points' [`sums`](Self::sums) of momenta; zero where a node is held, and those that
     /// the nodes have where the water slides.
     pub fn take_velocities(&mut self, soil: &Material) {

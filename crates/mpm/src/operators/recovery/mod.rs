@@ -94,7 +94,7 @@ impl<const D: usize> RecoveryOperator<D> {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
             (false, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Points, grid.node_count())),
             (false, Recovery::Constant | Recovery::Patch | Recovery::PatchSoils) => Self::Own,
-            (false, Recovery::Ppp | Recovery::PppStep | Recovery::PppMonotone) => Self::Interpolated,
+            (false, Recovery::Ppp) => Self::Interpolated,
             (true, Recovery::Patch | Recovery::PatchSoils) => Self::Patch(PatchRows::new(points, grid)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Cells, grid.node_count())),
             (true, _) => Self::Constant,
