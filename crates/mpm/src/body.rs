@@ -7,6 +7,7 @@ use crate::method::{Configuration, Method, Recovery};
 use crate::operators::cell_averaged::CellAverages;
 use crate::operators::corners::{Domains, build_corners, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
+use crate::operators::stacked_points::StackedPoints;
 use crate::operators::stencil::PointStencils;
 use crate::operators::strain_gradient::StrainOperator;
 use crate::operators::surface_load::{LoadShape, LoadedSurface};
@@ -213,6 +214,12 @@ impl<const D: usize> Body<D> {
             * material.grain_density;
         let sites = site_places(method, &grid, count);
         let domains = Domains::of(method, configuration, &points);
+        // Domains that turn have lengths of their own.
+        let is_stacked = load_shape == LoadShape::Uniform
+            && plate_load.is_none()
+            && forcing.is_none()
+            && domains.is_none();
+        let stacked = is_stacked.then(|| StackedPoints::of(&points, method.domains_follow()));
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
@@ -230,7 +237,7 @@ impl<const D: usize> Body<D> {
             velocity_gradients: Vec::new(),
             stress_planes: None,
             strain: StrainOperator::of(method.strain, count),
-            cell_averages: CellAverages::new(&grid),
+            cell_averages: CellAverages::new(&grid, stacked),
             support,
             splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
             recovery: RecoveryOperator::of(method, &grid, count),

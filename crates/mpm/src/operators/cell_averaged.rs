@@ -8,6 +8,7 @@
 //! the points: conservative in each cell, exact for quadratic fields, idempotent while nothing moves.
 //! (The null space of the points-to-grid map is what Tran & Sołowski 2019 filter for stresses.)
 
+use crate::operators::stacked_points::StackedPoints;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;
 use crate::state::points::Points;
@@ -28,11 +29,13 @@ pub struct CellAverages<const D: usize> {
     slope: Vec<Vector<D>>,
     /// Half its second derivative, a direction, 1/m².
     bend: Vec<Vector<D>>,
+    /// Points that lie one above another, where they do.
+    stacked: Option<StackedPoints>,
 }
 
 impl<const D: usize> CellAverages<D> {
-    /// Room for the cells of a grid.
-    pub fn new(grid: &Grid<D>) -> Self {
+    /// Room for the cells of a grid; with the points that lie one above another, where they do.
+    pub fn new(grid: &Grid<D>, stacked: Option<StackedPoints>) -> Self {
         let count = grid.cell_count();
         let (scalars, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
         Self {
@@ -42,6 +45,7 @@ impl<const D: usize> CellAverages<D> {
             mean: scalars,
             slope: vectors.clone(),
             bend: vectors,
+            stacked,
         }
     }
 
@@ -141,6 +145,9 @@ impl<const D: usize> CellAverages<D> {
             points.stressed_share[point] *= points.volume_ratio[point] / ratio;
             points.volume_ratio[point] = ratio;
         }
+        if let Some(stacked) = &self.stacked {
+            stacked.share_out(grid, &cells.of_point, points);
+        }
         self.fit(grid, cells, &points.initial_volume, |point| points.pressure[point]);
         for point in 0..points.len() {
             points.pressure[point] = self.value(cells.of_point[point], &points.position[point]);
@@ -175,7 +182,7 @@ mod tests {
 
     fn spread(field: &[f64]) -> Vec<f64> {
         let (grid, points, cells) = crossed();
-        let mut memory = CellAverages::new(&grid);
+        let mut memory = CellAverages::new(&grid, None);
         memory.place(&cells, &points);
         memory.fit(&grid, &cells, &points.initial_volume, |point| field[point]);
         (0..points.len()).map(|point| memory.value(cells.of_point[point], &points.position[point])).collect()

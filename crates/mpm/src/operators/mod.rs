@@ -7,6 +7,7 @@ pub mod corners;
 pub mod projection;
 pub mod recovery;
 pub mod sparse_rows;
+pub mod stacked_points;
 pub mod stencil;
 pub mod strain_gradient;
 pub mod surface_load;
