@@ -17,6 +17,7 @@ use crate::run::run_plan::Plan;
 use crate::run::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::run::watch::lost_point;
 use crate::time_limit::TimeLimit;
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::elementary;
 
 /// Most iterations of a stage.
@@ -31,6 +32,10 @@ const SLOW: f64 = 0.1;
 const TOO_SLOW: f64 = 0.8;
 /// Expected iterations with the old tangent that justify a new one, which costs a residual for each of its groups.
 const PATIENCE: f64 = 12.0;
+/// Corrections of so many times what round-off of the residual asks for are its work, too.
+const ROUND_OFF_MARGIN: f64 = 4.0;
+/// Changes of a state by round-off from which that of the residual is measured.
+const ROUND_OFF_SAMPLES: u32 = 2;
 /// Assumed growth of the contraction in a stage that ends after one correction, which does not show it.
 const UNSEEN_GROWTH: f64 = 2.0;
 
@@ -62,6 +67,8 @@ pub struct NewtonStepper<const D: usize> {
     /// Correction of the scaled unknowns by round-off, which a displacement sums over all cells: that of strains which are
     /// differences of numbers near one, or of those of a body that keeps its shape and remembers nothing.
     round_off: f64,
+    /// The same as measured where an iteration came to rest, and the duration of that stage, s.
+    measured: [f64; 2],
     /// Perturbation of a scaled unknown for the tangent: the problem's strain where the step is linear in it.
     difference: f64,
     error_scales: ErrorScales,
@@ -108,6 +115,7 @@ impl<const D: usize> NewtonStepper<D> {
             contraction: SLOW,
             tolerance: TOLERANCE * strain,
             round_off: f64::EPSILON * cells * cells * if is_linear { strain } else { 1.0 },
+            measured: [0.0; 2],
             difference: if is_linear { strain } else { DIFFERENCE },
             error_scales: ErrorScales::of(&scales, plan),
             stages,
@@ -265,10 +273,16 @@ impl<const D: usize> NewtonStepper<D> {
                 self.contraction = first.unwrap_or((UNSEEN_GROWTH * self.contraction).min(SLOW));
                 return self.end_iteration(renew);
             }
-            if size <= self.round_off && size >= SLOW * last {
-                // Neither a new tangent nor smaller steps reduce round-off.
-                self.contraction = SLOW;
-                return self.end_iteration(renew);
+            if size >= SLOW * last {
+                // The tangent is that of the state, and still the corrections do not fall.
+                if renew && size > self.allowed_round_off() {
+                    self.measure_round_off()?;
+                }
+                if size <= self.allowed_round_off() {
+                    // Neither a new tangent nor smaller steps reduce round-off.
+                    self.contraction = SLOW;
+                    return self.end_iteration(renew);
+                }
             }
             let left = elementary::ln(self.tolerance / size) / elementary::ln(self.contraction);
             renew = last.is_finite() && (self.contraction > TOO_SLOW || left > PATIENCE);
@@ -277,10 +291,46 @@ impl<const D: usize> NewtonStepper<D> {
         Err(StepFailure {
             kind: FailureKind::NotConverged,
             reason: format!(
-                "{MOST_ITERATIONS} iterations of a stage of {:.3e} s left a correction of {last:.3e} times the cell",
-                self.start.duration
+                "{MOST_ITERATIONS} iterations of a stage of {:.3e} s left a correction of {last:.3e} times the cell, and \
+                 {:.3e} are allowed",
+                self.start.duration,
+                self.tolerance.max(self.allowed_round_off())
             ),
         })
+    }
+
+    /// Correction, in scaled unknowns, that is put down to round-off in the present stage.
+    fn allowed_round_off(&self) -> f64 {
+        let [size, duration] = self.measured;
+        let is_alike = (0.5..=2.0).contains(&(duration / self.start.duration));
+        if is_alike { self.round_off.max(ROUND_OFF_MARGIN * size) } else { self.round_off }
+    }
+
+    /// Measures the correction that round-off of the residual asks for: what changes of the state by round-off change of the
+    /// correction beyond themselves.
+    fn measure_round_off(&mut self) -> Result<(), StepFailure> {
+        let (mut base, mut moved, mut change) =
+            (self.residual.clone(), self.state.clone(), self.state.clone());
+        self.trial.residual(&self.state, &self.start, &mut base)?;
+        let mut size: f64 = 0.0;
+        let mut seed = 1_u32;
+        for _ in 0..ROUND_OFF_SAMPLES {
+            for (moved, state) in moved.iter_mut().zip(&self.state) {
+                // A fixed sequence without a pattern (Knuth's multiplicative hash).
+                seed = seed.wrapping_mul(2_654_435_761).wrapping_add(12_345);
+                *moved = state + 8.0 * f64::EPSILON * (f64::from(seed) / f64::from(u32::MAX) - 0.5);
+            }
+            self.trial.residual(&moved, &self.start, &mut change)?;
+            for (change, base) in change.iter_mut().zip(&base) {
+                *change -= base;
+            }
+            self.factors.solve(&mut change);
+            for (change, (moved, state)) in change.iter().zip(moved.iter().zip(&self.state)) {
+                size = size.max((change - (moved - state)).abs());
+            }
+        }
+        self.measured = [size, self.start.duration];
+        Ok(())
     }
 
     fn ask_for_time(&self) -> Result<(), StepFailure> {
@@ -324,21 +374,33 @@ impl<const D: usize> NewtonStepper<D> {
         })
     }
 
-    /// Adds advice to a failure of a method that is known to fail so: in the plane, pressures of the points' own leave modes
-    /// without stiffness once points have moved.
+    /// Adds advice to a failure: to that of a method that is known to fail so, as in the plane pressures of the points' own
+    /// leave modes without stiffness once points have moved, and to any iteration that circles.
     fn with_remedy(&self, failure: StepFailure) -> StepFailure {
         let body = &self.trial.body;
         let is_known = D > 1
             && body.configuration.moves_points()
             && body.method.pressure == PressureIntegration::Points
             && !body.method.has_nodal_pressure();
-        if !is_known || failure.kind == FailureKind::Stopped {
-            return failure;
-        }
         let StepFailure { kind, reason } = failure;
-        let remedy = "in the plane a pressure at every point leaves modes without stiffness once points have moved: use \
+        let is_chord = body.material.conductivity_mean == ConductivityMean::Chord;
+        let remedy = if kind == FailureKind::Stopped {
+            return StepFailure { kind, reason };
+        } else if is_known {
+            "in the plane a pressure at every point leaves modes without stiffness once points have moved: use \
                       pressures by cells (GIMP-SRI, GIMP-SRI-patch), or shape functions on the initial configuration \
-                      (TL-GIMP)";
+                      (TL-GIMP)"
+        } else if kind != FailureKind::NotConverged {
+            return StepFailure { kind, reason };
+        } else if is_chord {
+            "the chord mean jumps where the points of a node lie so that they tell no slope: take \
+             `conductivity_mean = \"points\"`, or points on their lattice"
+        } else if self.stages.len() == 1 {
+            "an explicit skeleton bounds the step: take a smaller `time_step`, or the integrator `implicit`"
+        } else {
+            "shorter steps did not help: take pressures by cells (GIMP-SRI-patch), shape functions on the initial \
+             configuration (TL-), more points per cell, or a smaller load"
+        };
         StepFailure { kind, reason: format!("{reason}; {remedy}") }
     }
 

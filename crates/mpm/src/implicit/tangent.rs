@@ -15,7 +15,7 @@ pub const DIFFERENCE: f64 = 1e-7;
 /// Usual number of unknowns that a point depends on in one dimension.
 const MOST_FELT: usize = 12;
 
-/// Where the rows of the operators begin, on which the pattern of the tangent depends.
+/// Which nodes the rows of the operators reach, on which the pattern of the tangent depends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Structure {
     basis: Vec<usize>,
@@ -23,7 +23,7 @@ struct Structure {
     cells: Vec<usize>,
     /// Splines that end at the surface can lose a node although no row begins elsewhere.
     last_node: Option<usize>,
-    /// A domain that touches a face reaches the node beyond it although its row does not begin elsewhere.
+    /// Numbers of the displacements.
     numbers: Vec<Option<usize>>,
     /// Cells or points of the pressures, and their numbers.
     sites: Vec<usize>,
@@ -33,8 +33,8 @@ struct Structure {
 impl Structure {
     fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         Self {
-            basis: body.basis.first().to_vec(),
-            strain: body.strain.first().to_vec(),
+            basis: body.basis.reach(),
+            strain: body.strain.reach(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
             numbers: unknowns.displacement.as_flattened().to_vec(),
@@ -68,15 +68,24 @@ impl Pattern {
                 }
             }
         });
-        let groups = groups_of(&rows_of_column);
+        // Pressures apart: a residual whose strains stay takes half of the work.
+        let mut is_pressure = vec![false; unknowns.count];
+        unknowns.pressure.iter().for_each(|number| is_pressure[*number] = true);
+        let (pressures, displacements): (Vec<_>, Vec<_>) =
+            (0..unknowns.count).partition(|unknown| is_pressure[*unknown]);
+        let mut groups = groups_of(&rows_of_column, &displacements);
+        groups.extend(groups_of(&rows_of_column, &pressures));
         Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
     }
 
     /// Whether it is still the pattern of a body; nothing is allocated.
     pub fn is_of<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
+        if !body.configuration.moves_points() {
+            return true;
+        }
         let known = &self.structure;
-        known.basis == body.basis.first()
-            && known.strain == body.strain.first()
+        body.basis.reaches(&known.basis)
+            && body.strain.reaches(&known.strain)
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
             && self.has_unknowns(unknowns)
@@ -140,9 +149,9 @@ fn dependencies<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<V
         .collect();
     // Forces and drag of a node depend on all points whose shape functions reach it.
     let mut by_node = vec![Vec::new(); body.nodes.len()];
-    let first = body.basis.first();
-    let parts = first.len() / by_point.len();
-    let blocks_of = |point: usize| &first[point * parts..(point + 1) * parts];
+    let reach = body.basis.reach();
+    let parts = reach.len() / by_point.len();
+    let blocks_of = |point: usize| &reach[point * parts..(point + 1) * parts];
     for (point, felt) in by_point.iter().enumerate() {
         // Neighbours mostly depend on the same unknowns: skip repetitions.
         if point == 0 || blocks_of(point) != blocks_of(point - 1) || *felt != by_point[point - 1] {
@@ -205,12 +214,12 @@ fn add_cell_means<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_no
         felt.sort_unstable();
         felt.dedup();
     }
-    let first = body.basis.first();
-    let parts = first.len() / by_point.len();
+    let reach = body.basis.reach();
+    let parts = reach.len() / by_point.len();
     let mut last = None;
     for (point, cell) in body.cells.of_point.iter().enumerate() {
         // Neighbours mostly reach the same nodes.
-        let reached = Some((*cell, &first[point * parts..(point + 1) * parts]));
+        let reached = Some((*cell, &reach[point * parts..(point + 1) * parts]));
         if last != reached {
             last = reached;
             body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
@@ -220,14 +229,14 @@ fn add_cell_means<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_no
     }
 }
 
-/// Puts each unknown into the first group in which no other shares a row with it.
-pub fn groups_of(rows_of_column: &Lists) -> Vec<Vec<usize>> {
+/// Puts each of some unknowns into the first group in which no other shares a row with it.
+pub fn groups_of(rows_of_column: &Lists, columns: &[usize]) -> Vec<Vec<usize>> {
     let count = rows_of_column.count();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     // Groups that have an unknown in each row, one bit each, in so many words per row.
     let (mut words, mut taken) = (1, vec![0_u64; count]);
     let mut felt = vec![0_u64];
-    for column in 0..count {
+    for &column in columns {
         felt.fill(0);
         for row in rows_of_column.of(column) {
             for (felt, taken) in felt.iter_mut().zip(&taken[row * words..]) {
@@ -313,7 +322,7 @@ mod tests {
                     .enumerate()
                     .all(|(row, felt)| felt.iter().all(|one| rows.of(*one).contains(&row)))
             );
-            let groups = groups_of(&rows);
+            let groups = groups_of(&rows, &(0..count).collect::<Vec<_>>());
             assert_eq!(groups.len(), if full { count } else { 2 * reach + 1 });
             assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), count, "each unknown once");
             for (row, felt) in columns.iter().enumerate() {

@@ -4,6 +4,7 @@
 //! forward from there.
 
 use crate::body::Body;
+use crate::implicit::straining::{KnownStretch, PointStrain};
 use crate::implicit::unknowns::Unknowns;
 use crate::method::Memory;
 use crate::operators::recovery::points_in_cells;
@@ -43,6 +44,10 @@ pub struct Trial<const D: usize> {
     pub velocity: [Vec<Vector<D>>; 2],
     /// Increment of the nodal displacement since the anchor, m.
     pub(super) displacement: Vec<Vector<D>>,
+    /// Strains since the anchor for which the points have deformation and stress: their own ones, where they have any.
+    pub(super) strained: Vec<Option<PointStrain<D>>>,
+    /// Stretches whose logarithms are known, `[point]`.
+    pub(super) stretches: Vec<KnownStretch>,
 }
 
 impl<const D: usize> Trial<D> {
@@ -67,6 +72,8 @@ impl<const D: usize> Trial<D> {
             anchor: Points::default(),
             anchor_deformation: Vec::new(),
             carried,
+            strained: Vec::new(),
+            stretches: vec![KnownStretch::default(); body.points.len()],
             velocity: [body.nodes.solid_velocity.clone(), body.nodes.water_velocity.clone()],
             displacement: vec![[0.0; D]; body.nodes.len()],
             formulation,
@@ -106,6 +113,13 @@ impl<const D: usize> Trial<D> {
         let deformation = self.anchor.inverse_deformation.iter().map(|tensor| inverse(tensor).0);
         self.anchor_deformation.clear();
         self.anchor_deformation.extend(deformation);
+        self.forget_strains();
+    }
+
+    /// Forgets for which strains the points have deformation and stress.
+    fn forget_strains(&mut self) {
+        self.strained.clear();
+        self.strained.resize(self.anchor.len(), None);
     }
 
     /// Moves the body to increments of the unknowns since the anchor.
@@ -121,9 +135,9 @@ impl<const D: usize> Trial<D> {
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
         let traces = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
-        self.strain_points(&traces);
+        let has_changed = self.strain_points(&traces);
         self.take_pressures(increments);
-        if self.body.configuration.deforms() {
+        if has_changed && self.body.configuration.deforms() {
             self.body.follow_points();
         }
     }
@@ -155,6 +169,8 @@ impl<const D: usize> Trial<D> {
     /// where they move, the operators are rebuilt.
     pub fn end_step(&mut self, increments: &[f64], flux: f64) {
         self.body.surface_flux += flux;
+        // An explicit skeleton has the stress of the anchor.
+        self.forget_strains();
         self.move_to(increments);
         let moves_points = self.body.configuration.moves_points();
         if moves_points && self.formulation != Formulation::QuasiStatic {

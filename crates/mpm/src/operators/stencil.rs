@@ -137,6 +137,17 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
         (&mut self.first[..points], &mut self.lines[..points])
     }
 
+    /// Lowest node of each block, and along each direction which of its nodes it reaches: points whose domains touch a face
+    /// reach others before their rows begin elsewhere.
+    pub fn reach(&self) -> impl Iterator<Item = usize> + '_ {
+        self.first.iter().zip(&self.lines).map(|(first, lines)| {
+            let reached = lines.iter().flat_map(|line| line.values.iter().zip(&line.gradients));
+            reached.fold(*first, |key, (value, gradient)| {
+                2 * key + usize::from(*value != 0.0 || *gradient != 0.0)
+            })
+        })
+    }
+
     /// Stencils of all points in turn.
     #[inline(always)]
     pub fn all(&self) -> impl Iterator<Item = Stencil<'_, D, W>> {
@@ -403,9 +414,14 @@ impl<const D: usize> Default for PointStencils<D> {
 }
 
 impl<const D: usize> PointStencils<D> {
-    /// Lowest node of each block.
-    pub fn first(&self) -> &[usize] {
-        with_stencils!(self, stencils => &stencils.first)
+    /// Which nodes each block reaches, as [`Stencils::reach`].
+    pub fn reach(&self) -> Vec<usize> {
+        with_stencils!(self, stencils => stencils.reach().collect())
+    }
+
+    /// Whether the blocks reach those nodes; nothing is allocated.
+    pub fn reaches(&self, known: &[usize]) -> bool {
+        with_stencils!(self, stencils => stencils.reach().eq(known.iter().copied()))
     }
 
     /// Visits the nodes of a point with value and gradient (1/m).

@@ -75,12 +75,21 @@ impl<const D: usize> StrainOperator<D> {
         }
     }
 
-    /// Lowest node of each point's stencil, where it is not that of the basis.
-    pub fn first(&self) -> &[usize] {
+    /// Which nodes each point's stencil reaches, as [`Stencils::reach`], where it is not that of the basis.
+    pub fn reach(&self) -> Vec<usize> {
         match self {
-            Self::Basis => &[],
-            Self::Composite(stencils) => &stencils.first,
-            Self::BetweenEnds(stencils) => &stencils.first,
+            Self::Basis => Vec::new(),
+            Self::Composite(stencils) => stencils.reach().collect(),
+            Self::BetweenEnds(stencils) => stencils.reach().collect(),
+        }
+    }
+
+    /// Whether the stencils reach those nodes; nothing is allocated.
+    pub fn reaches(&self, known: &[usize]) -> bool {
+        match self {
+            Self::Basis => known.is_empty(),
+            Self::Composite(stencils) => stencils.reach().eq(known.iter().copied()),
+            Self::BetweenEnds(stencils) => stencils.reach().eq(known.iter().copied()),
         }
     }
 
