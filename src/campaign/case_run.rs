@@ -121,10 +121,11 @@ fn run_case_on(
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
     plausible(case)?;
+    let plain = case.without_idle_choices();
     if case.task == Task::Stability {
-        return stability_of(case, observe);
+        return stability_of(case, &plain, observe);
     }
-    let (outcome, wall) = solved(course, case, observe)?;
+    let (outcome, wall) = solved(course, &plain, observe)?;
     let mut record = record_of(case, references, outcome)?;
     record.wall.push(wall);
     Ok(record)
@@ -137,7 +138,7 @@ fn run_case_on(
 pub fn time_case(case: &Case) -> Result<WallSample, ExactError> {
     let course =
         Course { cores: Cores::one(true), kernel: Kernel::Fastest, time_limit: TimeLimit::default() };
-    solved(course, case, &|_, _| true).map(|(_, wall)| wall)
+    solved(course, &case.without_idle_choices(), &|_, _| true).map(|(_, wall)| wall)
 }
 
 /// What a case comes to, and how long that took.
@@ -178,13 +179,13 @@ fn plausible(case: &Case) -> Result<(), ExactError> {
     Ok(())
 }
 
-/// Predicts and observes the critical step of a case.
-fn stability_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Record, ExactError> {
-    let problem = problem_of(case)?;
+/// Predicts and observes the critical step of a case, which is that of the plain one without idle choices.
+fn stability_of(case: &Case, plain: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Record, ExactError> {
+    let problem = problem_of(plain)?;
     let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
     // Of how many steps a search will be is not known: its work is told at its end.
     let go_on = |_, _| observe(0, 1);
-    Ok(match problem.critical_step(&case.settings, end, MOST_PROBE_STEPS, &go_on) {
+    Ok(match problem.critical_step(&plain.settings, end, MOST_PROBE_STEPS, &go_on) {
         Ok(found) => record_of_critical_step(case, found),
         Err(Stopped) => record_of_stopped_search(case),
     })

@@ -25,11 +25,15 @@ const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, o
 
 impl Case {
     /// Every reason why the case cannot be.
-    #[expect(clippy::too_many_lines, reason = "a table: one row per limit")]
     pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
+        self.without_idle_choices().refusals_of_choices()
+    }
+
+    #[expect(clippy::too_many_lines, reason = "a table: one row per limit")]
+    fn refusals_of_choices(self) -> impl Iterator<Item = Refusal> {
         let always = |key, why: Option<&'static str>, help| why.map(|why| Refusal { key, why, help });
         let when = move |key, is_so: bool, why, help| always(key, is_so.then_some(why), help);
-        let Self { scene, integrator, formulation, settings, column, .. } = self;
+        let Self { scene, integrator, formulation, settings, column, .. } = &self;
         let is_stability = self.task == Task::Stability;
         let Some(method) = self.method.own() else {
             return vec![when(
@@ -43,7 +47,7 @@ impl Case {
         };
         let (points, is_explicit) = (&column.points, *integrator == IntegratorKind::Explicit);
         let (two, by_limit) = (points.has_two_sets(), matches!(self.time_step, TimeStepRule::Stable(_)));
-        let configuration = method.configuration_or(scene.configuration());
+        let configuration = method.configuration_in(scene.configuration());
         let moves = configuration == Configuration::Updated;
         let has_moving_points = is_explicit && configuration.moves_points() && !two;
         let has_domains = has_moving_points && method.basis == Basis::Cpgimp;
@@ -134,7 +138,7 @@ impl Case {
             ),
             when(
                 "sets",
-                two && method.memory == Memory::Cells,
+                two && method.memory == Memory::Cells && configuration != Configuration::Frozen,
                 "cell averages need points that carry both phases, and here are two point sets",
                 "take a method without the suffix -cells, or `sets = 1`",
             ),

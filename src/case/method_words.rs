@@ -130,7 +130,7 @@ fn of_recovery(recovery: Recovery) -> (&'static str, &'static str) {
             "the part of the pressure that no nodal force feels is removed",
             "Gritton & Berzins 2017; Tran & Sołowski 2019",
         ),
-        Recovery::Ppp | Recovery::PppStep | Recovery::PppMonotone => (
+        Recovery::Ppp => (
             "the pressure is a nodal field, stabilised by polynomial pressure projection",
             "Dohrmann & Bochev 2004; White & Borja 2008",
         ),

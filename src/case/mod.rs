@@ -12,12 +12,13 @@ pub mod work_estimate;
 
 pub use keys::{KEYS, Key, Kind, Value};
 use oedometer_mpm::explicit::ExplicitSettings;
-use oedometer_mpm::method::{Configuration, Method};
+use oedometer_mpm::method::{Configuration, Memory, Method};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::Formulation;
 pub use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::{Column, column_parameters};
+use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
@@ -143,8 +144,63 @@ impl Case {
 
     /// Configuration of the shape functions of this program's method: the method's own, or the scene's.
     pub fn configuration(&self) -> Configuration {
-        let own = self.method.own().and_then(|method| method.configuration);
-        own.unwrap_or(self.scene.configuration())
+        let scene = self.scene.configuration();
+        self.method.own().map_or(scene, |method| method.configuration_in(scene))
+    }
+
+    /// The choices of the case that change nothing, because nothing moves in it: each as a sentence for the reader. The run is
+    /// that of the case [without them](Self::without_idle_choices), to the bit.
+    pub fn idle_choices(&self) -> Vec<&'static str> {
+        let plain = self.without_idle_choices();
+        let is_still = self.configuration() == Configuration::Frozen;
+        let own = self.method.own().filter(|_| is_still);
+        let said = [
+            (
+                own.is_some_and(|method| method.configuration == Some(Configuration::Total)),
+                "nothing moves here, so shape functions on the initial configuration (`TL-`) are those of the plain method",
+            ),
+            (
+                own.is_some_and(|method| method.memory == Memory::Cells),
+                "nothing moves here, so points stay in their cells and `-cells` changes nothing",
+            ),
+            (
+                plain.settings.affine != self.settings.affine,
+                "nothing moves here, so APIC (`affine`) changes nothing",
+            ),
+            (
+                plain.settings.stress_slopes != self.settings.stress_slopes,
+                "nothing moves here, so there are no stress slopes (`stress_slopes`)",
+            ),
+            (
+                plain.material.conductivity_mean != self.material.conductivity_mean,
+                "at small strain the conductivity is uniform, so the chord mean is the mean of the points",
+            ),
+            (
+                plain.column.points.sets != self.column.points.sets,
+                "nothing moves here and the two point sets are alike, so they are solved as one set",
+            ),
+        ];
+        said.into_iter().filter_map(|(is_idle, sentence)| is_idle.then_some(sentence)).collect()
+    }
+
+    /// The case without choices that have nothing to act on: APIC, stress slopes and a mean of the conductivity where nothing
+    /// moves, and there a second point set that lies where the first one does, but for the explicit step, which shows that
+    /// both are equal (docs/theory.md).
+    #[must_use]
+    pub fn without_idle_choices(&self) -> Self {
+        let mut case = self.clone();
+        if self.is_attached() || self.configuration() != Configuration::Frozen {
+            return case;
+        }
+        (case.settings.affine, case.settings.stress_slopes) = (false, false);
+        case.material.conductivity_mean = ConductivityMean::Points;
+        let points = &mut case.column.points;
+        let is_alike = points.water_per_cell == 0 || points.water_per_cell == self.points_per_cell;
+        let is_uniform = self.column.soils.is_empty();
+        if points.has_two_sets() && is_alike && is_uniform && self.integrator != IntegratorKind::Explicit {
+            (points.sets, points.water_per_cell) = (1, 0);
+        }
+        case
     }
 
     /// The case as an attached solver knows it: it has no use for what only this program's integrators take, and cases

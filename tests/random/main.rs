@@ -8,6 +8,7 @@ mod known;
 mod laws;
 mod numbers;
 mod options;
+mod refused;
 mod relations;
 mod solved;
 

@@ -52,6 +52,7 @@ pub fn errors_table(record: &Record) -> Table {
              s/s_exact − 1",
         )
         .note(work_note(record))
+        .notes(case.idle_choices().into_iter().map(str::to_owned))
 }
 
 const MEASURES: [(Quantity, Sample, Norm); 6] = [
