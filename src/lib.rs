@@ -39,44 +39,44 @@
 //! | :-- | :-- | :-- |
 //! | 1, 2 (Zheng et al. Eqs 1, 2) | accelerations of water and mixture | `crates/mpm/src/drag/mod.rs:accelerations` |
 //! | 3, 5 | porosity | `crates/soil/src/material.rs:porosity_at` |
-//! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/body.rs:volume_rate` |
+//! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/kernel/body.rs:volume_rate` |
 //! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/conductivity.rs:conductivity` |
-//! | 8 | selective reduced integration | `crates/mpm/src/explicit/mod.rs:update_pressure` |
-//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/drag/mod.rs:step_limit`, `crates/mpm/src/critical_step/formula.rs:combined_limit` |
+//! | 8 | selective reduced integration | `crates/mpm/src/kernel/step.rs:update_pressure` |
+//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/integrate/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/drag/mod.rs:step_limit`, `crates/mpm/src/integrate/critical_step/formula.rs:combined_limit` |
 //! | 12 | consolidation | `crates/exact/src/consolidation/mod.rs:isochrone` |
 //! | 13 | Xie & Leo's column | `crates/exact/src/xie_leo.rs:fields` |
 //! | 14 | modes of the dynamic column | `crates/exact/src/dynamic_column/modes.rs:amplitude` |
 //! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `crates/exact/src/mandel/sums.rs:sum`, `crates/exact/src/mandel/sums.rs:ratios` |
-//! | 17 | chord mean of the conductivity | `crates/mpm/src/drag/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
-//! | 18 | rigid plate | `crates/mpm/src/loaded_body.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
-//! | 19 | own weight, free water | `crates/mpm/src/weighing_body.rs:add_weight` |
+//! | 17 | chord mean of the conductivity | `crates/mpm/src/kernel/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
+//! | 18 | rigid plate | `crates/mpm/src/kernel/loaded_body.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
+//! | 19 | own weight, free water | `crates/mpm/src/kernel/weighing_body.rs:add_weight` |
 //! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |
-//! | 21 | domains of water points | `crates/mpm/src/double_point/water_points.rs:take_domains` |
-//! | 22 | balances of double-point MPM | `crates/mpm/src/double_point/mod.rs:map_water_masses`, `crates/mpm/src/double_point/mod.rs:map_forces` |
-//! | 23 | pressure along the water | `crates/mpm/src/double_point/water_pressure.rs:update_pressure` |
+//! | 21 | domains of water points | `crates/mpm/src/integrate/double_point/water_points.rs:take_domains` |
+//! | 22 | balances of double-point MPM | `crates/mpm/src/integrate/double_point/mod.rs:map_water_masses`, `crates/mpm/src/integrate/double_point/mod.rs:map_forces` |
+//! | 23 | pressure along the water | `crates/mpm/src/integrate/double_point/water_pressure.rs:update_pressure` |
 //! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:of`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
 //! | 28 | neo-Hookean stress | `crates/soil/src/law.rs:neo_hookean_stress` |
-//! | 29 | the middle of a step | `crates/mpm/src/forced_body.rs:update_forced_pressure`, `crates/mpm/src/explicit/stresses.rs:middle_gradient` |
+//! | 29 | the middle of a step | `crates/mpm/src/kernel/forced_body.rs:update_forced_pressure`, `crates/mpm/src/kernel/stresses.rs:middle_gradient` |
 //! | 30 | shape functions of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/operators/corners.rs:follow` |
-//! | 32 | forces of cells with one rate | `crates/mpm/src/double_point/water_pressure.rs:add_cell_forces`, `crates/mpm/src/double_point/water_pressure.rs:keep_cell_rates` |
-//! | 33 | velocities with their gradients (APIC) | `crates/mpm/src/explicit/apic.rs:add_velocity_gradients` |
-//! | 34 | lines that pressures fade to | `crates/mpm/src/double_point/pressure_lines.rs:fade_beyond_lines` |
-//! | 35 | slopes of stresses | `crates/mpm/src/explicit/stress_slopes.rs:add_stress_slopes`, `crates/mpm/src/explicit/stress_slopes.rs:fit` |
+//! | 32 | forces of cells with one rate | `crates/mpm/src/integrate/double_point/water_pressure.rs:add_cell_forces`, `crates/mpm/src/integrate/double_point/water_pressure.rs:keep_cell_rates` |
+//! | 33 | velocities with their gradients (APIC) | `crates/mpm/src/actions/apic.rs:add_momenta` |
+//! | 34 | lines that pressures fade to | `crates/mpm/src/integrate/double_point/pressure_lines.rs:fade_beyond_lines` |
+//! | 35 | slopes of stresses | `crates/mpm/src/actions/stress_slopes.rs:add_forces`, `crates/mpm/src/actions/stress_slopes.rs:fit` |
 //!
 //! # The step
 //!
-//! Section 4 of the paper, read in `crates/mpm/src/explicit/mod.rs:kick_and_drift`.
+//! Section 4 of the paper, read in `crates/mpm/src/kernel/step.rs:step_by_step`.
 //!
 //! | step | place |
 //! | :-- | :-- |
-//! | 1, grid | `crates/mpm/src/explicit/mod.rs:reset_grid`, `crates/mpm/src/explicit/points_to_nodes.rs:build_basis_and_sum_points` |
-//! | 2, accelerations | `crates/mpm/src/explicit/mod.rs:nodal_accelerations`, `crates/mpm/src/explicit/points_to_nodes.rs:take_forces` |
-//! | 3, nodal velocities | `crates/mpm/src/explicit/mod.rs:nodal_velocities` |
-//! | 4, points | `crates/mpm/src/explicit/nodes_to_points.rs:advance_points_and_sum_momenta` |
-//! | 5, mapping back | `crates/mpm/src/explicit/points_to_nodes.rs:take_velocities` |
-//! | 6, effective stress | `crates/mpm/src/explicit/stresses.rs:update_effective_stress` |
-//! | 7, pressure | `crates/mpm/src/explicit/mod.rs:update_pressure`, `crates/mpm/src/operators/recovery/mod.rs:recover` |
+//! | 1, grid | `crates/mpm/src/kernel/step.rs:reset_grid`, `crates/mpm/src/kernel/points_to_nodes.rs:build_basis_and_sum_points` |
+//! | 2, accelerations | `crates/mpm/src/kernel/step.rs:nodal_accelerations`, `crates/mpm/src/kernel/points_to_nodes.rs:take_forces` |
+//! | 3, nodal velocities | `crates/mpm/src/kernel/step.rs:nodal_velocities` |
+//! | 4, points | `crates/mpm/src/kernel/nodes_to_points.rs:advance_points` |
+//! | 5, mapping back | `crates/mpm/src/kernel/points_to_nodes.rs:take_velocities` |
+//! | 6, effective stress | `crates/mpm/src/kernel/stresses.rs:update_effective_stress` |
+//! | 7, pressure | `crates/mpm/src/kernel/step.rs:update_pressure`, `crates/mpm/src/operators/recovery/mod.rs:recover` |
 //! | 8, next step | `crates/mpm/src/run/driver.rs:solve` |
 //!
 //! # A study from Rust
@@ -178,7 +178,7 @@ pub use study::check::Study;
 pub use study::file::StudySource;
 
 // What a problem is, and how it is solved.
-pub use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+pub use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 pub use oedometer_mpm::method::{Basis, Configuration, Method};
 pub use oedometer_mpm::run::integrator::IntegratorKind;
 pub use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
@@ -196,13 +196,13 @@ pub use oedometer_soil::material::Material;
 #[doc(hidden)]
 pub use case::work_estimate::estimated_seconds;
 #[doc(hidden)]
-pub use oedometer_mpm::assembled::step::AssembledStep;
+pub use oedometer_mpm::integrate::assembled::step::AssembledStep;
 #[doc(hidden)]
-pub use oedometer_mpm::body::{Body, Problem};
+pub use oedometer_mpm::integrate::critical_step::predicted::predicted_critical_step;
 #[doc(hidden)]
-pub use oedometer_mpm::critical_step::predicted::predicted_critical_step;
+pub use oedometer_mpm::integrate::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use oedometer_mpm::implicit::linear::LinearStepper;
+pub use oedometer_mpm::kernel::body::{Body, Problem};
 #[doc(hidden)]
 pub use oedometer_mpm::run::{
     run_plan::Plan,

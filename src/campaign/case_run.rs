@@ -7,8 +7,8 @@ use crate::measure::record::{record_of, record_of_critical_step, record_of_stopp
 use crate::record::{Machine, Record, Status, WallSample};
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::critical_step::formula;
-use oedometer_mpm::critical_step::observed::Stopped;
+use oedometer_mpm::integrate::critical_step::formula;
+use oedometer_mpm::run::observed::Stopped;
 use oedometer_mpm::run::results::outcome::{FailureKind, Outcome};
 use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::scene::column::column_parameters;

@@ -5,8 +5,8 @@
 
 use crate::case::{Case, Solver, step_label};
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::explicit::Drag;
-use oedometer_mpm::explicit::scheme::Scheme;
+use oedometer_mpm::kernel::Drag;
+use oedometer_mpm::kernel::scheme::Scheme;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::column::{Shape, Undrained};

@@ -1,7 +1,7 @@
 //! Combinations of inputs that are invalid although each input alone is valid, with the reason.
 
 use crate::case::{Case, Task};
-use oedometer_mpm::explicit::Drag;
+use oedometer_mpm::kernel::Drag;
 use oedometer_mpm::method::{Basis, Configuration, Memory};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};

@@ -11,7 +11,7 @@ pub mod solver;
 pub mod work_estimate;
 
 pub use keys::{KEYS, Key, Kind, Value};
-use oedometer_mpm::explicit::ExplicitSettings;
+use oedometer_mpm::kernel::ExplicitSettings;
 use oedometer_mpm::method::{Configuration, Memory, Method};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::Formulation;
@@ -323,8 +323,8 @@ mod tests {
     use super::*;
     use crate::case::solver::Attached;
     use oedometer_exact::parameters::MotionParameters;
-    use oedometer_mpm::explicit::Drag;
-    use oedometer_mpm::explicit::scheme::Scheme;
+    use oedometer_mpm::kernel::Drag;
+    use oedometer_mpm::kernel::scheme::Scheme;
     use oedometer_mpm::scene::column::Shape;
     use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::continuity::Continuity;

@@ -4,11 +4,11 @@
 //! work, fitted there to the cases of the shipped studies.
 
 use crate::case::{Case, Task};
-use oedometer_mpm::critical_step::formula;
-use oedometer_mpm::critical_step::observed::OBSERVED_STEPS;
+use oedometer_mpm::integrate::critical_step::formula;
 use oedometer_mpm::method::{Configuration, Memory, Method, StrainGradient};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::run::observed::OBSERVED_STEPS;
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;

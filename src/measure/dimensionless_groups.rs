@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::record::Groups;
 use oedometer_exact::ReferenceKind;
-use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::integrate::critical_step::formula;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_soil::elementary;

@@ -10,7 +10,7 @@ use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
 };
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::observed::CriticalStep;
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use oedometer_mpm::scene::column::column_parameters;

@@ -11,7 +11,7 @@ pub mod store;
 pub mod whole_file;
 
 use crate::case::{Case, Norm, Quantity, Sample};
-pub use oedometer_mpm::critical_step::observed::{CriticalStep, Probe};
+pub use oedometer_mpm::run::observed::{CriticalStep, Probe};
 use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 pub use provenance::{Machine, Origins, Provenance};

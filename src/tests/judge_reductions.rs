@@ -20,7 +20,7 @@ use crate::study::check::Study;
 use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, Selection};
 use crate::study::file::StudySource;
 use oedometer_convergence::{ErrorBound, ErrorSeries, SeriesDemand};
-use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::observed::CriticalStep;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 
 const REFERENCE: &str = "terzaghi";

@@ -10,7 +10,7 @@ use crate::record::{Probe, Record};
 use crate::render::tables::runs;
 use crate::study::check::Purpose;
 use crate::study::overrides::{Assignments, StudyLines, TIMING, toml_of};
-use oedometer_mpm::critical_step::observed::CriticalStep;
+use oedometer_mpm::run::observed::CriticalStep;
 
 /// Largest relative difference of observed and predicted step at which they agree.
 const AGREEMENT: f64 = 0.02;

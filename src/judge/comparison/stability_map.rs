@@ -133,8 +133,8 @@ fn settings_of(case: &Case) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use oedometer_mpm::explicit::Drag;
-    use oedometer_mpm::explicit::scheme::Scheme;
+    use oedometer_mpm::kernel::Drag;
+    use oedometer_mpm::kernel::scheme::Scheme;
 
     #[test]
     fn a_map_is_drawn_over_what_takes_most_values_wherever_its_axis_stands() {

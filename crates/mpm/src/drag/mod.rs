@@ -12,8 +12,6 @@
 //! component. The point-wise step, the assembled one and implicit stages all take their accelerations from here.
 //! The conductivity `k(J)` itself is in `oedometer_soil::conductivity`.
 
-mod chord_mean;
-
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;

@@ -33,3 +33,12 @@ impl SparseRows<f64> {
         self.row(row).iter().map(|(column, value)| value * vector[*column as usize]).sum()
     }
 }
+
+/// The entry of a column in a row sorted by column, inserted if missing.
+pub fn entry_of<T>(row: &mut Vec<(usize, T)>, column: usize, zero: T) -> &mut T {
+    let place = row.binary_search_by_key(&column, |entry| entry.0).unwrap_or_else(|place| {
+        row.insert(place, (column, zero));
+        place
+    });
+    &mut row[place].1
+}

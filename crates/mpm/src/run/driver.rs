@@ -1,12 +1,12 @@
 //! The driver of every run: steps from output to output, with snapshots, history and checks.
 
-use crate::run::results::outcome::{
+use crate::integrate::results::outcome::{
     Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
 };
-use crate::run::results::snapshot::Snapshot;
-use crate::run::run_plan::Plan;
-use crate::run::schedule::{Observer, StepLimit, steps_for};
-use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::integrate::results::snapshot::Snapshot;
+use crate::integrate::run_plan::Plan;
+use crate::integrate::schedule::{Observer, StepLimit, steps_for};
+use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::run::watch::Watch;
 
 /// Steps after which deforming points are given a new step size: the pores at the drained end

@@ -1,35 +1,28 @@
 //! A run: from a problem and a schedule to snapshots, history, counters and a named end.
 //!
 //! [`run`] makes a [`stepper::Stepper`] of the problem and its integrator, and `driver` takes it from output to output;
-//! `watch` looks at it on the way. `schedule` and `run_plan` say when to step and how far; `explicit_stepper` is the
-//! explicit integrator, the others are in `implicit`; `results` are what is left of it.
+//! `watch` looks at it on the way. `observed` finds by runs where steps become unstable.
 
 pub(crate) mod driver;
-pub(crate) mod energy;
-pub(crate) mod explicit_stepper;
-pub mod integrator;
-pub(crate) mod physical_bounds;
-pub mod results;
-pub mod run_plan;
-pub mod schedule;
-pub mod stepper;
+pub mod observed;
 pub(crate) mod watch;
 
-pub use schedule::{Kernel, Observer, Schedule, TimeStepRule};
+pub use crate::integrate::schedule::{Kernel, Observer, Schedule, TimeStepRule};
+pub use crate::integrate::{integrator, results, run_plan, schedule, stepper};
 
-use crate::body::{Body, Problem};
 use crate::direct_solver::Singular;
-use crate::double_point::DoublePoint;
-use crate::implicit::driven::DrivenStepper;
-use crate::implicit::linear::LinearStepper;
-use crate::implicit::newton::NewtonStepper;
+use crate::integrate::double_point::DoublePoint;
+use crate::integrate::explicit_stepper::{ExplicitStepper, PointSets};
+use crate::integrate::implicit::driven::DrivenStepper;
+use crate::integrate::implicit::linear::LinearStepper;
+use crate::integrate::implicit::newton::NewtonStepper;
+use crate::integrate::integrator::{Formulation, IntegratorKind};
+use crate::integrate::results::outcome::{Failure, FailureKind, Outcome};
+use crate::integrate::run_plan::{Plan, UnknownLimit};
+use crate::integrate::stepper::{StepFailure, Stepper};
+use crate::kernel::body::{Body, Problem};
 use crate::method::Configuration;
 use crate::run::driver::Driver;
-use crate::run::explicit_stepper::{ExplicitStepper, PointSets};
-use crate::run::integrator::{Formulation, IntegratorKind};
-use crate::run::results::outcome::{Failure, FailureKind, Outcome};
-use crate::run::run_plan::{Plan, UnknownLimit};
-use crate::run::stepper::{StepFailure, Stepper};
 use crate::time_limit::TimeLimit;
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a

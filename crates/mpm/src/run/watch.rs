@@ -1,13 +1,12 @@
 //! Checks every few steps that a run is still sound, for every integrator.
 
-use crate::body::Body;
-use crate::run::energy::EnergyAccount;
-use crate::run::integrator::StepBound;
-use crate::run::physical_bounds::PhysicalBounds;
-use crate::run::results::outcome::{FailureKind, StepSizes};
-use crate::run::results::snapshot::Snapshot;
-use crate::run::run_plan::Plan;
-use crate::run::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::integrate::integrator::StepBound;
+use crate::integrate::physical_bounds::PhysicalBounds;
+use crate::integrate::results::outcome::{FailureKind, StepSizes};
+use crate::integrate::results::snapshot::Snapshot;
+use crate::integrate::run_plan::Plan;
+use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
+use crate::kernel::energy::EnergyAccount;
 use oedometer_soil::elementary;
 
 /// Velocities beyond this multiple of their scale have left.
@@ -156,32 +155,4 @@ impl<'a> Watch<'a> {
         };
         StepFailure { kind: FailureKind::Unstable, reason: format!("{reason}{blame}") }
     }
-}
-
-impl<const D: usize> Body<D> {
-    /// A point whose pores closed, where there is one.
-    pub(crate) fn closed_pores(&self) -> Option<StepFailure> {
-        let grains = |point: usize| 1.0 - self.soil_of(point).porosity;
-        let ratios = &self.points.volume_ratio;
-        let is_closed = |point: &usize| ratios[*point] <= grains(*point) || ratios[*point].is_nan();
-        let point = (0..ratios.len()).find(is_closed)?;
-        Some(pores_closed(point, ratios[point], grains(point)))
-    }
-}
-
-/// A point whose pores closed or that left the grid, where there is one.
-pub fn lost_point<const D: usize>(body: &Body<D>) -> Option<StepFailure> {
-    let points = &body.points;
-    if let Some(closed) = body.closed_pores() {
-        return Some(closed);
-    }
-    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
-    let reason = format!("point {outside} is at {:?} m", points.position[outside]);
-    Some(StepFailure { kind: FailureKind::LeftGrid, reason })
-}
-
-/// The end of a run one of whose points has the volume ratio of its grains, or less.
-pub fn pores_closed(point: usize, ratio: f64, grains: f64) -> StepFailure {
-    let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
-    StepFailure { kind: FailureKind::PoresClosed, reason }
 }

@@ -3,8 +3,8 @@
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-use crate::forcing::{BodyForces, Forcing};
-use crate::run::integrator::Formulation;
+use crate::actions::forcing::{BodyForces, Forcing};
+use crate::integrate::integrator::Formulation;
 use crate::scene::column::{Column, Shape, column_parameters};
 use crate::scene::definition::{SceneBody, SceneDefinition, SceneStrain};
 use crate::wide::wide;

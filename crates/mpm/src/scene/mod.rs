@@ -12,10 +12,10 @@ mod moment_fitting;
 mod plane;
 pub mod problem;
 
-use crate::explicit::scheme::Scheme;
-use crate::explicit::{Drag, ExplicitSettings};
+use crate::integrate::integrator::IntegratorKind;
+use crate::kernel::scheme::Scheme;
+use crate::kernel::{Drag, ExplicitSettings};
 use crate::method::{Configuration, Method};
-use crate::run::integrator::IntegratorKind;
 use crate::scene::column::{Column, column_parameters};
 use crate::scene::definition::{
     SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,

@@ -165,7 +165,7 @@ impl<const D: usize> FilledCells<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
+    use crate::kernel::body::Body;
     use crate::method::{Configuration, Method};
     use crate::scene::SceneKind;
     use crate::scene::column::Column;

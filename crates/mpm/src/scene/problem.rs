@@ -1,13 +1,13 @@
 //! A scene's problem for the solver: grid, lattice of points, start and load. One `match` turns the number
 //! of dimensions into a type.
 
-use crate::body::{DrivenPlate, Problem};
-use crate::critical_step::observed::{CriticalStep, Stopped, critical_step};
-use crate::critical_step::predicted::{predict_for_run, whole_growth};
-use crate::explicit::ExplicitSettings;
+use crate::actions::surface_load::LoadShape;
+use crate::integrate::critical_step::predicted::{predict_for_run, whole_growth};
+use crate::integrate::results::outcome::Outcome;
+use crate::kernel::ExplicitSettings;
+use crate::kernel::body::{DrivenPlate, Problem};
 use crate::method::{Method, Quadrature};
-use crate::operators::surface_load::LoadShape;
-use crate::run::results::outcome::Outcome;
+use crate::run::observed::{CriticalStep, Stopped, critical_step};
 use crate::run::{Observer, Schedule, run};
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, Undrained, column_parameters};

@@ -1,7 +1,7 @@
-//! Columns of two sets of points for the tests of `crates/mpm/src/double_point/`, which may not import scenes outside of tests.
+//! Columns of two sets of points for the tests of `crates/mpm/src/integrate/double_point/`, which may not import scenes outside of tests.
 
-use crate::body::Body;
-use crate::double_point::DoublePoint;
+use crate::integrate::double_point::DoublePoint;
+use crate::kernel::body::Body;
 use crate::method::Method;
 use crate::scene::SceneKind;
 use crate::scene::arrangement::Arrangement;

@@ -3,9 +3,9 @@
 //! What is compared was compiled twice from one source (`crates/mpm/src/wide.rs`); without optimisation, and on a processor
 //! without registers of four, both are the same code and agree by themselves.
 
-use crate::body::{Body, Problem};
-use crate::critical_step::formula;
-use crate::explicit::{Drag, ExplicitSettings};
+use crate::integrate::critical_step::formula;
+use crate::kernel::body::{Body, Problem};
+use crate::kernel::{Drag, ExplicitSettings};
 use crate::method::{Configuration, Method};
 use crate::scene::SceneKind;
 use crate::scene::column::Column;

@@ -2,9 +2,9 @@
 
 use crate::run;
 use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
-use oedometer_mpm::body::Problem;
-use oedometer_mpm::explicit::scheme::Scheme;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::kernel::body::Problem;
+use oedometer_mpm::kernel::scheme::Scheme;
+use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::run::results::outcome::{FailureKind, RunStatus};

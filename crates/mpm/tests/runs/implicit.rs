@@ -1,8 +1,8 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
 use crate::run;
-use oedometer_mpm::body::Problem;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::kernel::body::Problem;
+use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 use oedometer_mpm::method::{Configuration, Method};
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::run::results::outcome::{FailureKind, Outcome, RunStatus};
@@ -301,7 +301,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         method: one.method,
         configuration: one.configuration,
         load: one.load,
-        load_shape: oedometer_mpm::operators::surface_load::LoadShape::Uniform,
+        load_shape: oedometer_mpm::actions::surface_load::LoadShape::Uniform,
         driven_plate: None,
         plate_load: None,
         weight: None,

@@ -2,7 +2,7 @@
 //! equalities between methods that theory demands on the regular lattice.
 
 use crate::run;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 use oedometer_mpm::method::{Configuration, Method};
 use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};
 use oedometer_mpm::run::results::snapshot::Snapshot;

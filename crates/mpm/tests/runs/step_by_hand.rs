@@ -6,8 +6,8 @@
 //! error many orders of magnitude above rounding.
 
 use crate::{odd_column, odd_soil, run};
-use oedometer_mpm::body::Problem;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings, scheme::Scheme};
+use oedometer_mpm::kernel::body::Problem;
+use oedometer_mpm::kernel::{Drag, ExplicitSettings, scheme::Scheme};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::run::results::outcome::RunStatus;

@@ -6,10 +6,10 @@
 
 use crate::run;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::critical_step::observed::Probe;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 use oedometer_mpm::method::Method;
 use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_mpm::run::observed::Probe;
 use oedometer_mpm::run::results::outcome::RunStatus;
 use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::SceneKind;

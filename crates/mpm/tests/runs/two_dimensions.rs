@@ -3,8 +3,8 @@
 
 use crate::run;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::body::Problem;
-use oedometer_mpm::explicit::{Drag, ExplicitSettings};
+use oedometer_mpm::kernel::body::Problem;
+use oedometer_mpm::kernel::{Drag, ExplicitSettings};
 use oedometer_mpm::method::{Basis, Method};
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};

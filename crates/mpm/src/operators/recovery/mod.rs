@@ -8,11 +8,11 @@ mod nodal;
 mod null_space;
 mod patch;
 
-use crate::assembled::stiffness::entry_of;
 use crate::method::{Method, Recovery};
 use crate::operators::recovery::nodal::{NodalMeans, Sites};
 use crate::operators::recovery::null_space::CellPlanes;
 use crate::operators::recovery::patch::PatchRows;
+use crate::operators::sparse_rows::entry_of;
 use crate::operators::stencil::PointStencils;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;

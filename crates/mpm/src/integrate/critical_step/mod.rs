@@ -1,0 +1,6 @@
+//! The critical time step: by formula, predicted from the step operator, observed by runs.
+
+pub mod formula;
+pub(crate) mod power;
+pub mod predicted;
+mod spectral_radius;

@@ -1,0 +1,242 @@
+//! The critical time step of a problem, predicted from its own operators.
+
+use crate::integrate::assembled::step::AssembledStep;
+use crate::integrate::critical_step::spectral_radius::{GROWTH_TOLERANCE, SLOW_GROWTH};
+use crate::integrate::critical_step::{formula, spectral_radius};
+use crate::kernel::ExplicitSettings;
+use crate::kernel::body::{Body, Problem};
+use crate::method::{PressureIntegration, Recovery};
+use crate::state::grid::Grid;
+use oedometer_soil::material::Material;
+use std::fmt;
+
+/// Cells of the column for which the critical step of a run is computed.
+const FEW_CELLS: usize = 12;
+/// Cells along each side of the corner of a plane whose step operator is squared.
+const MOST_ACROSS: usize = 8;
+/// Share of the formula's step at which the growth of a mode that grows under any step is reported.
+const FAR_BELOW: f64 = 0.1;
+
+/// A predicted critical step, with what it was predicted from.
+#[derive(Clone, Debug)]
+pub struct Prediction<const D: usize> {
+    /// Largest stable step, s; that of the formula where none is known.
+    pub critical_step: f64,
+    /// A mode that grows under any step, where there is one: then no limit is known.
+    pub growing: Option<GrowingMode>,
+    assembled: AssembledStep<D>,
+    settings: ExplicitSettings,
+}
+
+/// A mode that grows under any step that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrowingMode {
+    /// A step, s, far below the formula's.
+    pub step: f64,
+    /// Growth per such step.
+    pub growth: f64,
+}
+
+impl fmt::Display for GrowingMode {
+    /// Says that the limit is unknown.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (step, rate) = (self.step, (self.growth - 1.0) / self.step);
+        write!(out, "no limit is known: ")?;
+        write!(
+            out,
+            "under steps of {step:.2e} s too something grows by {rate:.2e} 1/s, by the eigenvalues of the step"
+        )
+    }
+}
+
+impl<const D: usize> Prediction<D> {
+    /// Largest step, s, under which no mode grows by more than `growth` per step.
+    pub fn critical_step_for(&self, growth: f64) -> f64 {
+        let safe = self.critical_step;
+        spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
+    }
+
+    /// Largest growth per step of any mode under steps of a size; none where the operator is too large.
+    pub fn growth(&self, step: f64) -> Option<f64> {
+        spectral_radius::growth(&self.assembled, step, &self.settings)
+    }
+}
+
+/// Critical step, s, of the explicit integrator on a problem's initial configuration.
+///
+/// Computed from the problem's own operators. A long column is shortened in its middle, which changes the limit by less
+/// than a percent; a wide layer is cut to six by six cells.
+pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
+    predict_for_run(problem, settings).0
+}
+
+/// The critical step of [`predicted_critical_step`], and a mode that grows under any step where there is one.
+pub fn predict_for_run<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+) -> (f64, Option<GrowingMode>) {
+    let prediction = predict(problem, settings, FEW_CELLS);
+    (prediction.critical_step, prediction.growing)
+}
+
+/// Largest growth per step of any mode of a whole problem in a plane under steps of a size, s; none in one dimension and
+/// where the problem is too large.
+pub fn whole_growth<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    step: f64,
+) -> Option<f64> {
+    if D == 1 {
+        return None;
+    }
+    spectral_radius::growth(&AssembledStep::new(&Body::new(one_point_set(problem))), step, settings)
+}
+
+/// The prediction from at most so many cells.
+pub fn predict<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    most_cells: usize,
+) -> Prediction<D> {
+    let limit = |soil: &Material| formula::combined_limit(soil, problem.grid.cell_size, settings.drag);
+    let safe = problem.least_of_soils(limit);
+    let problem = &one_point_set(problem);
+    let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
+    let problem = if problem.soils.len() > 1 {
+        // Every cell may be the one that sets the limit.
+        problem.clone()
+    } else if is_narrow {
+        without_middle(problem, most_cells)
+    } else {
+        corner(problem, (most_cells / 2).min(MOST_ACROSS))
+    };
+    let assembled = AssembledStep::new(&Body::new(problem));
+    let sharp = most_cells > FEW_CELLS;
+    let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
+    let step = FAR_BELOW * safe;
+    let growing = found.is_none().then(|| GrowingMode {
+        step,
+        growth: spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN),
+    });
+    // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
+    let is_slow = |mode: &GrowingMode| mode.growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
+    let growing = growing.filter(|mode| !is_slow(mode));
+    Prediction { critical_step: found.unwrap_or(safe), growing, assembled, settings: *settings }
+}
+
+/// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
+/// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
+/// constant pressure, and have the limit of that.
+pub(crate) fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+    let mut one = problem.clone();
+    // Forces from outside do not change the limit.
+    one.forcing = None;
+    let moves = one.configuration.moves_points();
+    if one.water.is_some() && moves && one.method.pressure == PressureIntegration::Sri {
+        one.method.recovery = Recovery::Constant;
+    }
+    if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
+        one.points = water;
+    }
+    one
+}
+
+/// The problem on so many cells of its lower corner, with the load on their top: the sides stay fixed, the top stays
+/// free.
+fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
+    let mut cut = problem.clone();
+    let extent = most as f64 * problem.grid.cell_size;
+    let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
+    let keep: Vec<usize> = (0..cut.points.len()).filter(is_kept).collect();
+    if keep.len() < cut.points.len() {
+        cut.points = cut.points.select(&keep);
+        let mut cells = problem.grid.cells;
+        for across in &mut cells[..D - 1] {
+            *across = (*across).min(most);
+        }
+        cut.grid = Grid::new(problem.grid.cell_size, cells);
+    }
+    cut
+}
+
+/// The problem without the surplus cells of its middle: base and surface, where it is special, stay as they are.
+fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Problem<D> {
+    let up = D - 1;
+    let cell_size = problem.grid.cell_size;
+    let mut cut = problem.clone();
+    let first = problem.grid.cell_of(&[0.0; D])[up];
+    let rows: Vec<usize> =
+        cut.points.position.iter().map(|place| problem.grid.cell_of(place)[up] - first).collect();
+    let cells = rows.iter().max().map_or(0, |top| top + 1);
+    if cells <= most_cells {
+        return cut;
+    }
+    let (below, removed) = (most_cells / 2, cells - most_cells);
+    let keep: Vec<usize> =
+        (0..rows.len()).filter(|point| rows[*point] < below || rows[*point] >= below + removed).collect();
+    for point in keep.iter().filter(|point| rows[**point] >= below) {
+        let down = removed as f64 * cell_size;
+        cut.points.position[*point][up] -= down;
+        cut.points.initial_position[*point][up] -= down;
+    }
+    cut.points = cut.points.select(&keep);
+    let mut extent = problem.grid.cells;
+    extent[up] -= removed;
+    cut.grid = Grid::new(cell_size, extent);
+    cut
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Drag;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::arrangement::Arrangement;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    #[test]
+    fn a_column_without_its_middle_has_the_limit_of_the_whole() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        for (name, filling) in [("GIMP", 1.0), ("GC-SRI-patch", 1.0), ("GIMP-SRI-patch", 0.1)] {
+            let points = Arrangement { filling, ..Arrangement::default() };
+            let column = Column { points, ..Column::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem =
+                column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 14, 2)
+                    .expect("the seed column");
+            let whole = predict(&problem, &settings, 14).critical_step;
+            let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
+            assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
+        }
+    }
+
+    #[test]
+    fn cells_that_press_with_one_rate_step_by_its_limit() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let limit = |name: &str, scene: SceneKind, sets: usize| {
+            let points = Arrangement { sets, ..Arrangement::default() };
+            let column = Column { points, load: 2e5, ..Column::default() };
+            let law = scene.default_law();
+            let soil = Material { law, ..Material::default() };
+            let method = Method::named(name).expect("a known method");
+            let problem = column_problem::<1>(scene, &column, &soil, method, 8, 4).expect("a column");
+            predicted_critical_step(&problem, &settings)
+        };
+        let moving = |name, layers| limit(name, SceneKind::XieLeo, layers);
+        assert_eq!(moving("GIMP-SRI-patch", 2), moving("GIMP-SRI", 1));
+        assert!(moving("GIMP-SRI-patch", 1) > 1.04 * moving("GIMP-SRI", 1));
+        let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
+        assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
+    }
+
+    #[test]
+    fn a_mode_that_grows_is_told_by_its_growth_per_second() {
+        let told = GrowingMode { step: 2e-3, growth: 1.5 }.to_string();
+        let wanted = "no limit is known: under steps of 2.00e-3 s too something grows by 2.50e2 1/s, by the eigenvalues of \
+                      the step";
+        assert_eq!(told, wanted);
+    }
+}

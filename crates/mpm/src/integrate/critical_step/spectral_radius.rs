@@ -1,0 +1,217 @@
+//! The critical time step, from the spectral radius of the method's own step operator.
+
+use crate::direct_solver::dense::subtract_product;
+use crate::integrate::assembled::step::AssembledStep;
+use crate::kernel::ExplicitSettings;
+use nalgebra::DMatrix;
+use oedometer_soil::elementary;
+
+/// Growth per step that counts as none: eigenvalues of exactly one scatter by round-off, and the null modes of FLIP grow
+/// linearly.
+pub const GROWTH_TOLERANCE: f64 = 1e-6;
+/// Squarings of the step operator. Growth is judged over `2^30` steps: a displacement that grows linearly, as all do where
+/// nothing holds them for the first million steps, still counts as `30 ln 2/2^30` per step.
+const SQUARINGS: u32 = 30;
+/// Share of the formula's step below which the search for a limit ends.
+const LEAST_SHARE: f64 = 0.01;
+/// Bisections of the bracket: a thousandth of a percent.
+const BISECTIONS: u32 = 24;
+
+/// Powers `A^m` of a square matrix by repeated squaring, which bound its spectral radius `ρ` from both sides:
+/// `(|tr A^m|/n)^(1/m) ≤ ρ ≤ ‖A^m‖^(1/m)`, and the upper bound tends to `ρ`.
+///
+/// The work is bounded whatever the spectrum: a Schur iteration can hang on a step operator with hundreds of
+/// eigenvalues that are exactly one.
+struct Powers {
+    /// `A^m` over a norm, which is kept in `log_scale`.
+    power: DMatrix<f64>,
+    squared: DMatrix<f64>,
+    /// `ln(scale)/m`.
+    log_scale: f64,
+    /// `1/m`.
+    share: f64,
+}
+
+impl Powers {
+    fn of(operator: &DMatrix<f64>) -> Self {
+        Self { power: operator.clone(), squared: operator.clone(), log_scale: 0.0, share: 1.0 }
+    }
+
+    /// Upper bound of the spectral radius.
+    fn most(&self) -> f64 {
+        self.bound(self.power.norm())
+    }
+
+    /// Lower bound of the spectral radius.
+    fn least(&self) -> f64 {
+        self.bound(self.power.trace().abs() / self.power.nrows() as f64)
+    }
+
+    fn bound(&self, size: f64) -> f64 {
+        if size == 0.0 { 0.0 } else { elementary::exp(self.log_scale + self.share * elementary::ln(size)) }
+    }
+
+    /// Goes on to `A^(2m)`; false where that is zero or not finite.
+    fn square(&mut self) -> bool {
+        let norm = self.power.norm();
+        if norm == 0.0 || !norm.is_finite() {
+            return false;
+        }
+        self.log_scale += self.share * elementary::ln(norm);
+        self.share *= 0.5;
+        let scale = 1.0 / norm;
+        self.squared.fill(0.0);
+        let (squared, power) = (&mut self.squared.as_view_mut(), self.power.as_view());
+        subtract_product(squared, power, power);
+        self.squared *= -scale * scale;
+        std::mem::swap(&mut self.power, &mut self.squared);
+        true
+    }
+}
+
+/// Spectral radius of a square matrix, `lim ‖A^m‖^(1/m)`; infinite where it is not finite.
+pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
+    let mut powers = Powers::of(operator);
+    for _ in 0..SQUARINGS {
+        if !powers.square() {
+            break;
+        }
+    }
+    let radius = powers.most();
+    if radius.is_finite() { radius } else { f64::INFINITY }
+}
+
+/// Whether the spectral radius of a square matrix is at most `most`, by as few powers as tell.
+fn is_within(operator: &DMatrix<f64>, most: f64) -> bool {
+    let mut powers = Powers::of(operator);
+    for _ in 0..SQUARINGS {
+        if powers.most() <= most || powers.least() > most || !powers.square() {
+            break;
+        }
+    }
+    powers.most() <= most
+}
+
+/// Unknowns of the largest operator that is squared: a plane of eight by eight cells.
+const MOST_SQUARED: usize = 640;
+/// Growth per step that counts as none in a plane, at the formula's step: a doubling takes 70 000 steps. Smaller steps are
+/// allowed the same growth per time, for growth of the spatial equations does not depend on the step.
+pub const SLOW_GROWTH: f64 = 1e-5;
+/// Factor by which a search upwards increases the step.
+const NEAR: f64 = 1.04;
+
+/// Largest growth per step of any mode under steps of a size; none where the operator is too large to be squared.
+pub fn growth<const D: usize>(step: &AssembledStep<D>, dt: f64, settings: &ExplicitSettings) -> Option<f64> {
+    (step.unknowns() <= MOST_SQUARED).then(|| spectral_radius(&step.operator(dt, settings)))
+}
+
+/// Largest step, s, of a frozen body under which no mode grows by more than `growth` per step, by bisection of the
+/// spectral radius between a step known to be safe and multiples of it. None where a mode grows under any step: the
+/// equations in space are unstable then.
+///
+/// In a plane squaring is expensive. There the limit is where a disturbance of all wavelengths begins to grow within a few
+/// hundred steps, and the spectral radius only confirms that nothing grows slowly there: by `growth`, or by a doubling in
+/// 70 000 steps where that is more. A `sharp` limit is searched by the spectral radius beyond it, too.
+pub fn critical_step<const D: usize>(
+    step: &AssembledStep<D>,
+    settings: &ExplicitSettings,
+    safe: f64,
+    growth: f64,
+    sharp: bool,
+) -> Option<f64> {
+    let is_within = |dt: f64, growth: f64| is_within(&step.operator(dt, settings), 1.0 + growth);
+    if D == 1 {
+        return bracketed([safe, 2.0, 1e-4], &mut |dt| is_within(dt, growth));
+    }
+    let mut disturbed = step.clone();
+    let soon = bracketed([safe, 2.0, 1e-3], &mut |dt| stays_bounded(&mut disturbed, dt, settings));
+    if step.unknowns() > MOST_SQUARED {
+        return soon;
+    }
+    let most = |dt: f64| if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) };
+    let mut is_stable = |dt: f64| is_within(dt, most(dt));
+    match soon {
+        Some(soon) if !sharp && is_stable(soon) => Some(soon),
+        found => bracketed([found.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
+    }
+}
+
+/// The limit between stable and unstable steps, by bisection from a safe step to a relative tolerance; a search upwards goes
+/// by `factor`. None where no step down to a hundredth of the first is stable.
+fn bracketed([safe, factor, tolerance]: [f64; 3], is_stable: &mut dyn FnMut(f64) -> bool) -> Option<f64> {
+    let mut low = safe;
+    let mut high = factor * low;
+    // The formula is an estimate: go down where it is too large.
+    while !is_stable(low) {
+        high = low;
+        low *= 0.5;
+        if low < LEAST_SHARE * safe {
+            return None;
+        }
+    }
+    while high > safe && is_stable(high) && high < 1e3 * safe {
+        low = high;
+        high *= factor;
+    }
+    for _ in 0..BISECTIONS {
+        if high - low < tolerance * low {
+            break;
+        }
+        let middle = 0.5 * (low + high);
+        if is_stable(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(low)
+}
+
+/// Steps over which the growth of a disturbance is judged.
+const GROWTH_STEPS: usize = 512;
+/// Growth of the velocities over these steps that no stable step reaches: null modes of FLIP double.
+const MOST_GROWTH: f64 = 4.0;
+/// Steps between two looks at a disturbance.
+const LOOK_INTERVAL: usize = 64;
+/// Velocity, m/s, that no node reaches under a stable step from at most 0.5 m/s.
+const LOST: f64 = 1e12;
+
+/// Whether a disturbance of all wavelengths does not grow after its first steps.
+fn stays_bounded<const D: usize>(step: &mut AssembledStep<D>, dt: f64, settings: &ExplicitSettings) -> bool {
+    step.set_step(dt, settings);
+    step.disturb();
+    let mut sizes = [0.0; 2];
+    for size in &mut sizes {
+        for _ in 0..GROWTH_STEPS / LOOK_INTERVAL {
+            for _ in 0..LOOK_INTERVAL {
+                step.step(dt, settings);
+            }
+            *size = step.largest_velocity();
+            if *size > LOST {
+                return false;
+            }
+        }
+    }
+    sizes[1] <= MOST_GROWTH * sizes[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spectral_radius_of_known_matrices() {
+        let rotation = DMatrix::from_row_slice(2, 2, &[0.0, -1.1, 1.1, 0.0]);
+        assert!((spectral_radius(&rotation) - 1.1).abs() < 1e-6);
+        let jordan = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 0.0, 1.0]);
+        assert!((spectral_radius(&jordan) - 1.0).abs() < 2e-6, "linear growth is no growth rate");
+        let spread = DMatrix::from_row_slice(2, 2, &[0.5, 100.0, 0.0, 0.25]);
+        assert!((spectral_radius(&spread) - 0.5).abs() < 1e-6);
+        assert_eq!(spectral_radius(&DMatrix::zeros(3, 3)), 0.0);
+        assert_eq!(spectral_radius(&DMatrix::from_element(2, 2, f64::NAN)), f64::INFINITY);
+        for (matrix, radius) in [(rotation, 1.1), (jordan, 1.0), (spread, 0.5)] {
+            assert!(is_within(&matrix, radius + 1e-5) && !is_within(&matrix, radius - 1e-5));
+        }
+        assert!(!is_within(&DMatrix::from_element(2, 2, f64::NAN), 1.0));
+    }
+}

@@ -1,0 +1,33 @@
+//! Points that are lost: their pores closed, or they left the grid.
+
+use crate::integrate::results::outcome::FailureKind;
+use crate::integrate::stepper::StepFailure;
+use crate::kernel::body::Body;
+
+impl<const D: usize> Body<D> {
+    /// A point whose pores closed, where there is one.
+    pub(crate) fn closed_pores(&self) -> Option<StepFailure> {
+        let grains = |point: usize| 1.0 - self.soil_of(point).porosity;
+        let ratios = &self.points.volume_ratio;
+        let is_closed = |point: &usize| ratios[*point] <= grains(*point) || ratios[*point].is_nan();
+        let point = (0..ratios.len()).find(is_closed)?;
+        Some(pores_closed(point, ratios[point], grains(point)))
+    }
+}
+
+/// A point whose pores closed or that left the grid, where there is one.
+pub fn lost_point<const D: usize>(body: &Body<D>) -> Option<StepFailure> {
+    let points = &body.points;
+    if let Some(closed) = body.closed_pores() {
+        return Some(closed);
+    }
+    let outside = points.position.iter().position(|position| !body.grid.holds(position))?;
+    let reason = format!("point {outside} is at {:?} m", points.position[outside]);
+    Some(StepFailure { kind: FailureKind::LeftGrid, reason })
+}
+
+/// The end of a run one of whose points has the volume ratio of its grains, or less.
+pub fn pores_closed(point: usize, ratio: f64, grains: f64) -> StepFailure {
+    let reason = format!("point {point} has J = {ratio:.4}, its grains alone fill {grains:.4}");
+    StepFailure { kind: FailureKind::PoresClosed, reason }
+}

@@ -1,0 +1,130 @@
+//! What a run needs beside its body: step sizes, bounds, loading time and plate.
+
+use crate::actions::surface_load::LoadedSurface;
+use crate::integrate::critical_step::formula;
+use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run};
+use crate::integrate::integrator::StepBound;
+use crate::integrate::physical_bounds::PhysicalBounds;
+use crate::integrate::results::outcome::StepSizes;
+use crate::integrate::schedule::{Schedule, StepLimit, TimeStepRule};
+use crate::kernel::body::{DrivenPlate, Problem};
+use crate::state::points::Points;
+use oedometer_soil::material::Material;
+use std::fmt;
+
+/// Share of a semi-implicit run's critical step that growing steps end at.
+const LARGEST_SHARE: f64 = 0.8;
+
+/// Why no limit of the step is known.
+#[derive(Clone, Copy, Debug)]
+pub enum UnknownLimit {
+    /// Something grows under any explicit step.
+    Growing(GrowingMode),
+    /// The limit of an explicit skeleton is a formula for points on the lattice of the cells.
+    OffLattice,
+}
+
+impl fmt::Display for UnknownLimit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Growing(growing) => write!(out, "{growing}"),
+            Self::OffLattice => out.write_str(
+                "no limit is known: that of semi-implicit steps is a formula for points on the lattice of the cells",
+            ),
+        }
+    }
+}
+
+/// What a run needs beside its body.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a> {
+    /// When to step and what to keep.
+    pub schedule: &'a Schedule,
+    /// How large the steps may be.
+    pub limit: StepLimit,
+    /// Why no limit is known that the steps could be shares of, where they are asked to be.
+    pub unknown_limit: Option<UnknownLimit>,
+    /// Step sizes as far as they are known before.
+    pub sizes: StepSizes,
+    /// Material points, of skeleton and water.
+    pub points: usize,
+    /// Grid nodes, ghosts included.
+    pub nodes: usize,
+    /// Pressure that the problem is about, Pa.
+    pub pressure_scale: f64,
+    /// Velocity that the problem is about, m/s.
+    pub velocity_scale: f64,
+    /// Height of the surface that settlements count from, m.
+    pub initial_height: f64,
+    /// What a sound result does not leave.
+    pub bounds: PhysicalBounds,
+    /// Time over which the load grows to its full value, s.
+    pub loading_time: f64,
+    /// Rigid plate that is pushed into the surface.
+    pub driven_plate: Option<DrivenPlate>,
+}
+
+impl<'a> Plan<'a> {
+    /// The plan of a problem.
+    ///
+    /// What implicit steps are measured by is a formula: of their own limit where the skeleton is
+    /// explicit, of the explicit integrator's where there is none.
+    pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
+        let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
+        let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
+            (StepBound::AllWaves, None) => {
+                let (critical, growing) = predict_for_run(problem, settings);
+                (critical, growing.map(UnknownLimit::Growing))
+            }
+            (StepBound::AllWaves, Some(known)) => (known, None),
+            (StepBound::SkeletonWaves, _) => {
+                let unknown = (!problem.points.began_on_lattice()).then_some(UnknownLimit::OffLattice);
+                let are_undamped = D > 1 || problem.method.has_projection();
+                let limit = |soil: &Material| formula::semi_implicit_limit(soil, cell_size, are_undamped);
+                (problem.least_of_soils(limit), unknown)
+            }
+            (StepBound::Accuracy, _) => {
+                let limit = |soil: &Material| formula::combined_limit(soil, cell_size, settings.drag);
+                (problem.least_of_soils(limit), None)
+            }
+        };
+        let unknown_limit = unknown.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
+        let sizes = StepSizes {
+            predicted_critical: critical,
+            target: schedule.rule.step(problem, critical),
+            largest: 0.0,
+        };
+        // Steps that grow must not outgrow what an explicit skeleton can stand.
+        let most = match schedule.integrator.step_bound() {
+            StepBound::SkeletonWaves => LARGEST_SHARE * sizes.predicted_critical,
+            StepBound::AllWaves | StepBound::Accuracy => f64::INFINITY,
+        };
+        Self {
+            limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
+            unknown_limit,
+            sizes,
+            points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
+            nodes: problem.grid.node_count(),
+            pressure_scale: problem.pressure_scale,
+            velocity_scale: velocity_scale(problem),
+            initial_height: LoadedSurface::of(&problem.points, problem.load)
+                .shaped(problem.load_shape, &problem.points)
+                .height(&problem.points),
+            bounds: PhysicalBounds::of(problem),
+            loading_time: problem.loading_time,
+            driven_plate: problem.driven_plate,
+            schedule,
+        }
+    }
+}
+
+/// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
+/// pressure, the larger: what a sound run does not leave a thousandfold.
+fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
+    problem.most_of_soils(|soil| {
+        let wave = formula::undrained_wave_speed(soil);
+        let density = soil.mixture_density();
+        let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
+        problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
+    })
+}

@@ -1,0 +1,407 @@
+//! From points to nodes: masses, momenta and forces, in one pass over the points or in one each.
+
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
+use crate::drag::drag_of_point;
+use crate::kernel::body::Body;
+use crate::operators::basis::{ShapeFunction, rows_in, with_shape};
+use crate::operators::corners::build_corners;
+use crate::operators::stencil::{Block, Run, Stencil, Stencils, with_stencils};
+use crate::state::nodes::NodalSums;
+use crate::state::points::Points;
+use crate::wide::wide;
+use oedometer_soil::conductivity::ConductivityMean;
+use oedometer_soil::material::Material;
+use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
+
+impl<const D: usize> Body<D> {
+    /// Sums masses, volumes and drag of the points to the nodes.
+    pub fn map_masses(&mut self) {
+        self.sum_points::<true, false, false>();
+        self.take_masses();
+    }
+
+    /// Maps the velocities of both phases from the points to the nodes, weighted with mass.
+    pub fn map_velocities(&mut self) {
+        self.sum_points::<false, true, false>();
+        self.take_velocities();
+    }
+
+    /// Forces on the mixture and on the water from the points' stresses (weak form, drained
+    /// surface natural), and from what acts from outside.
+    pub fn map_forces(&mut self) {
+        self.sum_points::<false, false, true>();
+        self.take_forces();
+    }
+
+    /// Sums masses, momenta and forces of the points by the shape functions that stand.
+    pub(crate) fn sum_points<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&mut self) {
+        let giving = Giving::new(&self.points, &self.soils, self.is_pushed_forward);
+        let (stride, sums) = (*self.grid.node_stride(), &mut self.nodes.sums);
+        with_stencils!(&self.basis, stencils => wide!({
+            let mut sums = ToNodes::<D, _, MASSES, MOMENTA, FORCES>::new(sums, stride);
+            let stencils = stencils.slices(giving.count());
+            for point in 0..giving.count() {
+                sums.add(stencils.of_point(point), &giving.given::<MASSES, MOMENTA, FORCES>(point));
+            }
+            sums.close();
+        }));
+    }
+
+    /// Builds the shape functions of points that have moved, and sums their masses, momenta and forces right away.
+    pub(crate) fn build_basis_and_sum_points(&mut self) {
+        let mut basis = std::mem::take(&mut self.basis);
+        if let Some(domains) = &self.domains {
+            self.cells.locate(&self.grid, &self.points, &self.soils);
+            build_corners(&mut basis, &self.grid, &self.cells.place, &domains.half_edges);
+            self.basis = basis;
+            self.sum_points::<true, true, true>();
+            return;
+        }
+        with_shape!(self.method.basis, &mut basis, S, stencils => {
+            wide!(self.build_and_sum::<_, S>(stencils));
+        });
+        self.basis = basis;
+        self.cells.end_locating(&self.points, &self.soils);
+    }
+
+    #[inline(always)]
+    fn build_and_sum<const W: usize, S: ShapeFunction<W>>(&mut self, stencils: &mut Stencils<D, W>) {
+        let giving = Giving::new(&self.points, &self.soils, false);
+        let count = giving.count();
+        let (grid, support) = (&self.grid, &self.support());
+        let positions = &self.points.position[..count];
+        let half_lengths = &self.points.half_length[..count];
+        let mut cells = self.cells.begin_locating(count);
+        let mut sums = ToNodes::<D, W, true, true, true>::new(&mut self.nodes.sums, *grid.node_stride());
+        let (first, lines) = stencils.blocks_mut(count);
+        for point in 0..count {
+            let given = giving.given::<true, true, true>(point);
+            let [grains, pores, ..] = given.masses;
+            let (index, place) = cells.locate(grid, point, &positions[point], [grains, pores]);
+            let block =
+                Block::new(grid, &rows_in::<D, W, S>(grid, support, &index, &place, &half_lengths[point]));
+            (first[point], lines[point]) = (block.first, block.lines);
+            sums.add(block.stencil(), &given);
+        }
+        sums.close();
+    }
+
+    /// Masses of the nodes from what the points have given.
+    pub(crate) fn take_masses(&mut self) {
+        self.nodes.take_masses(&self.material, self.is_layered());
+        if self.material.conductivity_mean == ConductivityMean::Chord {
+            self.take_chord_drag();
+        }
+    }
+
+    /// Velocities of the nodes from the momenta that the points have given.
+    pub(crate) fn take_velocities(&mut self) {
+        if let Some(gradients) = &self.actions.velocity_gradients {
+            let momenta = &mut self.nodes.sums.momenta;
+            gradients.add_momenta(&self.grid, &self.cells, &self.points, &self.basis, momenta);
+        }
+        self.nodes.take_velocities(&self.material);
+        if let Some(plate) = &self.actions.plate {
+            plate.tie_velocities(&mut self.nodes);
+        }
+    }
+
+    /// Forces on the nodes from what the points have given, and from what acts from outside.
+    pub(crate) fn take_forces(&mut self) {
+        if let Some(planes) = &mut self.actions.stress_planes {
+            let forces = &mut self.nodes.sums.forces;
+            planes.add_forces(&self.grid, &self.cells, &self.points, &self.basis, forces);
+        }
+        self.nodes.take_forces();
+        if self.actions.weight.is_some() {
+            self.add_weight();
+        }
+        if self.actions.forcing.is_some() {
+            self.add_body_forces();
+        }
+    }
+}
+
+/// What the points give, as slices of one length.
+#[derive(Clone, Copy)]
+struct Giving<'a, const D: usize> {
+    soils: &'a [Material],
+    soil: &'a [u8],
+    initial_volume: &'a [f64],
+    grain_volume: &'a [f64],
+    volume_ratio: &'a [f64],
+    stressed_share: &'a [f64],
+    solid_velocity: &'a [Vector<D>],
+    /// None where the water has points of its own.
+    water_velocity: &'a [Vector<D>],
+    effective_stress: &'a [Tensor<D>],
+    pressure: &'a [f64],
+    /// Of points whose gradients are pushed forward.
+    inverse_deformation: Option<&'a [Tensor<D>]>,
+}
+
+/// What a point gives to its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<const D: usize> {
+    /// Volumes of grains and pores, m^D, and drag, N s/m; in layers that over the point's porosity, which the node's
+    /// replaces (docs/theory.md, Eq. 44), and the storage of the pores, m^D/Pa.
+    pub masses: [f64; 4],
+    /// Volume times velocity of both phases, m^D m/s.
+    pub momenta: [Vector<D>; 2],
+    /// What each unit of gradient gives to the mixture, `(p I − σ') V`, and to the water, `p V I`,
+    /// `[direction][phase][component]`.
+    pub stresses: [[Vector<D>; 2]; D],
+}
+
+impl<const D: usize> Given<D> {
+    /// Nothing.
+    pub const NOTHING: Self = Self { masses: [0.0; 4], momenta: [[0.0; D]; 2], stresses: [[[0.0; D]; 2]; D] };
+}
+
+impl<'a, const D: usize> Giving<'a, D> {
+    #[inline(always)]
+    fn new(points: &'a Points<D>, soils: &'a [Material], is_pushed_forward: bool) -> Self {
+        let count = points.len();
+        Self {
+            soils,
+            soil: &points.soil[..count],
+            initial_volume: &points.initial_volume[..count],
+            grain_volume: &points.grain_volume[..count],
+            volume_ratio: &points.volume_ratio[..count],
+            stressed_share: &points.stressed_share[..count],
+            solid_velocity: &points.solid_velocity[..count],
+            water_velocity: &points.water_velocity,
+            effective_stress: &points.effective_stress[..count],
+            pressure: &points.pressure[..count],
+            inverse_deformation: is_pushed_forward.then(|| &points.inverse_deformation[..count]),
+        }
+    }
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.pressure.len()
+    }
+
+    /// What a point gives of masses, momenta and forces.
+    #[inline(always)]
+    fn given<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&self, point: usize) -> Given<D> {
+        let mut given = Given::NOTHING;
+        let (ratio, grains) = (self.volume_ratio[point], self.grain_volume[point]);
+        let volume = self.initial_volume[point] * ratio;
+        // n V = V − (1 − n_0) V_0
+        let pores = volume - grains;
+        if MASSES {
+            let soil = &self.soils[usize::from(self.soil[point])];
+            let (resisting, storage) = if self.soils.len() > 1 {
+                (grains + pores, pores / soil.water_bulk_modulus)
+            } else {
+                (pores, 0.0)
+            };
+            given.masses = [grains, pores, drag_of_point(soil, resisting, ratio), storage];
+        }
+        if MOMENTA {
+            let water = self.water_velocity.get(point).unwrap_or(&[0.0; D]);
+            given.momenta = scaled(&[self.solid_velocity[point], *water], [grains, pores]);
+        }
+        if FORCES {
+            let inverse = self.inverse_deformation.map(|inverse| &inverse[point]);
+            given.stresses = stresses_of(
+                volume * self.stressed_share[point],
+                self.pressure[point],
+                &self.effective_stress[point],
+                inverse,
+            );
+        }
+        given
+    }
+}
+
+/// Velocities of both phases, each times a volume.
+#[inline(always)]
+pub(crate) fn scaled<const D: usize>(velocities: &[Vector<D>; 2], volumes: [f64; 2]) -> [Vector<D>; 2] {
+    let mut momenta = *velocities;
+    for phase in 0..2 {
+        for d in 0..D {
+            momenta[phase][d] *= volumes[phase];
+        }
+    }
+    momenta
+}
+
+/// What each unit of gradient gives to the mixture, `(p I − σ') V`, and to the water, `p V I`,
+/// `[direction][phase][component]`.
+#[inline(always)]
+fn stresses_of<const D: usize>(
+    volume: f64,
+    pressure: f64,
+    effective_stress: &Tensor<D>,
+    inverse: Option<&Tensor<D>>,
+) -> [[Vector<D>; 2]; D] {
+    let pressure = volume * pressure;
+    let (mut mixture, mut water) = (*effective_stress, [[0.0; D]; D]);
+    for stress in mixture.as_flattened_mut() {
+        *stress *= -volume;
+    }
+    for d in 0..D {
+        mixture[d][d] += pressure;
+        water[d][d] = pressure;
+    }
+    if let Some(inverse) = inverse {
+        // Gradients on the initial configuration meet `σ F⁻ᵀ`.
+        (mixture, water) =
+            (product_with_transpose(&mixture, inverse), product_with_transpose(&water, inverse));
+    }
+    let mut given = [[[0.0; D]; 2]; D];
+    for e in 0..D {
+        for d in 0..D {
+            given[e][0][d] = mixture[d][e];
+            given[e][1][d] = water[d][e];
+        }
+    }
+    given
+}
+
+/// Sums of what points give to their nodes; of masses, momenta and forces those that are asked for.
+///
+/// On a line neighbours give to the same few nodes. What they give is summed in registers for as long as the nodes stay
+/// the same: a sum in memory would have to be stored and loaded again for every point.
+pub(crate) struct ToNodes<
+    'a,
+    const D: usize,
+    const W: usize,
+    const MASSES: bool,
+    const MOMENTA: bool,
+    const FORCES: bool,
+> {
+    stride: [usize; D],
+    masses: &'a mut [[[f64; 4]; 1]],
+    momenta: &'a mut [[Vector<D>; 2]],
+    forces: &'a mut [[Vector<D>; 2]],
+    /// The lowest of the nodes that the last points of a line gave to, and what each of them got.
+    first: usize,
+    line: [Share<D>; W],
+}
+
+/// What a node of a line gets.
+#[derive(Clone, Copy)]
+struct Share<const D: usize> {
+    masses: [f64; 4],
+    momenta: [Vector<D>; 2],
+    forces: [Vector<D>; 2],
+}
+
+impl<const D: usize> Share<D> {
+    const NOTHING: Self = Self { masses: [0.0; 4], momenta: [[0.0; D]; 2], forces: [[0.0; D]; 2] };
+}
+
+impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool, const FORCES: bool>
+    ToNodes<'a, D, W, MASSES, MOMENTA, FORCES>
+{
+    /// Nothing is given yet.
+    #[inline(always)]
+    pub fn new(sums: &'a mut NodalSums<D>, stride: [usize; D]) -> Self {
+        if MASSES {
+            sums.masses.fill([[0.0; 4]]);
+        }
+        if MOMENTA {
+            sums.momenta.fill([[0.0; D]; 2]);
+        }
+        if FORCES {
+            sums.forces.fill([[0.0; D]; 2]);
+        }
+        Self {
+            stride,
+            masses: &mut sums.masses,
+            momenta: &mut sums.momenta,
+            forces: &mut sums.forces,
+            first: 0,
+            line: [Share::NOTHING; W],
+        }
+    }
+
+    /// Adds what a point gives, times its shape functions and their gradients.
+    #[inline(always)]
+    pub fn add(&mut self, stencil: Stencil<'_, D, W>, given: &Given<D>) {
+        let stride = self.stride;
+        stencil.visit_runs(
+            &stride,
+            #[inline(always)]
+            |run| {
+                if D == 1 {
+                    self.add_on_line(run, given);
+                    return;
+                }
+                if MASSES {
+                    run.add_values(&[given.masses], self.masses);
+                }
+                if MOMENTA {
+                    run.add_values(&given.momenta, self.momenta);
+                }
+                if FORCES {
+                    run.add_gradients(&given.stresses, self.forces);
+                }
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn add_on_line(&mut self, run: &Run<D, W>, given: &Given<D>) {
+        if run.first != self.first {
+            self.close();
+            (self.first, self.line) = (run.first, [Share::NOTHING; W]);
+        }
+        for k in 0..W {
+            let (share, value, gradient) = (&mut self.line[k], run.values[k], run.gradients[k]);
+            if MASSES {
+                for i in 0..4 {
+                    share.masses[i] += value * given.masses[i];
+                }
+            }
+            for phase in 0..2 {
+                for d in 0..D {
+                    if MOMENTA {
+                        share.momenta[phase][d] += value * given.momenta[phase][d];
+                    }
+                    if FORCES {
+                        share.forces[phase][d] += gradient * given.stresses[d][phase][d];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds what is left in the registers.
+    #[inline(always)]
+    pub fn close(&mut self) {
+        if D > 1 {
+            return;
+        }
+        let nodes = self.first..self.first + W;
+        if MASSES {
+            for (node, share) in self.masses[nodes.clone()].iter_mut().zip(&self.line) {
+                for i in 0..4 {
+                    node[0][i] += share.masses[i];
+                }
+            }
+        }
+        if MOMENTA {
+            for (node, share) in self.momenta[nodes.clone()].iter_mut().zip(&self.line) {
+                for phase in 0..2 {
+                    for d in 0..D {
+                        node[phase][d] += share.momenta[phase][d];
+                    }
+                }
+            }
+        }
+        if FORCES {
+            for (node, share) in self.forces[nodes].iter_mut().zip(&self.line) {
+                for phase in 0..2 {
+                    for d in 0..D {
+                        node[phase][d] += share.forces[phase][d];
+                    }
+                }
+            }
+        }
+    }
+}

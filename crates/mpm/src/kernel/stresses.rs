@@ -1,0 +1,373 @@
+//! Step 6: from nodal velocities to the deformation of the points, and to the stresses that the law makes of it.
+
+#![expect(clippy::inline_always, reason = "the innermost loops of the step")]
+
+use crate::kernel::body::Body;
+use crate::method::Configuration;
+use crate::operators::stencil::{Stencils, with_stencils};
+use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
+use crate::state::grid::SIXTH;
+use crate::state::points::Points;
+use crate::wide::wide;
+use oedometer_soil::elementary;
+use oedometer_soil::law::{History, StrainIncrement, StressLaw};
+use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
+
+/// What follows the deformation of the points beside their volumes.
+#[derive(Clone, Copy)]
+struct Following {
+    /// Their domains.
+    domain: bool,
+    /// Their inverse deformation gradients.
+    inverse: bool,
+}
+
+/// How a step strains points.
+#[derive(Clone, Copy)]
+struct Straining<'a> {
+    laws: &'a [StressLaw],
+    /// Volumetric rates at the points, 1/s, where the method is B-bar.
+    dilation_rates: &'a [f64],
+    following: Following,
+    deforms: bool,
+    /// Whether gradients are pushed forward from the initial configuration.
+    is_total: bool,
+    is_forced: bool,
+    /// Duration, s.
+    dt: f64,
+}
+
+impl<const D: usize> Body<D> {
+    /// Step 6: effective stress by the method's strain gradient; at finite strain also volume and
+    /// domain.
+    pub(crate) fn update_effective_stress(&mut self, dt: f64) {
+        if self.method.strain.is_bbar() {
+            self.recover_dilation_rates();
+        }
+        let straining = Straining {
+            laws: &self.stress_laws,
+            dilation_rates: &self.dilation_rates,
+            following: self.following(),
+            deforms: self.configuration.deforms(),
+            is_total: self.configuration == Configuration::Total,
+            is_forced: self.actions.forcing.is_some(),
+            dt,
+        };
+        let (stride, field) = (*self.grid.node_stride(), &self.nodes.solid_velocity[..]);
+        let (grid, cells, points) = (&self.grid, &self.cells, &mut self.points);
+        let count = points.len();
+        match &self.strain {
+            StrainOperator::Basis => with_stencils!(&self.basis, stencils => {
+                wide!(straining.strain_by(points, stencils, stride, field));
+            }),
+            // Of points that move each row is taken once: right where it is made.
+            StrainOperator::Composite(_) if self.configuration.moves_points() => wide!({
+                let rows = CompositeRows::new(grid, cells, count);
+                straining.strain_points(
+                    points,
+                    #[inline(always)]
+                    |point| rows.block(point).stencil().gradient(&stride, field),
+                );
+            }),
+            StrainOperator::Composite(stencils) => {
+                wide!(straining.strain_by(points, stencils, stride, field));
+            }
+            StrainOperator::BetweenEnds(stencils) => {
+                wide!(straining.strain_by(points, stencils, stride, field));
+            }
+        }
+        self.turn_domains();
+    }
+
+    /// Volume ratio, exact in the logarithmic strain, and the domain where it follows.
+    pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
+        let (following, points) = (self.following(), &mut self.points);
+        following.deform(
+            increment,
+            &mut points.volume_ratio[point],
+            &mut points.half_length[point],
+            &mut points.inverse_deformation[point],
+        );
+    }
+
+    fn following(&self) -> Following {
+        let moves = self.configuration.moves_points();
+        // A hyperelastic law asks for the whole deformation, and so do domains that turn.
+        let is_whole = self.material.law.is_hyperelastic() || self.domains.is_some();
+        Following {
+            domain: moves && self.method.domains_follow(),
+            inverse: self.configuration == Configuration::Total || moves && is_whole,
+        }
+    }
+}
+
+impl Straining<'_> {
+    /// Strains points by the gradients of a nodal field with stencils that stand.
+    #[inline(always)]
+    fn strain_by<const D: usize, const W: usize>(
+        self,
+        points: &mut Points<D>,
+        stencils: &Stencils<D, W>,
+        stride: [usize; D],
+        field: &[Vector<D>],
+    ) {
+        let stencils = stencils.slices(points.len());
+        self.strain_points(
+            points,
+            #[inline(always)]
+            |point| stencils.of_point(point).gradient(&stride, field),
+        );
+    }
+
+    /// Strains points by the velocity gradients of a step.
+    #[inline(always)]
+    fn strain_points<const D: usize>(self, points: &mut Points<D>, gradient_of: impl Fn(usize) -> Tensor<D>) {
+        let (count, dt) = (points.len(), self.dt);
+        let has_dilation = !self.dilation_rates.is_empty();
+        let volume_ratio = &mut points.volume_ratio[..count];
+        let half_length = &mut points.half_length[..count];
+        let inverse_deformation = &mut points.inverse_deformation[..count];
+        let effective_stress = &mut points.effective_stress[..count];
+        let soil = &points.soil[..count];
+        let mut none = History::default();
+        for point in 0..count {
+            let (ratio, back) = (&mut volume_ratio[point], &mut inverse_deformation[point]);
+            let mut gradient = gradient_of(point);
+            if self.is_total {
+                gradient = product(&gradient, back);
+            }
+            let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
+            // A motion compared with exact fields is followed at the middle of the step, to second order.
+            if self.is_forced {
+                gradient = middle_gradient(&gradient, dt);
+            }
+            let mut increment = gradient;
+            for rate in increment.as_flattened_mut() {
+                *rate *= dt;
+            }
+            let before = *ratio;
+            if self.deforms {
+                self.following.deform(&increment, ratio, &mut half_length[point], back);
+            }
+            let mut dilation = 0.0;
+            if has_dilation {
+                // Of the kinematics only the volume goes the way of the water's.
+                dilation = dt * (self.dilation_rates[point] - trace);
+                for d in 0..D {
+                    increment[d][d] += dilation / D as f64;
+                }
+                if self.deforms {
+                    *ratio *= stretch_of(dilation);
+                }
+            }
+            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio: [before, *ratio] };
+            let stress = &mut effective_stress[point];
+            if self.deforms {
+                *stress = rotated(stress, &increment);
+            }
+            let history = points.history.get_mut(point).unwrap_or(&mut none);
+            self.laws[usize::from(soil[point])].update(stress, history, &strain, || {
+                let (deformation, per_volume) = inverse(back);
+                if has_dilation { assumed(&deformation, *ratio * per_volume) } else { deformation }
+            });
+        }
+    }
+}
+
+impl Following {
+    /// Deforms a point by a step's displacement gradient: its volume, exact in the logarithmic strain, and what follows it.
+    #[inline(always)]
+    fn deform<const D: usize>(
+        self,
+        increment: &Tensor<D>,
+        volume_ratio: &mut f64,
+        half_length: &mut Vector<D>,
+        inverse_deformation: &mut Tensor<D>,
+    ) {
+        for d in 0..D {
+            let stretch = stretch_of(increment[d][d]);
+            *volume_ratio *= stretch;
+            if self.domain {
+                half_length[d] *= stretch;
+            }
+        }
+        if self.inverse {
+            *inverse_deformation = relaxed(inverse_deformation, increment);
+        }
+    }
+}
+
+/// `F̄ = (J̄/J)^(1/3) F` of F-bar (de Souza Neto et al. 1996; Coombs et al. 2018 for material points), from `F` and `J̄/J`: the
+/// deformation gradient with the volume of the method's own divergence, shared by three directions, as [`StrainIncrement::components`]
+/// shares it, also by those in which nothing is displaced.
+#[inline]
+fn assumed<const D: usize>(deformation: &Tensor<D>, volume_share: f64) -> Tensor<D> {
+    let stretch = elementary::powf(volume_share, 1.0 / 3.0);
+    deformation.map(|row| row.map(|component| stretch * component))
+}
+
+/// Strains so small that four terms of their exponential are exact to round-off.
+const SMALL: f64 = 1e-4;
+const PER_24: f64 = 1.0 / 24.0;
+
+/// `exp(ε)`: a step's strain is small.
+#[inline(always)]
+fn stretch_of(strain: f64) -> f64 {
+    if strain.abs() < SMALL {
+        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+    } else {
+        elementary::exp(strain)
+    }
+}
+
+/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
+/// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
+#[inline(always)]
+fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let mut turned = *stress;
+    if D != 2 {
+        return turned;
+    }
+    let half = 0.25 * (increment[1][0] - increment[0][1]);
+    let per = 1.0 / (1.0 + half * half);
+    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
+    // `Q σ`, and that by `Qᵀ`.
+    let mut rows = turned;
+    for j in 0..D {
+        let [above, below] = [stress[0][j], stress[1][j]];
+        (rows[0][j], rows[1][j]) = (cosine * above - sine * below, sine * above + cosine * below);
+    }
+    for i in 0..D {
+        let [left, right] = [rows[i][0], rows[i][1]];
+        (turned[i][0], turned[i][1]) = (left * cosine - right * sine, left * sine + right * cosine);
+    }
+    turned
+}
+
+/// `F⁻¹ exp(−A)` for a step's strain `A`, to third order in it.
+#[inline]
+pub fn relaxed<const D: usize>(inverse: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
+    let once = product(inverse, increment);
+    let twice = product(&once, increment);
+    std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] - once[i][j] + 0.5 * twice[i][j]))
+}
+
+/// `(I + Δt L/2)⁻¹` of a velocity gradient `L` at the start of a step.
+#[inline]
+pub fn to_middle<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    let unit = identity::<D>();
+    let forth = std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] + 0.5 * dt * gradient[i][j]));
+    inverse(&forth).0
+}
+
+/// A velocity gradient `L` at the start of a step, on the configuration of its middle: `L (I + Δt L/2)⁻¹`. Its
+/// exponential is `I + Δt L` to second order, which is what points that are moved by `Δt v` undergo.
+#[inline]
+pub fn middle_gradient<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<D> {
+    product(gradient, &to_middle(gradient, dt))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_the_exponential() {
+        for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
+            assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+    }
+
+    #[test]
+    fn the_rate_form_of_b_bar_is_f_bar_step_by_step() {
+        // Steps exp(A) of a motion, and the volumes exp(a) that a divergence makes of them: F-bar multiplies
+        // (exp(a)/det exp(A))^(1/3) exp(A), B-bar adds (a − tr A)/3 to the diagonal of A and a − tr A to ln J.
+        let exponential = |a: &Tensor<2>| inverse(&relaxed(&identity(), a)).0;
+        let (mut motion, mut f_bar, mut log_volume) = (identity::<2>(), identity::<2>(), 0.0);
+        for step in 0..20 {
+            let size = 1e-4 * f64::from(step - 7);
+            let increment = [[size, -0.7 * size], [0.4 * size, -0.3 * size]];
+            let volume = 0.5 * size;
+            let stretch = exponential(&increment);
+            motion = product(&stretch, &motion);
+            let share = volume.exp() / inverse(&stretch).1;
+            let of_step = stretch.map(|row| row.map(|one| share.cbrt() * one));
+            f_bar = product(&of_step, &f_bar);
+            log_volume += volume;
+            let mut b_bar = increment;
+            let dilation = volume - inverse(&stretch).1.ln();
+            (b_bar[0][0], b_bar[1][1]) = (b_bar[0][0] + dilation / 3.0, b_bar[1][1] + dilation / 3.0);
+            for (got, exact) in exponential(&b_bar).as_flattened().iter().zip(of_step.as_flattened()) {
+                assert!((got - exact).abs() < 1e-9, "{got} for {exact}");
+            }
+        }
+        let (_, volume) = inverse(&motion);
+        let share = log_volume.exp() / volume;
+        let at_once = assumed(&motion, share);
+        for (got, exact) in at_once.as_flattened().iter().zip(f_bar.as_flattened()) {
+            assert!((got - exact).abs() < 1e-13, "{got} for {exact}");
+        }
+        let volume = share.cbrt() * inverse(&at_once).1;
+        assert!((volume / log_volume.exp() - 1.0).abs() < 1e-13, "its volume is the divergence's");
+        assert_eq!(assumed(&motion, 1.0), motion, "no correction without a difference of volumes");
+    }
+
+    #[test]
+    fn a_stress_turns_with_the_material_and_keeps_its_invariants() {
+        // A quarter turn in a thousand steps takes the stress along x to one along y.
+        let angle = std::f64::consts::FRAC_PI_2 / 1000.0;
+        let mut stress = [[5.0, 1.0], [1.0, -2.0]];
+        // Q with tan(θ/2) = w/2 turns by θ.
+        let spin = 2.0 * (0.5 * angle).tan();
+        for _ in 0..1000 {
+            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+        }
+        for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
+            assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
+        }
+        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        assert_eq!(stretched, stress, "a strain without spin turns nothing");
+    }
+
+    #[test]
+    fn a_stress_turns_by_the_rotation_of_hughes_and_winget() {
+        let (stress, increment) = ([[1.1, -0.4], [0.3, 0.9]], [[0.7, -0.6], [0.8, 0.2]]);
+        // Q σ Qᵀ with Q = (I − W/2)⁻¹ (I + W/2).
+        let half = 0.25 * (increment[1][0] - increment[0][1]);
+        let turn = product(&inverse(&[[1.0, half], [-half, 1.0]]).0, &[[1.0, -half], [half, 1.0]]);
+        let back = [[turn[0][0], turn[1][0]], [turn[0][1], turn[1][1]]];
+        let exact = product(&product(&turn, &stress), &back);
+        for (got, exact) in rotated(&stress, &increment).as_flattened().iter().zip(exact.as_flattened()) {
+            assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
+        }
+        assert_eq!(rotated(&[[3.0]], &[[0.5]]), [[3.0]], "a line does not turn");
+    }
+
+    #[test]
+    fn a_step_at_its_middle_is_that_of_points_moved_along_straight_lines() {
+        // exp of the middle gradient is I + Δt L but for third order.
+        let gradient = [[0.3, -0.8], [0.5, -0.4]];
+        let off = |dt: f64| {
+            let increment = middle_gradient(&gradient, dt).map(|row| row.map(|rate| dt * rate));
+            let back = relaxed(&identity::<2>(), &increment);
+            let moved: Tensor<2> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| f64::from(u8::from(i == j)) + dt * gradient[i][j])
+            });
+            let whole = product(&back, &moved);
+            (whole[0][0] - 1.0).abs() + whole[0][1].abs() + whole[1][0].abs() + (whole[1][1] - 1.0).abs()
+        };
+        assert!(off(1e-2) < 1e-6 && (7.5..8.5).contains(&(off(2e-2) / off(1e-2))), "{}", off(1e-2));
+    }
+
+    #[test]
+    fn the_inverse_deformation_keeps_to_the_volume() {
+        let mut inverse = [[1.0, 0.0], [0.0, 1.0]];
+        let increment = [[1e-6, 3e-6], [-2e-6, -4e-6]];
+        for _ in 0..50_000 {
+            inverse = relaxed(&inverse, &increment);
+        }
+        let determinant: f64 = inverse[0][0] * inverse[1][1] - inverse[0][1] * inverse[1][0];
+        assert!((determinant.ln() - 50_000.0 * 3e-6).abs() < 1e-10, "det F⁻¹ = exp(−tr ε)");
+    }
+}

@@ -1,0 +1,347 @@
+//! The critical time step of a problem, predicted and observed.
+//!
+//! Predicted from the spectral radius of the step operator on the problem's own grid; observed in runs of the solver
+//! itself, independent of the prediction, by bisection between a step that runs and one that fails.
+
+use crate::drag;
+use crate::integrate::critical_step::predicted::{one_point_set, predict, whole_growth};
+use crate::integrate::critical_step::{formula, power};
+use crate::integrate::integrator::{Formulation, IntegratorKind};
+use crate::integrate::results::outcome::{Failure, FailureKind, RunStatus};
+use crate::kernel::ExplicitSettings;
+use crate::kernel::body::{Body, Problem};
+use crate::run::{Kernel, Observer, Schedule, TimeStepRule, run};
+use crate::time_limit::TimeLimit;
+use serde::{Deserialize, Serialize};
+
+/// Cells up to which the prediction is for the whole column; longer ones are shortened in their middle.
+const WHOLE_COLUMN: usize = 24;
+/// Steps of an observing run: growth of 1/700 per step shows.
+pub const OBSERVED_STEPS: u64 = 32_768;
+/// Bisections between a step that runs and one that fails.
+pub const BISECTIONS: u32 = 24;
+/// Width of the last bracket, relative.
+const RESOLUTION: f64 = 1e-3;
+/// Strain under the load in a test of linear stability: a larger one would change the limit.
+const TINY_STRAIN: f64 = 1e-6;
+/// Growth per step that counts as unstable in a plane, whether a run shows it or not: a doubling in ten thousand steps.
+const SLOWEST_SEEN: f64 = 6.9e-5;
+/// Growth per step that a run of so many steps shows: `ln(5·10^4)/32768`.
+const VISIBLE_GROWTH: f64 = 3.3e-4;
+/// Shares of the predicted step that must run and must fail.
+pub const SHARES: [f64; 2] = [0.97, 1.03];
+
+/// One run at a share of the predicted step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Probe {
+    /// Share of the predicted critical step.
+    pub share: f64,
+    /// Step, s.
+    pub step: f64,
+    /// Spectral radius of the step operator: the largest growth per step; none where the problem is too large.
+    pub predicted_growth: Option<f64>,
+    /// Steps taken.
+    pub steps: u64,
+    /// Whether these steps reach the end of the scene.
+    pub reaches_end: bool,
+    /// How it failed, if it did.
+    pub failure: Option<Failure>,
+}
+
+/// What is known of a problem's critical step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct CriticalStep {
+    /// From the spectral radius, s: beyond it a mode grows by as much as is observed, `ln(5·10^4)/32768` per step, in a plane
+    /// a doubling in 10 000 steps.
+    pub predicted: f64,
+    /// Step, s, from which on a mode grows more slowly, where that begins long before: no run of a few thousand steps
+    /// shows it, but a million steps can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creeping_from: Option<f64>,
+    /// Says that no limit is known, where a mode grows under any step; `predicted` is the formula's step then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
+    /// From runs, s; none where none failed.
+    pub observed: Option<f64>,
+    /// `h/c` with the fastest undamped wave, s.
+    pub wave_limit: f64,
+    /// Limit of explicit drag alone, s.
+    pub drag_limit: f64,
+    /// The safe formula for both, s.
+    pub combined_limit: f64,
+    /// Runs at the shares 0.97 and 1.03 of the predicted step.
+    pub probes: Vec<Probe>,
+    /// Asymmetry of the stiffness of skeleton and water over its largest entry: zero to round-off where the power of the
+    /// forces is that of the stresses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asymmetry: Option<[f64; 2]>,
+}
+
+impl Probe {
+    /// Whether it ran below the predicted step, or failed above it; a run that was stopped or timed out did neither.
+    pub fn is_as_predicted(&self) -> bool {
+        match &self.failure {
+            None => self.share < 1.0,
+            Some(failure) => {
+                self.share > 1.0 && !matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut)
+            }
+        }
+    }
+}
+
+impl CriticalStep {
+    /// Whether the runs on both sides of the prediction agree with it; false without a run on either side.
+    pub fn probes_agree(&self) -> bool {
+        let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
+        has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
+    }
+
+    /// The predicted step, s, where a limit is known.
+    pub fn known(&self) -> Option<f64> {
+        self.unknown.is_none().then_some(self.predicted)
+    }
+
+    /// Observed over predicted step, minus one.
+    pub fn deviation(&self) -> Option<f64> {
+        self.observed.map(|observed| observed / self.predicted - 1.0)
+    }
+}
+
+/// The observer stopped the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stopped;
+
+/// Predicts, observes, and probes both sides of the prediction, up to `end` seconds or `most_steps`
+/// steps.
+///
+/// # Errors
+/// [`Stopped`] where the observer ends it.
+pub fn critical_step<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    end: f64,
+    most_steps: u64,
+    observer: Observer<'_>,
+) -> Result<CriticalStep, Stopped> {
+    let soil = &problem.material;
+    let mut problem = problem.clone();
+    // Growth is to be observed, not refused.
+    problem.is_bounded = false;
+    // A problem of finite strain is judged at its start.
+    let tiny = TINY_STRAIN * soil.oedometric_modulus() / problem.pressure_scale.max(f64::MIN_POSITIVE);
+    if problem.configuration.deforms() && tiny < 1.0 {
+        problem = problem.scaled(tiny);
+    }
+    let prediction = predict(&problem, settings, WHOLE_COLUMN);
+    let strict = prediction.critical_step;
+    let seen = if D > 1 { SLOWEST_SEEN } else { VISIBLE_GROWTH };
+    let is_sharp = prediction.growth(SHARES[1] * strict).is_none_or(|growth| growth > 1.0 + seen);
+    let predicted = if is_sharp { strict } else { prediction.critical_step_for(seen).max(strict) };
+    let creeping_from = (strict < SHARES[0] * predicted).then_some(strict);
+    let mut probes = Vec::with_capacity(SHARES.len());
+    for share in SHARES {
+        let step = share * predicted;
+        let steps = steps_to(end, step).clamp(OBSERVED_STEPS, most_steps.max(OBSERVED_STEPS));
+        let (taken, failure) = leaves(&problem, settings, step, steps, observer)?;
+        probes.push(Probe {
+            share,
+            step,
+            predicted_growth: prediction.growth(step),
+            steps: taken,
+            reaches_end: steps as f64 * step >= end * (1.0 - 1e-9),
+            failure,
+        });
+    }
+    let observed = observed_step(&problem, settings, &probes, observer)?;
+    let cell_size = problem.grid.cell_size;
+    Ok(CriticalStep {
+        predicted,
+        creeping_from,
+        unknown: prediction.growing.map(|growing| growing.to_string()),
+        observed,
+        wave_limit: problem
+            .least_of_soils(|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity)),
+        drag_limit: problem.least_of_soils(drag::step_limit),
+        combined_limit: problem
+            .least_of_soils(|soil| formula::combined_limit(soil, cell_size, settings.drag)),
+        probes,
+        asymmetry: Some(power::asymmetry(&Body::new(one_point_set(&problem)))),
+    })
+}
+
+/// Largest step that runs, by bisection; none where no step near the prediction fails. The search begins between the probes
+/// and goes outwards where they contradict the prediction.
+fn observed_step<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    probes: &[Probe],
+    observer: Observer<'_>,
+) -> Result<Option<f64>, Stopped> {
+    // Growth that doubles in ten thousand steps shows in the spectral radius, where the problem is small enough, but not
+    // in a run of a few ten thousand steps.
+    let grows =
+        |step: f64| whole_growth(problem, settings, step).is_some_and(|growth| growth > 1.0 + SLOWEST_SEEN);
+    let runs = |step: f64| -> Result<bool, Stopped> {
+        if grows(step) {
+            return Ok(false);
+        }
+        leaves(problem, settings, step, OBSERVED_STEPS, observer).map(|(_, failure)| failure.is_none())
+    };
+    let [below, above] = probes else { return Ok(None) };
+    // A probe that failed only after more steps than the runs of the search have did not fail by their measure.
+    let held =
+        |probe: &Probe| (probe.failure.is_none() || probe.steps > OBSERVED_STEPS) && !grows(probe.step);
+    let (least, most) = (1e-3 * below.step, 1e3 * above.step);
+    let (mut low, mut low_runs) = (below.step, held(below));
+    let (mut high, mut high_runs) = (above.step, held(above));
+    while !low_runs {
+        (high, high_runs) = (low, false);
+        low *= 0.5;
+        // Written so that a prediction of NaN ends the search.
+        let is_near = low >= least;
+        if !is_near {
+            return Ok(None);
+        }
+        low_runs = runs(low)?;
+    }
+    while high_runs {
+        low = high;
+        high *= 2.0;
+        let is_near = high <= most;
+        if !is_near {
+            return Ok(None);
+        }
+        high_runs = runs(high)?;
+    }
+    for _ in 0..BISECTIONS {
+        if high - low < RESOLUTION * low {
+            break;
+        }
+        let middle = 0.5 * (low + high);
+        if runs(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(Some(0.5 * (low + high)))
+}
+
+/// Runs a number of steps of a size; the steps taken, and how the run failed.
+fn leaves<const D: usize>(
+    problem: &Problem<D>,
+    settings: &ExplicitSettings,
+    step: f64,
+    steps: u64,
+    observer: Observer<'_>,
+) -> Result<(u64, Option<Failure>), Stopped> {
+    let schedule = Schedule {
+        outputs: vec![steps as f64 * step],
+        history: Vec::new(),
+        rule: TimeStepRule::Seconds(step),
+        settings: *settings,
+        kernel: Kernel::Fastest,
+        integrator: IntegratorKind::Explicit,
+        formulation: Formulation::VW,
+        threads: 1,
+        time_limit: TimeLimit::default(),
+        // An observing run must not depend on the prediction.
+        critical_step: Some(step),
+    };
+    let outcome = run(problem.clone(), &schedule, observer);
+    let failure = match outcome.status {
+        RunStatus::Ok => None,
+        RunStatus::Failed(failure) if failure.kind == FailureKind::Stopped => return Err(Stopped),
+        RunStatus::Failed(failure) => Some(failure),
+    };
+    Ok((outcome.counters.steps, failure))
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+fn steps_to(end: f64, step: f64) -> u64 {
+    (end / step).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    fn probe(share: f64, failure: Option<FailureKind>) -> Probe {
+        let failed = |kind| Failure {
+            kind,
+            step: 7,
+            time: 1.0,
+            growth: None,
+            reason: "as the test wants it".to_owned(),
+        };
+        let failure = failure.map(failed);
+        Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
+    }
+
+    fn agree(probes: &[Probe]) -> bool {
+        let found = CriticalStep {
+            predicted: 1.0,
+            creeping_from: None,
+            unknown: None,
+            observed: Some(1.0),
+            wave_limit: 1.0,
+            drag_limit: 1.0,
+            combined_limit: 1.0,
+            probes: probes.to_vec(),
+            asymmetry: None,
+        };
+        found.probes_agree()
+    }
+
+    #[test]
+    fn below_the_limit_a_run_holds_and_above_it_leaves_by_a_name() {
+        let unstable = Some(FailureKind::Unstable);
+        let [below, above] = SHARES;
+        assert!(below < 1.0 && above > 1.0);
+        assert!(agree(&[probe(below, None), probe(above, unstable)]));
+        assert!(!agree(&[probe(below, unstable), probe(above, unstable)]), "it left below its limit");
+        assert!(!agree(&[probe(below, None), probe(above, None)]), "it held above its limit");
+        for stopped in [FailureKind::Stopped, FailureKind::TimedOut] {
+            assert!(!agree(&[probe(below, None), probe(above, Some(stopped))]), "a stop is no leaving");
+            assert!(!agree(&[probe(below, Some(stopped)), probe(above, unstable)]));
+        }
+    }
+
+    #[test]
+    fn a_search_finds_the_limit_from_probes_on_one_side_of_it() {
+        let settings = ExplicitSettings::default();
+        let method = Method::named("GIMP-SRI-patch").expect("a known method");
+        let (column, soil) = (Column::default(), Material::default());
+        let problem =
+            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, 2).expect("a column");
+        let found = |steps: [f64; 2]| {
+            let probes = steps.map(|step| {
+                let (steps, failure) =
+                    leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
+                Probe { step, steps, ..probe(1.0, failure.map(|failure| failure.kind)) }
+            });
+            observed_step(&problem, &settings, &probes, &|_, _| true)
+                .expect("nobody stops it")
+                .expect("a limit")
+        };
+        let predicted = predict(&problem, &settings, WHOLE_COLUMN).critical_step;
+        let about = found([0.97 * predicted, 1.03 * predicted]);
+        assert!((about / predicted - 1.0).abs() < 0.02, "{about} for {predicted}");
+        for [low, high] in [[1.9, 2.0], [0.2, 0.3]] {
+            let from_aside = found([low * predicted, high * predicted]);
+            assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
+        }
+    }
+
+    #[test]
+    fn one_side_alone_agrees_with_nothing() {
+        assert!(!agree(&[]));
+        assert!(!agree(&[probe(SHARES[0], None)]));
+        assert!(!agree(&[probe(SHARES[1], Some(FailureKind::Unstable))]));
+    }
+}
