@@ -18,8 +18,6 @@ const IMPOSSIBLE: f64 = 100.0;
 const SAME_PLACE: f64 = 1e-6;
 /// Gaps between places that differ by less than this share are even.
 const EVEN: f64 = 1e-3;
-/// Most parts into which the places of an element divide a cell.
-const MOST_OF_A_CELL: usize = 4;
 
 /// A result as it was read.
 #[derive(Debug)]
@@ -166,8 +164,8 @@ fn twice(states: &[SampledState], sample: Sample) -> Option<Sample> {
     states.iter().find_map(of_state)
 }
 
-/// Whether nodes or centres of a table stand on a lattice of their own that no element of the case's cells has: a mesh of other
-/// cells is whole, too. Quadratic elements halve a cell, triangles and quadrature points divide it into thirds.
+/// Whether nodes or centres, in a file that shows no mesh, stand evenly at more heights than the cells of the case have: a finer
+/// mesh's are whole, too. Places without such an order, like the centres of triangles, are judged by what they cover.
 fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<String> {
     let nodes = match sample {
         Sample::Nodes => 1,
@@ -180,11 +178,9 @@ fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<Strin
     let gaps = || places.windows(2).map(gap);
     let widest = gaps().fold(0.0, f64::max);
     let is_even = gaps().all(|gap| gap >= (1.0 - EVEN) * widest);
-    let spacings = heights - nodes;
-    let divides = (1..=MOST_OF_A_CELL).any(|parts| spacings == parts * case.cells);
-    (heights > most && is_even && !divides).then(|| {
+    (heights > most && is_even).then(|| {
         format!(
-            "the {} of the result stand evenly at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
+            "the {} of the result stand at {heights} heights, and {} cells have {most}: it is another mesh's, or its \
              places are no {} (`sample` in the mapping; `rows` chooses corners)",
             sample.name(),
             case.cells,
@@ -323,14 +319,6 @@ mod tests {
         for (sample, most) in [(Sample::Nodes, 5), (Sample::Centres, 4)] {
             let found = [most - 1, most, most + 1].map(|heights| is_other(sample, heights));
             assert_eq!(found, [false, false, true], "{sample:?}");
-            // Quadratic elements, and triangles.
-            for parts in [2, 3, 4, 5] {
-                assert_eq!(
-                    is_other(sample, most + (parts - 1) * case.cells),
-                    parts > 4,
-                    "{sample:?} {parts}"
-                );
-            }
         }
         assert!(!is_other(Sample::Points, 40), "a cell may have many points");
         assert!(!is_other(Sample::Surface, 40), "nor has the surface heights");
