@@ -3,7 +3,7 @@
 //! `cargo bench --bench kernels` ends with a table of nanoseconds per point and step, the unit in
 //! which the bar is set: at most 3.5 for `GC-SRI-patch` in one dimension with frozen weights, 25 with
 //! moving points, 100 in two dimensions, on a core of 3.5 GHz; the least of rounds in which the kernels take
-//! turns. Beside the moving step stand its passes one by one, and what bounds the one to the nodes.
+//! turns. Beside the moving step stand its seven steps one by one, and under them a bound by counted operations.
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 use divan::counter::ItemsCount;
@@ -229,42 +229,20 @@ fn least_of_rounds<const N: usize>(works: &mut [Box<dyn FnMut()>; N]) -> [f64; N
     least
 }
 
-/// Nodes whose coefficients lie side by side, as in the frozen step.
-const LANES: usize = 4;
-/// Sums that do not wait for each other in the bound.
-const CHAINS: usize = 4;
-/// `STEPS` passes over the nodes with so many multiply-adds each.
-fn streaming(cells: usize, terms: usize) -> Box<dyn FnMut()> {
-    let blocks = cells.div_ceil(LANES);
-    let terms = terms.next_multiple_of(CHAINS);
-    let coefficients = vec![[1e-3; LANES]; blocks * terms];
-    let mut field = vec![[1.0; LANES]; blocks];
-    let mut sums = vec![[0.0; LANES]; blocks];
-    Box::new(move || {
-        for _ in 0..STEPS {
-            for (block, sum) in sums.iter_mut().enumerate() {
-                // Four chains of sums hide the latency of an addition.
-                let mut chains = [[0.0; LANES]; CHAINS];
-                let value = field[block];
-                for rows in coefficients[block * terms..][..terms].chunks_exact(CHAINS) {
-                    for (chain, row) in chains.iter_mut().zip(rows) {
-                        for lane in 0..LANES {
-                            chain[lane] += row[lane] * value[lane];
-                        }
-                    }
-                }
-                for lane in 0..LANES {
-                    sum[lane] = chains.iter().map(|chain| chain[lane]).sum();
-                }
-            }
-            black_box((&mut sums, &mut field));
-        }
-    })
-}
-
-/// Passes of the moving step and their bounds, in the order of the table.
+/// Steps of the moving kernel, as the table names them.
 const PASSES: [&str; 7] =
-    ["step", "operators", "to nodes", "back", "adding to nodes", "waiting", "eight cycles"];
+    ["1 grid", "2 acceler.", "3 velocities", "4 points", "5 back", "6 stress", "7 pressure"];
+/// Additions, multiplications, divisions, minima and maxima per point of each of them, of `GC-SRI-patch` in one and in two
+/// dimensions, counted in the sources; those of the nodes are left out, for they are few where cells hold many points.
+///
+/// Step 1: place and cell 7, row of GIMP 25, volumes and drag 6, momenta 2, stresses 4, sums over the cell 3, and 2 for each of
+/// 7 numbers at 3 nodes; in the plane two rows, and 27 products of them, and 30 at each of 9 nodes. Step 4: 2 for each of 4
+/// numbers at each node, 12 to move, 2 for each momentum at each node. Step 6: row of the composite gradient 24, gradient 8,
+/// strain, volume and stress 17; in the plane two rows, 16 nodes, and the stress is turned. Step 7: fit 30, sum 6.
+const OPERATIONS: [[f64; 7]; 2] =
+    [[89.0, 0.0, 0.0, 48.0, 0.0, 49.0, 36.0], [390.0, 0.0, 0.0, 238.0, 0.0, 267.0, 122.0]];
+/// Operations that a cycle can begin in registers of four numbers, two at a time.
+const PER_CYCLE: f64 = 8.0;
 /// Steps an iteration of the moving table, so few that one goes by undisturbed on a machine that is busy, and its
 /// rounds.
 const MOVING_STEPS: usize = 8;
@@ -272,19 +250,15 @@ const MOVING_ROUNDS: usize = 300;
 /// Clock cycles that wait for each other: the unit that does not depend on the clock.
 const CYCLES: usize = 8;
 
-/// The moving step of `GC-SRI-patch` and its passes, in a column of one dimension and of two.
+/// The moving step of `GC-SRI-patch` and its seven steps, in a column of one dimension and of two, ns per point.
 ///
-/// `operators` builds all weights anew; `to nodes` is the pass that sums masses and momenta, `back` the one
-/// that maps velocities back; what is left are the nodes, the points' motion, their stresses and their pressures.
-/// Two bounds of the pass to the nodes stand beside it: `adding to nodes`, its multiply-adds with nothing to wait
-/// for, each with a coefficient and a value from the cache; and `waiting`: neighbours give to the same node, so every
-/// sum is stored, loaded and added to before the next, measured with one number a point. `eight cycles` is the
-/// length of the clock's cycle, eight of them one after the other, and `ratio` the step over it: what does not depend
-/// on the clock.
+/// Under each line stands a bound: the [`OPERATIONS`] of each step, were two registers of four numbers filled and begun in
+/// every cycle, with the length of a cycle as it is measured beside them. `cycles` is the whole step in cycles per point: what
+/// does not depend on the clock.
 fn print_moving_table() {
-    println!("\nmoving step of GC-SRI-patch and its passes, ns per point, least of {MOVING_ROUNDS} rounds");
-    print!("{:>10}{:>10}{:>6}", "dimensions", "pts/cell", "cells");
-    println!("{}{:>10}", PASSES.map(|pass| format!("{pass:>16}")).concat(), "ratio");
+    println!("\nmoving step of GC-SRI-patch, ns per point, least of {MOVING_ROUNDS} rounds; below, by count");
+    print!("{:>4}{:>10}{:>7}{:>8}", "", "pts/cell", "cells", "step");
+    println!("{}{:>8}", PASSES.map(|pass| format!("{pass:>14}")).concat(), "cycles");
     for (cells, points_per_cell) in [(10, 2), (80, 2), (10, 4), (40, 4), (80, 4)] {
         let problem = crowded_problem("GC-SRI-patch", cells, points_per_cell, Configuration::Updated);
         print_moving_costs(problem, points_per_cell, cells);
@@ -300,44 +274,39 @@ fn print_moving_table() {
 }
 
 fn print_moving_costs<const D: usize>(problem: Problem<D>, points_per_cell: usize, cells: usize) {
-    print!("{D:>10}{points_per_cell:>10}{cells:>6}");
-    let costs = moving_cost(problem, points_per_cell);
-    let [step, .., cycles] = costs;
-    println!("{}{:>10.1}", costs.map(|cost| format!("{cost:>16.1}")).concat(), step / cycles);
+    let ([step, passes @ ..], cycle) = moving_cost(problem);
+    let shown = |numbers: &[f64]| numbers.iter().map(|cost| format!("{cost:>14.1}")).collect::<String>();
+    println!("{D:>3}D{points_per_cell:>10}{cells:>7}{step:>8.1}{}{:>8.0}", shown(&passes), step / cycle);
+    let bounds = OPERATIONS[D - 1].map(|operations| operations / PER_CYCLE * cycle);
+    let bound: f64 = bounds.iter().sum();
+    println!("{:>21}{bound:>8.1}{}{:>8.0}", "by count", shown(&bounds), bound / cycle);
 }
 
-/// Nanoseconds per point of the step and of each pass, which take turns.
-fn moving_cost<const D: usize>(problem: Problem<D>, points_per_cell: usize) -> [f64; PASSES.len()] {
+/// Nanoseconds per point of the step and of each of the seven, the least of rounds, and of a cycle of the clock.
+fn moving_cost<const D: usize>(problem: Problem<D>) -> ([f64; 8], f64) {
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
     let mut body = Body::new(problem);
     let count = body.points.len();
-    let mut node_sums = vec![0.0; count / points_per_cell + 1];
-    // Three masses and two momenta at three nodes a direction.
-    let nodes: usize = (0..D).map(|_| 3).product();
-    let mut adding = streaming(count, nodes * (3 + 2 * D));
-    let (mut least, mut chain) = ([f64::INFINITY; PASSES.len()], 1);
+    let (mut least, mut least_cycle, mut chain) = ([f64::INFINITY; 8], f64::INFINITY, 1);
     for _ in 0..MOVING_ROUNDS {
-        let mut time = |pass: usize, one: &mut dyn FnMut()| keep_least(&mut least[pass], MOVING_STEPS, one);
-        time(0, &mut || body.explicit_step(black_box(dt), &settings));
-        time(1, &mut || body.build_operators());
-        time(2, &mut || {
-            body.map_masses();
-            body.map_velocities();
-        });
-        time(3, &mut || body.map_velocities());
-        time(5, &mut || {
-            for point in 0..count {
-                let node = &mut node_sums[point / points_per_cell];
-                *black_box(node) += 1.0;
-            }
-        });
+        keep_least(&mut least[0], MOVING_STEPS, &mut || body.explicit_step(black_box(dt), &settings));
+        let (mut seconds, mut pass, mut start) = ([0.0; 7], 0, Instant::now());
+        for _ in 0..MOVING_STEPS {
+            body.step_by_step(dt, dt, &settings, |_| {
+                let now = Instant::now();
+                seconds[pass % 7] += (now - start).as_secs_f64();
+                (pass, start) = (pass + 1, now);
+            });
+        }
+        for (least, seconds) in least[1..].iter_mut().zip(seconds) {
+            *least = least.min(seconds);
+        }
         // Each chain begins with the last one's end: short ones would run side by side otherwise.
-        time(6, &mut || chain = black_box(dependent_cycles(black_box(chain), count)));
-        keep_least(&mut least[4], 1, &mut adding);
+        keep_least(&mut least_cycle, 1, &mut || chain = black_box(dependent_cycles(black_box(chain), count)));
     }
-    least[4] *= MOVING_STEPS as f64 / STEPS as f64;
-    least.map(|seconds| 1e9 * seconds / (MOVING_STEPS * count) as f64)
+    let per_point = 1e9 / (MOVING_STEPS * count) as f64;
+    (least.map(|seconds| per_point * seconds), 1e9 * least_cycle / (CYCLES * count) as f64)
 }
 
 /// So many times [`CYCLES`] operations of one cycle, each of which waits for the last.
