@@ -3,6 +3,7 @@
 //! The same cases on every machine and at every call. `OEDOMETER_RANDOM_CASES` asks for another number of them and
 //! `OEDOMETER_RANDOM_SEED` for others; each violation is told with the command that repeats it.
 
+mod differential;
 mod draw;
 mod known;
 mod laws;
@@ -41,7 +42,7 @@ fn asked(variable: &str, otherwise: u64) -> u64 {
 }
 
 /// Outcomes in the order of their indices, solved side by side.
-fn swept(cases: u64, outcome_of: impl Fn(u64) -> Outcome + Sync) -> Vec<Outcome> {
+fn swept<T: Send>(cases: u64, outcome_of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let (next, ended) = (AtomicU64::new(0), Mutex::new(BTreeMap::new()));
     std::thread::scope(|scope| {
         for _ in 0..THREADS {

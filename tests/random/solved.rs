@@ -7,6 +7,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Estimated seconds of a case that is still drawn: a bound on its work, and not on a clock.
 const LONGEST: f64 = 0.12;
 
+/// Whether a checker of studies takes options, and they are short enough for a sweep.
+pub fn is_short(options: &Options) -> bool {
+    let estimate = || options.study().map(|study| estimated_seconds(&study.planned[0].case));
+    catch_unwind(AssertUnwindSafe(estimate)).is_ok_and(|seconds| seconds.is_ok_and(|of| of <= LONGEST))
+}
+
 /// How a case ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
