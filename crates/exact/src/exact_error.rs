@@ -168,6 +168,17 @@ pub enum ExactError {
         /// `n`.
         porosity: f64,
     },
+    /// Grains softer than the skeleton that they make.
+    #[error(
+        "the bulk modulus of the grains, {grains} Pa, is below that of the drained skeleton, {bulk} Pa: grains are stiffer \
+         than the skeleton that they make"
+    )]
+    SoftGrains {
+        /// `K_s`, Pa.
+        grains: f64,
+        /// `K`, Pa.
+        bulk: f64,
+    },
     /// A time at which a series has too few terms.
     #[error(
         "the time factor {time_factor} is too early for a series of {terms} terms: ask for 0, or for a later time"
@@ -177,6 +188,17 @@ pub enum ExactError {
         time_factor: f64,
         /// Terms that are known.
         terms: usize,
+    },
+    /// A time at which the base is felt, of a solution that is that of a half-space.
+    #[error(
+        "the solution is that of a half-space, and at T_v = {time_factor} the base may change the pressures by {bound:.1e} \
+         of the load: ask for earlier time factors"
+    )]
+    BaseFelt {
+        /// Time factor.
+        time_factor: f64,
+        /// What the base may change, over the load.
+        bound: f64,
     },
     /// The place of a source.
     #[error("the pressure at the source itself is infinite: ask for places beside it, ζ below 1")]

@@ -11,8 +11,12 @@
 //! yielding (Shield 1954; Bishop 1953), so that bounds from both sides meet. The fields under it are not unique.
 
 use crate::exact_error::{ExactError, checked_time_factor, positive};
+use crate::inputs::LAW;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[LAW, &["plate_width"]];
 
 /// `F/(B c_u)` at collapse.
 pub const LOAD_FACTOR: f64 = 2.0 + std::f64::consts::PI;

@@ -14,13 +14,17 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Complex;
 
-use crate::cosine_layer::{NODES, talbot_contour};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, normal, positive};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
+use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["soils"]];
 
 /// Modes beyond which the transform takes over.
 const MOST_MODES: usize = 1000;
@@ -40,6 +44,8 @@ struct Layer {
     modulus: f64,
     /// `S = 1/E_oed + n/K_w`, 1/Pa.
     storage: f64,
+    /// `n/K_w`, 1/Pa.
+    of_water: f64,
     /// `κ = k/γ_w`, m²/(Pa s).
     mobility: f64,
 }
@@ -48,6 +54,11 @@ impl Layer {
     /// Pressure of the undrained start over the load, `1/(E_oed S)`.
     fn undrained(&self) -> f64 {
         1.0 / (self.modulus * self.storage)
+    }
+
+    /// Share of the load that the skeleton carries undrained, `1 − 1/(E_oed S)`, without cancellation.
+    fn immediate(&self) -> f64 {
+        self.of_water / self.storage
     }
 
     /// `√(S/κ)`: the wave number of a mode that decays by `e^{−t}`, √s/m.
@@ -114,13 +125,15 @@ impl LayeredColumn {
         let mut stack = Vec::with_capacity(layers.len());
         for &(thickness, soil) in layers {
             let modulus = normal("oedometric modulus of a layer", soil.oedometric_modulus())?;
-            let storage = 1.0 / modulus + soil.porosity / soil.water_bulk_modulus;
+            let of_water = soil.porosity / soil.water_bulk_modulus;
+            let storage = 1.0 / modulus + of_water;
             let mobility = soil.hydraulic_conductivity / soil.unit_weight_of_water();
             stack.push(Layer {
                 bottom,
                 thickness: normal("thickness of a layer", thickness)?,
                 modulus,
                 storage: normal("storage of a layer", storage)?,
+                of_water,
                 mobility: normal("mobility of the water in a layer", mobility)?,
             });
             bottom += thickness;
@@ -143,9 +156,14 @@ impl LayeredColumn {
     /// # Errors
     /// When `seconds` is negative or not finite, or `y` outside of the column.
     pub fn fields_after(&self, seconds: f64, y: f64) -> Result<FieldValues, ExactError> {
-        let state = self.at(seconds)?;
         let y = held_within(y, self.height).ok_or(ExactError::OutsideLayer { y, height: self.height })?;
-        let pressure = state.pressure(y);
+        self.fields_at(seconds, y, self.height - y)
+    }
+
+    /// The fields at a height and a depth, m: near the top the height has lost the digits of the depth.
+    fn fields_at(&self, seconds: f64, y: f64, depth: f64) -> Result<FieldValues, ExactError> {
+        let state = self.at(seconds)?;
+        let pressure = state.pressure(y, depth);
         Ok(FieldValues {
             pressure: self.load * pressure,
             effective_stress: self.load * (pressure - 1.0),
@@ -168,7 +186,10 @@ impl LayeredColumn {
     pub fn accuracy_after(&self, seconds: f64) -> Result<Accuracy, ExactError> {
         Ok(match self.at(seconds)?.form {
             Form::Start => Accuracy::of(0, 0.0),
-            Form::Series { terms, .. } => Accuracy::of(terms, self.tail(seconds, terms)),
+            Form::Series { terms, .. } => Accuracy {
+                phase_bound: self.round_off(seconds, terms),
+                ..Accuracy::of(terms, self.tail(seconds, terms))
+            },
             Form::Transform(_) => Accuracy::of(NODES / 2, INVERSION_ERROR),
         })
     }
@@ -212,6 +233,16 @@ impl LayeredColumn {
         let first_term = first * elementary::exp(-first * first * seconds);
         let rest = elementary::exp(-first * first * seconds) * span / (2.0 * PI * seconds);
         (resistance * energy).sqrt() * (first_term + rest)
+    }
+
+    /// What round-off leaves of the sum of modes over the load: a phase is known to its own round-off only.
+    fn round_off(&self, seconds: f64, terms: usize) -> f64 {
+        let of_mode = |(index, mode): (usize, &Mode)| {
+            let amplitude = mode.waves.iter().fold(0.0_f64, |most, wave| most.max(wave.0));
+            let (phase, decay) = ((index as f64 + 0.5) * PI, mode.rate * seconds);
+            mode.coefficient.abs() * amplitude * (2.0 + phase + decay) * elementary::exp(-decay)
+        };
+        4.0 * f64::EPSILON * self.modes[..terms].iter().enumerate().map(of_mode).sum::<f64>()
     }
 
     /// Phase of the wave of `√λ = root` at the top, and amplitude and phase at each bottom; the base's is 1 and 0.
@@ -279,7 +310,8 @@ impl LayeredColumn {
 impl Solution for LayeredColumn {
     fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let seconds = checked_time_factor(time_factor)? * self.seconds;
-        self.fields_after(seconds, (1.0 - checked_depth(zeta)?) * self.height)
+        let zeta = checked_depth(zeta)?;
+        self.fields_at(seconds, (1.0 - zeta) * self.height, zeta * self.height)
     }
 
     fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
@@ -330,20 +362,25 @@ enum Form {
 }
 
 impl State<'_> {
-    /// Pressure over the load at the height `y`.
-    fn pressure(&self, y: f64) -> f64 {
+    /// Pressure over the load at the height `y`, which is at a depth.
+    fn pressure(&self, y: f64, depth: f64) -> f64 {
         let column = self.column;
         let at = column.layer_at(y);
         let layer = &column.layers[at];
         let above = y - layer.bottom;
+        let below_face = if at + 1 == column.layers.len() { depth } else { layer.thickness - above };
         match &self.form {
-            Form::Start if y >= column.height => 0.0,
+            Form::Start if depth <= 0.0 => 0.0,
             Form::Start => layer.undrained(),
             Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
                 let (amplitude, phase) = mode.waves[at];
                 amplitude * elementary::cos(phase + root * layer.slowness() * above)
             }),
-            Form::Transform(images) => images.iter().map(|image| image.pressure(layer, at, above)).sum(),
+            Form::Transform(_) if depth <= 0.0 => 0.0,
+            Form::Transform(images) => {
+                layer.undrained()
+                    + images.iter().map(|image| image.pressure(layer, at, [above, below_face])).sum::<f64>()
+            }
         }
     }
 
@@ -356,16 +393,23 @@ impl State<'_> {
             if above <= 0.0 {
                 break;
             }
-            let pressure = match &self.form {
-                Form::Start => layer.undrained() * above,
-                Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
-                    let (amplitude, phase) = mode.waves[at];
-                    let number = root * layer.slowness();
-                    amplitude * sine_step(phase, number * above) / number
-                }),
-                Form::Transform(images) => images.iter().map(|image| image.integral(layer, at, above)).sum(),
+            // ∫ (1 − p/q) over the layer.
+            let carried = match &self.form {
+                Form::Start => layer.immediate() * above,
+                Form::Series { terms, seconds } => {
+                    above
+                        - self.over_modes(*terms, *seconds, |mode, root| {
+                            let (amplitude, phase) = mode.waves[at];
+                            let number = root * layer.slowness();
+                            amplitude * sine_step(phase, number * above) / number
+                        })
+                }
+                Form::Transform(images) => {
+                    let lost = images.iter().map(|image| image.integral(layer, at, above)).sum::<f64>();
+                    layer.immediate() * above - lost
+                }
             };
-            total += (above - pressure) / layer.modulus;
+            total += carried / layer.modulus;
         }
         total
     }
@@ -435,24 +479,24 @@ impl Image {
         [root * layer.admittance(), -elementary::exp_m1_complex(-2.0 * turned) * under, 2.0 * fall * under]
     }
 
-    /// What this node adds to the pressure over the load `above` m over the bottom of layer `at`.
-    fn pressure(&self, layer: &Layer, at: usize, above: f64) -> f64 {
-        let steady = Complex::new(layer.undrained(), 0.0) / self.s;
+    /// What this node adds to the pressure over the load, beyond that of the start, at distances in m above the
+    /// bottom and below the top of layer `at`.
+    fn pressure(&self, layer: &Layer, at: usize, [above, below]: [f64; 2]) -> f64 {
         let [bottom, top] = self.faces[at];
-        let shape = |from: f64| sinh_ratio(self.number(layer), from, layer.thickness);
-        (self.weight * (steady + bottom * shape(layer.thickness - above) + top * shape(above))).re
+        let number = self.number(layer);
+        (self.weight * (bottom * sinh_ratio(number, below, above) + top * sinh_ratio(number, above, below)))
+            .re
     }
 
-    /// What this node adds to the pressure's integral from the bottom of layer `at` to `above` m over it.
+    /// What this node adds to that part's integral from the bottom of layer `at` to `above` m over it.
     fn integral(&self, layer: &Layer, at: usize, above: f64) -> f64 {
-        let steady = Complex::new(layer.undrained(), 0.0) / self.s;
         let [bottom, top] = self.faces[at];
         let number = self.number(layer);
         // ∫ sinh μ(t − y)/sinh μt and ∫ sinh μy/sinh μt over (0, above).
         let full = cosh_ratio(number, layer.thickness, layer.thickness);
         let lower = full - cosh_ratio(number, layer.thickness - above, layer.thickness);
         let upper = cosh_ratio(number, above, layer.thickness) - cosh_ratio(number, 0.0, layer.thickness);
-        (self.weight * (steady * above + (bottom * lower + top * upper) / number)).re
+        (self.weight * (bottom * lower + top * upper) / number).re
     }
 
     /// `μ = √(sS/κ)`.
@@ -461,10 +505,10 @@ impl Image {
     }
 }
 
-/// `sinh μa/sinh μb` for `0 ≤ a ≤ b`.
-fn sinh_ratio(number: Complex<f64>, a: f64, b: f64) -> Complex<f64> {
-    elementary::exp_complex(number * (a - b)) * elementary::exp_m1_complex(-2.0 * a * number)
-        / elementary::exp_m1_complex(-2.0 * b * number)
+/// `sinh μa/sinh μ(a + rest)`.
+fn sinh_ratio(number: Complex<f64>, a: f64, rest: f64) -> Complex<f64> {
+    elementary::exp_complex(-rest * number) * elementary::exp_m1_complex(-2.0 * a * number)
+        / elementary::exp_m1_complex(-2.0 * (a + rest) * number)
 }
 
 /// `cosh μa/sinh μb` for `0 ≤ a ≤ b`.
@@ -536,7 +580,8 @@ mod tests {
                 let transform = State { column: &column, form: Form::Transform(column.transform(seconds)) };
                 for step in 0..=20_u8 {
                     let y = f64::from(step) / 20.0;
-                    let difference = series.pressure(y) - transform.pressure(y);
+                    let difference =
+                        series.pressure(y, column.height - y) - transform.pressure(y, column.height - y);
                     assert!(difference.abs() < INVERSION_ERROR, "{name} {share} {y}: {difference:e}");
                     let difference =
                         (series.shortening(y) - transform.shortening(y)) / column.final_settlement().unwrap();
@@ -551,8 +596,10 @@ mod tests {
         for (name, layers) in columns() {
             let column = LayeredColumn::new(1.0, &layers).unwrap();
             let seconds = 0.02 / column.modes[0].rate;
-            let pressure =
-                |terms, y| State { column: &column, form: Form::Series { terms, seconds } }.pressure(y);
+            let pressure = |terms, y| {
+                State { column: &column, form: Form::Series { terms, seconds } }
+                    .pressure(y, column.height - y)
+            };
             for terms in 1..6 {
                 let heights = (0..=40).map(|step| f64::from(step) / 40.0);
                 let left_out = heights.map(|y| (pressure(terms, y) - pressure(MOST_MODES, y)).abs());

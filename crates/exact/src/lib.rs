@@ -30,6 +30,7 @@ pub mod dynamic_column;
 #[doc(hidden)]
 pub mod exact_error;
 pub mod footing;
+pub mod inputs;
 pub mod large_strain;
 pub mod layered;
 pub mod mandel;
@@ -38,18 +39,21 @@ pub mod manufactured;
 pub mod numerics;
 #[doc(hidden)]
 pub mod parameters;
+mod porous_soil;
 pub mod reference;
 pub mod shelf;
 pub mod single_mode;
 pub mod soil_layers;
 pub mod solution;
+mod talbot;
 pub mod terzaghi;
 mod unchanging;
 pub mod xie_leo;
 pub mod yield_front;
 
 pub use crate::exact_error::{ExactError, normal};
-pub use crate::parameters::{Base, ColumnParameters, MotionParameters};
+pub use crate::inputs::AddedKey;
+pub use crate::parameters::{Base, ColumnParameters, MotionParameters, ShelfParameters};
 pub use crate::reference::{Reference, ReferenceKind};
-pub use crate::shelf::{ShelfKey, ShelfParameters, ShelfProblem};
+pub use crate::shelf::ShelfProblem;
 pub use crate::solution::{Accuracy, FieldValues, Solution};

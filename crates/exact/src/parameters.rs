@@ -1,7 +1,6 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact_error::{ExactError, normal, positive};
-use crate::shelf::ShelfParameters;
 use crate::soil_layers::SoilLayers;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
@@ -18,6 +17,42 @@ pub enum Base {
 }
 
 words!(Base: Rough "rough", Smooth "smooth");
+
+/// Whether the water itself can be compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Water {
+    /// With the bulk modulus `K_w` of the column.
+    Compressible,
+    /// `K_w → ∞`.
+    Incompressible,
+}
+
+/// What problems without a scene ask beyond a column, and the slab; each reads what its `INPUTS` name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShelfParameters {
+    /// Biot coefficient `α`; without it `1 − K/K_s`, and 1 without both.
+    pub biot_coefficient: Option<f64>,
+    /// Bulk modulus of the grains `K_s`, Pa; without it `K/(1 − α)`, infinite where `α = 1`.
+    pub grain_bulk_modulus: Option<f64>,
+    /// Radius `r_w` of a drain, m.
+    pub drain_radius: f64,
+    /// Period of a wave, s.
+    pub wave_period: f64,
+    /// Vertical effective stress of the start, compression positive, Pa; without it that of the load.
+    pub initial_stress: Option<f64>,
+}
+
+impl Default for ShelfParameters {
+    fn default() -> Self {
+        Self {
+            biot_coefficient: None,
+            grain_bulk_modulus: None,
+            drain_radius: 0.05,
+            wave_period: 10.0,
+            initial_stress: None,
+        }
+    }
+}
 
 /// A motion that is written down: its amplitudes and its frequency.
 #[derive(
@@ -58,7 +93,7 @@ pub struct ColumnParameters {
     pub self_weight: bool,
     /// How a manufactured solution moves; nothing else heeds it.
     pub motion: MotionParameters,
-    /// What problems of the shelf add; nothing else heeds it.
+    /// What problems of the shelf and the slab add; nothing else heeds it.
     pub shelf: ShelfParameters,
     /// Layers from the base up; only a layered column heeds them.
     pub soils: SoilLayers,

@@ -4,24 +4,25 @@ use core::fmt;
 use core::str::FromStr;
 use std::sync::Arc;
 
-use crate::cosine_layer::{CosineLayer, LayerState};
-use crate::dynamic_column::{DynamicColumn, Start};
+use crate::cosine_layer::{self, CosineLayer, LayerState};
+use crate::dynamic_column::{self, DynamicColumn, Start};
 use crate::exact_error::{ExactError, checked_time_factor};
-use crate::footing::Footing;
-use crate::large_strain::LargeStrain;
-use crate::large_strain::diffusion::{LargeStrainModel, Water};
-use crate::layered::LayeredColumn;
-use crate::mandel::Mandel;
-use crate::manufactured::Manufactured;
+use crate::footing::{self, Footing};
+use crate::inputs::{AddedKey, OF_WEIGHT};
+use crate::large_strain::diffusion::LargeStrainModel;
+use crate::large_strain::{self, LargeStrain};
+use crate::layered::{self, LayeredColumn};
+use crate::mandel::{self, Mandel};
 use crate::manufactured::motion::{ManufacturedModel, Motion};
-use crate::parameters::ColumnParameters;
+use crate::manufactured::{self, Manufactured};
+use crate::parameters::{ColumnParameters, Water};
 use crate::shelf::ShelfProblem;
-use crate::single_mode::SingleMode;
+use crate::single_mode::{self, SingleMode};
 use crate::solution::{Accuracy, FieldValues, Solution};
-use crate::terzaghi::Terzaghi;
-use crate::unchanging::Unchanging;
-use crate::xie_leo::XieLeo;
-use crate::yield_front::YieldFront;
+use crate::terzaghi::{self, Terzaghi};
+use crate::unchanging::{self, Unchanging};
+use crate::xie_leo::{self, XieLeo};
+use crate::yield_front::{self, YieldFront};
 use oedometer_soil::material::Material;
 
 /// Which exact solution a run is held against.
@@ -115,6 +116,46 @@ impl ReferenceKind {
         }
     }
 
+    /// Keys of a study file that change what it gives, by their names without tables; some of them only under weight.
+    pub fn inputs(self, has_weight: bool) -> Vec<&'static str> {
+        let sets = match self {
+            Self::Terzaghi => terzaghi::INPUTS,
+            Self::TerzaghiIncompressible => terzaghi::INPUTS_INCOMPRESSIBLE,
+            Self::SingleMode => single_mode::INPUTS,
+            Self::XieLeo => xie_leo::INPUTS,
+            Self::DynamicColumn => dynamic_column::INPUTS,
+            Self::DynamicSingleMode | Self::StandingWave => dynamic_column::INPUTS_RELEASED,
+            Self::LargeStrain(_) => large_strain::INPUTS,
+            Self::CosineLayer => cosine_layer::INPUTS,
+            Self::CosineLayerIncompressible => cosine_layer::INPUTS_INCOMPRESSIBLE,
+            Self::Mandel => mandel::INPUTS,
+            Self::AtRest => unchanging::INPUTS_AT_REST,
+            Self::Layered => layered::INPUTS,
+            Self::YieldFront => yield_front::INPUTS,
+            Self::SealedElement => unchanging::INPUTS,
+            Self::Footing => footing::INPUTS,
+            Self::Manufactured(_) => manufactured::INPUTS,
+            Self::Shelf(problem) => problem.inputs(),
+        };
+        let of_weight = if has_weight { OF_WEIGHT } else { &[] };
+        sets.iter().copied().flatten().chain(of_weight).copied().collect()
+    }
+
+    /// Whether it reads a key that no scene has.
+    pub fn takes(self, added: &AddedKey) -> bool {
+        matches!(self, Self::Shelf(_) | Self::Mandel) && self.inputs(false).contains(&added.name())
+    }
+
+    /// Whether a time in seconds belongs to a time factor.
+    pub fn has_time(self) -> bool {
+        self.inputs(false).iter().any(|name| ["hydraulic_conductivity", "frequency"].contains(name))
+    }
+
+    /// All kinds, with those that no scene solves.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain(ShelfProblem::ALL.map(Self::Shelf))
+    }
+
     /// Whether it is a motion that was chosen, and no body under a load.
     pub const fn is_manufactured(self) -> bool {
         matches!(self, Self::Manufactured(_))
@@ -151,12 +192,17 @@ impl FromStr for ReferenceKind {
     type Err = ExactError;
 
     fn from_str(name: &str) -> Result<Self, ExactError> {
-        Self::ALL
-            .into_iter()
-            .chain(ShelfProblem::ALL.map(Self::Shelf))
+        Self::all()
             .find(|kind| kind.name() == name)
             .ok_or_else(|| ExactError::UnknownReference(name.to_owned()))
     }
+}
+
+/// A solution in the plane.
+#[derive(Clone, Copy, Debug)]
+enum Plane {
+    Layer(CosineLayer),
+    Motion(Manufactured),
 }
 
 /// An exact solution for one set of parameters.
@@ -164,6 +210,8 @@ impl FromStr for ReferenceKind {
 pub struct Reference {
     kind: ReferenceKind,
     solution: Arc<dyn Solution>,
+    /// The solution itself, where its fields vary along a layer too.
+    plane: Option<Plane>,
     /// Vertical effective stress of the weight at the base, Pa; it grows with the depth.
     initial_stress: f64,
 }
@@ -183,7 +231,12 @@ impl Reference {
         for &time_factor in time_factors {
             checked_time_factor(time_factor)?;
         }
-        let layer = |water| CosineLayer::new(parameters, parameters.length, parameters.base, water);
+        let mut plane = None;
+        let mut layer = |water| -> Result<Arc<dyn Solution>, ExactError> {
+            let layer = CosineLayer::new(parameters, parameters.length, parameters.base, water)?;
+            plane = Some(Plane::Layer(layer));
+            Ok(Arc::new(layer))
+        };
         let dynamic = |start| DynamicColumn::new(parameters, start, time_factors);
         let solution: Arc<dyn Solution> = match kind {
             ReferenceKind::Terzaghi => Arc::new(Terzaghi::compressible(parameters)?),
@@ -197,18 +250,22 @@ impl Reference {
             ReferenceKind::DynamicSingleMode => Arc::new(dynamic(Start::Mode)?),
             ReferenceKind::StandingWave => Arc::new(dynamic(Start::StandingWave)?),
             ReferenceKind::LargeStrain(model) => Arc::new(LargeStrain::new(parameters, model, time_factors)?),
-            ReferenceKind::CosineLayer => Arc::new(layer(Water::Compressible)?),
-            ReferenceKind::CosineLayerIncompressible => Arc::new(layer(Water::Incompressible)?),
+            ReferenceKind::CosineLayer => layer(Water::Compressible)?,
+            ReferenceKind::CosineLayerIncompressible => layer(Water::Incompressible)?,
             ReferenceKind::Mandel => Arc::new(Mandel::new(parameters)?),
             ReferenceKind::AtRest => Arc::new(Unchanging::at_rest(parameters)?),
             ReferenceKind::Layered => Arc::new(LayeredColumn::of(parameters)?),
             ReferenceKind::YieldFront => Arc::new(YieldFront::new(parameters)?),
             ReferenceKind::SealedElement => Arc::new(Unchanging::sealed(parameters)?),
             ReferenceKind::Footing => Arc::new(Footing::new(parameters)?),
-            ReferenceKind::Manufactured(model) => Arc::new(Manufactured::new(model, parameters)?),
+            ReferenceKind::Manufactured(model) => {
+                let motion = Manufactured::new(model, parameters)?;
+                plane = Some(Plane::Motion(motion));
+                Arc::new(motion)
+            }
             ReferenceKind::Shelf(problem) => problem.solution(parameters)?,
         };
-        Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
+        Ok(Self { kind, solution, plane, initial_stress: parameters.initial_stress(1.0) })
     }
 
     /// The reference as accurate as a line in a figure needs it: to a millionth of the load where that costs much less.
@@ -224,7 +281,7 @@ impl Reference {
             return Self::new(kind, parameters, time_factors);
         };
         let solution = Arc::new(LargeStrain::for_lines(parameters, model, time_factors)?);
-        Ok(Self { kind, solution, initial_stress: parameters.initial_stress(1.0) })
+        Ok(Self { kind, solution, plane: None, initial_stress: parameters.initial_stress(1.0) })
     }
 
     /// Which solution this is.
@@ -252,25 +309,20 @@ impl Reference {
 
     /// Whether its fields depend on the place along a layer too.
     pub fn is_plane(&self) -> bool {
-        matches!(
-            self.kind,
-            ReferenceKind::CosineLayer
-                | ReferenceKind::CosineLayerIncompressible
-                | ReferenceKind::Manufactured(_)
-        )
+        self.plane.is_some()
     }
 
-    /// The motion, as [`Solution::manufactured`].
+    /// The motion, where it is one that was chosen: its fields vary along both directions.
     pub fn manufactured(&self) -> Option<&Manufactured> {
-        self.solution.manufactured()
+        if let Some(Plane::Motion(motion)) = &self.plane { Some(motion) } else { None }
     }
 
-    /// The field of a layer, as [`Solution::plane_state`].
+    /// The whole field of a layer whose fields vary along it too, at a time factor.
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     pub fn plane_state(&self, time_factor: f64) -> Result<Option<LayerState>, ExactError> {
-        self.solution.plane_state(time_factor)
+        if let Some(Plane::Layer(layer)) = &self.plane { layer.at(time_factor).map(Some) } else { Ok(None) }
     }
 
     /// Strain across the body, as [`Solution::strain_across`].
@@ -303,6 +355,16 @@ impl Reference {
     /// When `time_factor` is negative or not finite.
     pub fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         self.solution.degree_of_consolidation(time_factor)
+    }
+
+    /// Least porosity of all places and times, as [`Solution::least_porosity`].
+    pub fn least_porosity(&self) -> Option<f64> {
+        self.solution.least_porosity()
+    }
+
+    /// Whether that degree means anything, as [`Solution::has_degree`].
+    pub fn has_degree(&self) -> bool {
+        self.solution.has_degree()
     }
 
     /// Highest pressure at the impermeable end, as [`Solution::pressure_peak`].

@@ -3,9 +3,13 @@
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW];
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///

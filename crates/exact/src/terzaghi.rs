@@ -2,8 +2,14 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, WEIGHT];
+/// Keys that it reads with incompressible water.
+pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[OF_COLUMN, LAW, WEIGHT];
 
 /// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
 ///

@@ -1,8 +1,15 @@
 //! Columns in which nothing changes with time: one at rest, and one that no water leaves.
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::inputs::{LAW, OF_WATER, WEIGHT};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
+
+/// Keys that it reads at rest.
+pub(crate) const INPUTS_AT_REST: &[&[&str]] = &[LAW, WEIGHT];
+/// Keys that it reads where no water leaves.
+pub(crate) const INPUTS: &[&[&str]] =
+    &[&["height", "load", "youngs_modulus", "poissons_ratio"], OF_WATER, LAW];
 
 /// A column whose fields stay as they are from the start on: a pressure and an effective stress, Pa, that are uniform, and
 /// the share of its height that it has got shorter by.
@@ -58,6 +65,10 @@ impl Solution for Unchanging {
     /// All there is to come has come.
     fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         checked_time_factor(time_factor).map(|_| 1.0)
+    }
+
+    fn has_degree(&self) -> bool {
+        false
     }
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {

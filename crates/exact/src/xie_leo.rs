@@ -2,9 +2,13 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, positive};
+use crate::inputs::{LAW, OF_COLUMN, WEIGHT};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
+
+/// Keys that it reads; of the law, the continuity and the load's growth it takes its own.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, LAW, WEIGHT, &["porosity", "continuity", "loading_time"]];
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
@@ -137,6 +141,11 @@ impl Solution for XieLeo {
     }
 
     /// Terms and tail of the pressure, the worst over the depth.
+    /// At the end, at the surface.
+    fn least_porosity(&self) -> Option<f64> {
+        Some(1.0 - (1.0 - self.parameters.soil.porosity) * elementary::exp(self.strain))
+    }
+
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let (time_factor, _) = self.equivalent(time_factor, 0.0);
         let base = isochrone(1.0, time_factor)?;

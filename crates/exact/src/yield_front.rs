@@ -16,10 +16,15 @@
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal, positive};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] =
+    &[OF_COLUMN, OF_WATER, LAW, &["reload_modulus", "preconsolidation", "initial_stress"]];
 
 /// Relative difference up to which two moduli are one.
 const EQUAL: f64 = 1e-9;
@@ -188,7 +193,10 @@ impl YieldFront {
         }
         let second = 2.0 * self.speeds[1];
         let reached = erfc(self.column.height / (second * seconds.sqrt())) / erfc(self.front / second);
-        Ok(Accuracy::of(1, (2.0 * reached * (self.start - self.yielding) / self.column.load).min(1.0)))
+        let tail = (2.0 * reached * (self.start - self.yielding) / self.column.load).min(1.0);
+        // e^{−x²} is known to 2x² times the round-off of x.
+        let [a, b] = self.speeds.map(|speed| self.front / (2.0 * speed));
+        Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON * (1.0 + a * a + b * b), ..Accuracy::of(1, tail) })
     }
 }
 

@@ -14,35 +14,15 @@
 
 pub(crate) mod series;
 
-pub use crate::consolidation::series::eigenvalue;
+pub use crate::consolidation::series::{SWITCH, SeriesValue, eigenvalue};
 
 use crate::consolidation::series::{images, modes};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
 use core::f64::consts::PI;
 use oedometer_soil::elementary;
 
-/// Time factor below which the images are summed, above which the modes.
-pub const SWITCH: f64 = 0.2;
 /// Newton's iteration for a degree of consolidation converges quadratically; this is far more than it takes.
 const MOST_STEPS: usize = 60;
-
-/// A truncated sum, with what was left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeriesValue {
-    /// The sum.
-    pub value: f64,
-    /// Number of terms in it.
-    pub terms: usize,
-    /// Rigorous bound on the absolute value of the omitted terms' sum.
-    pub tail_bound: f64,
-}
-
-impl SeriesValue {
-    /// A value that needs no sum.
-    pub fn closed_form(value: f64) -> Self {
-        Self { value, terms: 0, tail_bound: 0.0 }
-    }
-}
 
 /// Isochrone `W(ζ, T)`: 1 at the start, 0 at the drained surface `ζ = 0`.
 ///

@@ -1,14 +1,33 @@
 //! The sums behind Terzaghi's functions: over mirror images of the drained surface for small time factors ([`images`]),
 //! over the modes of the column for large ones ([`modes`]), and their integrals over time ([`elapsed`]).
 
-use crate::consolidation::{SWITCH, SeriesValue};
 use core::f64::consts::{FRAC_2_SQRT_PI, PI};
 use oedometer_soil::elementary;
 
+/// Time factor below which the images are summed, above which the modes.
+pub const SWITCH: f64 = 0.2;
 /// Terms of the images below this are left out: a tenth of the round-off of 1.
 const ABSOLUTE_TAIL: f64 = 2.2e-17;
 /// Modes below this share of the first are left out: a quarter of `f64`'s round-off.
 const RELATIVE_TAIL: f64 = 2.8e-17;
+
+/// A truncated sum, with what was left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesValue {
+    /// The sum.
+    pub value: f64,
+    /// Number of terms in it.
+    pub terms: usize,
+    /// Rigorous bound on the absolute value of the omitted terms' sum.
+    pub tail_bound: f64,
+}
+
+impl SeriesValue {
+    /// A value that needs no sum.
+    pub fn closed_form(value: f64) -> Self {
+        Self { value, terms: 0, tail_bound: 0.0 }
+    }
+}
 
 /// Eigenvalue `M_j = (j + ½)π` of the column drained at one end.
 pub fn eigenvalue(mode: usize) -> f64 {

@@ -67,6 +67,9 @@ pub struct ElasticSolution {
     coefficients: Vec<Complex<f64>>,
 }
 
+/// Round-off of a term over its size, in units of the last place.
+const ROUND_OFF_OF_TERM: f64 = 4.0;
+
 /// A boundary that a solution decays from.
 #[derive(Clone, Copy)]
 enum Side {
@@ -101,12 +104,8 @@ impl ElasticSolution {
             layer,
             coefficients: Vec::new(),
         };
-        let unknowns = if layer.is_some() { 6 } else { 4 };
-        let top: Vec<_> = (0..unknowns).map(|k| solution.term(k, constants.height)).collect();
-        let base: Vec<_> = (0..unknowns).map(|k| solution.term(k, 0.0)).collect();
-        let system =
-            DMatrix::from_fn(unknowns, unknowns, |row, k| solution.condition(row, &top[k], &base[k]));
-        let mut load = DVector::zeros(unknowns);
+        let system = solution.system();
+        let mut load = DVector::zeros(system.nrows());
         load[0] = Complex::new(-1.0, 0.0);
         solution.coefficients = system
             .lu()
@@ -119,6 +118,29 @@ impl ElasticSolution {
             .copied()
             .collect();
         Ok(solution)
+    }
+
+    /// Conditions of the boundary, one row each, of every term.
+    fn system(&self) -> DMatrix<Complex<f64>> {
+        let unknowns = if self.layer.is_some() { 6 } else { 4 };
+        let top: Vec<_> = (0..unknowns).map(|k| self.term(k, self.constants.height)).collect();
+        let base: Vec<_> = (0..unknowns).map(|k| self.term(k, 0.0)).collect();
+        DMatrix::from_fn(unknowns, unknowns, |row, k| self.condition(row, &top[k], &base[k]))
+    }
+
+    /// How far the coefficients move where each entry of the system moves by its own size: `|A⁻¹| |A| |x|` (Skeel 1979);
+    /// infinite where the system has no inverse.
+    pub fn sensitivities(&self) -> Vec<f64> {
+        let system = self.system();
+        let Some(inverse) = system.clone().try_inverse() else {
+            return vec![f64::INFINITY; self.coefficients.len()];
+        };
+        let sizes = DVector::from_iterator(
+            self.coefficients.len(),
+            self.coefficients.iter().map(|&found| elementary::modulus(found)),
+        );
+        let moved = inverse.map(elementary::modulus) * (system.map(elementary::modulus) * sizes);
+        moved.iter().copied().collect()
     }
 
     /// Boundary condition `row` of one term: traction and shear on the top, base, then pressure.
@@ -202,6 +224,20 @@ impl ElasticSolution {
                 }
             }),
         }
+    }
+
+    /// Round-off of pressures and stresses at a height, m over the base, in units of the last place: it is of the size of
+    /// the terms, and not of their sum's.
+    pub fn round_off(&self, sensitivities: &[f64], y: f64) -> f64 {
+        let terms = self.coefficients.iter().zip(sensitivities).enumerate();
+        let rounded = terms.map(|(index, (&coefficient, sensitivity))| {
+            let term = self.term(index, y);
+            let stress = term.vertical_slope * (2.0 * self.constants.shear);
+            let sizes = [term.pressure, self.strain(&term) * self.constants.lame, stress];
+            let size: f64 = sizes.into_iter().map(elementary::modulus).sum();
+            size * (ROUND_OFF_OF_TERM * elementary::modulus(coefficient) + sensitivity)
+        });
+        rounded.sum()
     }
 
     /// The solution at a height over the base in m.

@@ -8,16 +8,20 @@ use nalgebra::Complex;
 
 use crate::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, positive};
-use crate::large_strain::diffusion::Water;
-use crate::parameters::{Base, ColumnParameters};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
+use crate::parameters::{Base, ColumnParameters, Water};
 use crate::solution::{Accuracy, FieldValues, Solution};
+use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["length", "base"]];
+/// Keys that it reads with incompressible water.
+pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[OF_COLUMN, LAW, &["length", "base"]];
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.
 const ENDED: f64 = 100.0;
-/// Nodes of Talbot's contour at which truncation, `exp(−1.36 N)`, has fallen below round-off.
-pub(crate) const NODES: usize = 26;
 
 /// Layer `0 < x < L`, `0 < y < H` in plane strain, drained at its top under `q cos(πx/L)`, on
 /// rollers at both sides, on an impermeable base (Biot 1941).
@@ -178,17 +182,15 @@ impl Solution for CosineLayer {
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let fine = self.at(time_factor)?;
         let coarse = self.inverted(time_factor, NODES * 3 / 4)?;
-        let mut worst = 0.0_f64;
+        let sensitivities: Vec<_> = fine.parts.iter().map(|(part, _)| part.sensitivities()).collect();
+        let (mut worst, mut rounded) = (0.0_f64, 0.0_f64);
         for i in 0..=20 {
             let y = self.constants.height * f64::from(i) / 20.0;
             let difference = fine.fields(0.0, y)?.pressure - coarse.fields(0.0, y)?.pressure;
             worst = worst.max(difference.abs() / self.parameters.load);
+            rounded = rounded.max(fine.round_off(&sensitivities, y));
         }
-        Ok(Accuracy::of(NODES, worst))
-    }
-
-    fn plane_state(&self, time_factor: f64) -> Result<Option<LayerState>, ExactError> {
-        self.at(time_factor).map(Some)
+        Ok(Accuracy { phase_bound: rounded, ..Accuracy::of(NODES, worst) })
     }
 }
 
@@ -227,6 +229,15 @@ impl LayerState {
         Ok(sum)
     }
 
+    /// What round-off leaves of pressures and stresses over the load at `y` over the base, m: the sum over the contour
+    /// cancels most of its terms.
+    fn round_off(&self, sensitivities: &[Vec<f64>], y: f64) -> f64 {
+        let terms = self.parts.iter().zip(sensitivities).map(|((part, weight), sensitivities)| {
+            elementary::modulus(*weight) * part.round_off(sensitivities, y)
+        });
+        f64::EPSILON * terms.sum::<f64>()
+    }
+
     /// Wave number `β = π/L` along the layer, 1/m.
     pub fn wave_number(&self) -> f64 {
         self.constants.wave_number
@@ -249,23 +260,6 @@ impl LayerState {
             ],
         }
     }
-}
-
-/// Upper half of Talbot's contour: `f(t) ≈ Re Σ w F(z/t)/t`.
-///
-/// The midpoint rule on the optimal cotangent contour of Weideman (2006) and Trefethen, Weideman
-/// & Schmelzer (2006, Eq. 4.1). The weights hold `exp(z)` and leave out the factor `1/t`.
-pub(crate) fn talbot_contour(nodes: usize) -> impl Iterator<Item = (Complex<f64>, Complex<f64>)> {
-    let count = nodes as f64;
-    (0..nodes / 2).map(move |k| {
-        let angle = (2.0 * k as f64 + 1.0) * PI / count;
-        let scaled = 0.6407 * angle;
-        let cotangent = 1.0 / elementary::tan(scaled);
-        let z = count * Complex::new(0.5017 * angle * cotangent - 0.6122, 0.2645 * angle);
-        let slope =
-            count * Complex::new(0.5017 * (cotangent - scaled * (1.0 + cotangent * cotangent)), 0.2645);
-        (z, elementary::exp_complex(z) * slope * Complex::new(0.0, -2.0 / count))
-    })
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use oedometer_soil::elementary;
 use crate::consolidation;
 use crate::consolidation::eigenvalue;
 use crate::consolidation::series::elapsed;
+use crate::dynamic_column::column::{DynamicColumn, Steady};
 use crate::dynamic_column::modes::{Amplitude, Growth, Mode};
-use crate::dynamic_column::{DynamicColumn, Steady};
 use crate::exact_error::ExactError;
 
 /// Whether a load that has grown over `duration` is so long past that the modes alone converge.

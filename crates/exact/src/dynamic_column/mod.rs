@@ -1,5 +1,6 @@
 //! The exact column with inertia of both phases.
 
+mod column;
 mod growing;
 mod modes;
 mod quartic;
@@ -8,57 +9,21 @@ mod summation;
 use std::borrow::Cow;
 
 use crate::consolidation::eigenvalue;
+use crate::dynamic_column::column::Steady;
+pub use crate::dynamic_column::column::{DynamicColumn, Start};
 use crate::dynamic_column::modes::ModeState;
 use crate::dynamic_column::summation::{BLOCK, Waves};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
 use crate::parameters::ColumnParameters;
 use crate::single_mode::PhaseVelocities;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// How the column is set in motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
-    /// The whole load at `t = 0`: a discontinuous wave front.
-    Step,
-    /// A load that grows linearly.
-    Ramp {
-        /// Time until the whole load acts, s.
-        duration: f64,
-    },
-    /// No load; let go from `p = σ' = p_0 sin(M_0 ζ)` with the velocities that
-    /// [`SingleMode::velocities`](crate::single_mode::SingleMode::velocities) has at `t = 0`.
-    Mode,
-    /// No load; let go at rest from `u = U_w = −(p_0/(Q M_0/H)) sin(M_0 y/H)`: an undrained wave that
-    /// stands, `p = p_0 sin(M_0 ζ)` at first.
-    StandingWave,
-}
-
-impl Start {
-    /// Whether the column is let go without a load, and displacements count from there.
-    fn is_release(self) -> bool {
-        matches!(self, Self::Mode | Self::StandingWave)
-    }
-}
-
-/// Linear v–w column: fixed base, drained and loaded top (theory after Zienkiewicz et al. 1980).
-///
-/// ```text
-/// (1−n) ρ_s ü + d (u̇ − U̇_w) = [E_oed + Q(1−n)²] u'' + Qn(1−n) U_w''
-///     n ρ_w Ü_w − d (u̇ − U̇_w) = Qn(1−n) u'' + Qn² U_w''              d = n² γ_w/k
-/// p = −Q [(1−n) u' + n U_w']        σ' = E_oed u'
-/// ```
-///
-/// The departure from the final state `u = −(q/E_oed) y`, `(1−n) u + n U_w = 0`, expands in
-/// `sin(M_j y/H)`; every mode is a damped oscillator of two degrees of freedom, solved by the
-/// residues of its transform.
-#[derive(Clone, Debug)]
-pub struct DynamicColumn {
-    parameters: ColumnParameters,
-    start: Start,
-    /// Modal coefficients at the times that were asked for in advance.
-    prepared: Vec<ModeState>,
-}
+/// Keys that it reads where it is let go.
+pub(crate) const INPUTS_RELEASED: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["grain_density"]];
+/// Keys that it reads under a load.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, WEIGHT, &["grain_density", "loading_time"]];
 
 /// Both phases' fields at one depth and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,17 +34,6 @@ pub struct DynamicFields {
     pub water_displacement: f64,
     /// Velocities of both phases.
     pub velocities: PhaseVelocities,
-}
-
-/// The state in closed form that the modes depart from: fields of the solid and of `ψ = (1 − n) u + n U_w`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Steady {
-    solid: f64,
-    mixture: f64,
-    solid_rate: f64,
-    mixture_rate: f64,
-    solid_strain: f64,
-    pressure: f64,
 }
 
 impl DynamicColumn {
@@ -197,6 +151,11 @@ impl Solution for DynamicColumn {
         })
     }
 
+    /// The surface swings about its consolidation.
+    fn has_degree(&self) -> bool {
+        false
+    }
+
     /// Modes summed and the bound on the others' pressure and effective stress, over the load.
     ///
     /// As long as a wave front is sharp, the bound is the height of its jump: near the front the
@@ -208,7 +167,7 @@ impl Solution for DynamicColumn {
         let terms = snapshot.amplitudes.len();
         // Pressures are the water's stiffness times differences of displacements of the size of the skeleton's.
         let stiffness = self.parameters.soil.coupling_modulus() / self.parameters.soil.oedometric_modulus();
-        let phase_bound = phases / load + f64::EPSILON * stiffness;
+        let phase_bound = 4.0 * (phases / load + f64::EPSILON * stiffness);
         Ok(Accuracy { terms, tail_bound: snapshot.tail / load, phase_bound })
     }
 }

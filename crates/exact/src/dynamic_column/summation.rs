@@ -1,8 +1,8 @@
 //! Truncation of the modal sum with its bound, and the waves of the modes at a depth.
 
 use crate::consolidation::eigenvalue;
+use crate::dynamic_column::column::{DynamicColumn, Start};
 use crate::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode, ModeState};
-use crate::dynamic_column::{DynamicColumn, Start};
 use core::f64::consts::PI;
 use oedometer_soil::elementary;
 

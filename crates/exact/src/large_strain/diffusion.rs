@@ -4,21 +4,13 @@
 use crate::exact_error::{ExactError, positive};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+pub use crate::parameters::Water;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::elementary;
 use oedometer_soil::law::Law;
 
 /// Step in `p/q` of the differences that Newton's matrices are made of.
 const STEP: f64 = 1e-5;
-
-/// Whether the water itself can be compressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Water {
-    /// With the bulk modulus `K_w` of the column.
-    Compressible,
-    /// `K_w → ∞`.
-    Incompressible,
-}
 
 /// What a large-strain reference solves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -10,12 +10,17 @@ mod similarity;
 pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
 use crate::large_strain::diffusion::{Diffusion, Loading};
 use crate::large_strain::layers::{Layers, Profile};
 use crate::large_strain::march::{March, State};
 use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] =
+    &[OF_COLUMN, OF_WATER, LAW, WEIGHT, &["continuity", "loading_time", "soils"]];
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];

@@ -1,6 +1,6 @@
 //! Mandel's problem: a slab between two rigid plates, drained at its sides.
 //!
-//! Plane strain, incompressible grains, compressible water: a slab of half width `a` between rigid,
+//! Plane strain, compressible water, a Biot coefficient and grains of finite stiffness where they are given: a slab of half width `a` between rigid,
 //! smooth, impermeable plates that take the force `2F` per length at once, drained and without stress
 //! at `x = ±a` (Mandel 1953; Cheng & Detournay 1988; docs/theory.md, Eq. 16). The pressure in the middle
 //! rises above its start before it falls: the sides drain, soften and leave their load to the core.
@@ -10,11 +10,16 @@
 mod sums;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
+use crate::inputs::{LAW, OF_BIOT, OF_COLUMN};
 pub use crate::mandel::sums::MandelRatios;
 use crate::mandel::sums::{Groups, early, series};
 use crate::parameters::ColumnParameters;
+use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT, LAW, &["width"]];
 
 /// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
 /// leaves out `e^{−1/T}`, 2e-22 there.
@@ -34,6 +39,7 @@ const LEAST_RISE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mandel {
     parameters: ColumnParameters,
+    soil: PorousSoil,
     groups: Groups,
 }
 
@@ -44,7 +50,9 @@ impl Mandel {
     /// When the parameters are impossible.
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
-        Ok(Self { parameters: *parameters, groups: Groups::of(parameters) })
+        let soil = PorousSoil::of(parameters)?;
+        let groups = Groups::of(&soil, parameters.soil.poissons_ratio);
+        Ok(Self { parameters: *parameters, soil, groups })
     }
 
     /// The ratios at a relative distance `x/a` from the middle.
@@ -59,11 +67,6 @@ impl Mandel {
         }
         Ok(series::ratios(&self.groups, time, distance))
     }
-
-    /// Shear modulus `G`, Pa.
-    fn shear_modulus(&self) -> f64 {
-        self.parameters.soil.youngs_modulus / (2.0 * (1.0 + self.parameters.soil.poissons_ratio))
-    }
 }
 
 impl Solution for Mandel {
@@ -74,9 +77,9 @@ impl Solution for Mandel {
         let load = self.parameters.load;
         Ok(FieldValues {
             pressure: load * ratios.pressure,
-            // No total stress acts towards the drained side: σ'_xx = p.
-            effective_stress: load * ratios.pressure,
-            displacement: load * self.parameters.height * ratios.displacement / self.shear_modulus(),
+            // No total stress acts towards the drained side: σ'_xx = αp.
+            effective_stress: self.soil.alpha * load * ratios.pressure,
+            displacement: load * self.parameters.height * ratios.displacement / self.soil.shear,
         })
     }
 
@@ -87,7 +90,7 @@ impl Solution for Mandel {
 
     fn final_settlement(&self) -> Result<f64, ExactError> {
         let strain = 0.5 * (1.0 - self.groups.poissons_ratio);
-        Ok(self.parameters.load * strain / self.shear_modulus() * self.parameters.length)
+        Ok(self.parameters.load * strain / self.soil.shear * self.parameters.length)
     }
 
     /// Terms of the series, or 0 of the closed form, and a bound on what they leave out of any of the
@@ -103,7 +106,7 @@ impl Solution for Mandel {
 
     /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
     fn strain_across(&self, time_factor: f64) -> Result<f64, ExactError> {
-        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.shear_modulus())
+        Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.soil.shear)
     }
 
     /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963); none where

@@ -1,6 +1,6 @@
 //! The sums in Mandel's fields.
 
-use crate::parameters::ColumnParameters;
+use crate::porous_soil::PorousSoil;
 use oedometer_soil::elementary;
 
 /// What the problem depends on.
@@ -13,7 +13,7 @@ pub struct Groups {
     pub kappa: f64,
     /// Pressure at once over the mean stress, `B (1 + ν_u)/3`.
     pub start: f64,
-    /// `B_1 = Q/(Q + E_oed)`: what `c` is of `c_v`.
+    /// `B_1 = 1/(E_oed S)`: what `c` is of `c_v`.
     pub storage_ratio: f64,
 }
 
@@ -42,15 +42,21 @@ pub struct Sums {
 }
 
 impl Groups {
-    /// Written so that nothing cancels: with `m = (1 − 2ν) B_1`, `κ = m/(1 + m)`.
-    pub fn of(parameters: &ColumnParameters) -> Self {
-        let (nu, storage_ratio) = (parameters.soil.poissons_ratio, parameters.storage_ratio());
-        let carried = (1.0 - 2.0 * nu) * storage_ratio;
+    /// Written so that nothing cancels, with `1/M` for the water's and the grains' storage and
+    /// `d = 3(K/M + α²) + G/M`, which is `(3K_u + G)/M`:
+    ///
+    /// ```text
+    /// κ = 9Gα²/((3K + 4G) d)     B (1 + ν_u)/3 = 3α/(2d)     B_1 = 1/(E_oed S)
+    /// ```
+    pub fn of(soil: &PorousSoil, poissons_ratio: f64) -> Self {
+        let PorousSoil { bulk, shear, alpha, fixed_storage, .. } = *soil;
+        let squared = alpha * alpha;
+        let undrained = 3.0 * (bulk * fixed_storage + squared) + shear * fixed_storage;
         Self {
-            poissons_ratio: nu,
-            kappa: carried / (1.0 + carried),
-            start: storage_ratio * (1.0 - nu) / (1.0 + carried),
-            storage_ratio,
+            poissons_ratio,
+            kappa: 9.0 * shear * squared / ((3.0 * bulk + 4.0 * shear) * undrained),
+            start: 1.5 * alpha / undrained,
+            storage_ratio: soil.slowed(),
         }
     }
 

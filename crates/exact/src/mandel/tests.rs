@@ -1,7 +1,7 @@
 //! Mandel's slab against values of 40 digits, its own Laplace transform, and its limits.
 
 use super::*;
-use crate::cosine_layer::{NODES, talbot_contour};
+use crate::talbot::{NODES, talbot_contour};
 use core::f64::consts::PI;
 use nalgebra::Complex;
 use oedometer_soil::elementary;

@@ -15,12 +15,28 @@ pub mod motion;
 pub mod motion_state;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::inputs::LAW;
 use crate::manufactured::dual::PLACES;
 use crate::manufactured::motion::{ManufacturedModel, Moment, Spot, Spots};
 use crate::manufactured::motion_state::{Soil, State, States};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use std::f64::consts::PI;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[
+    LAW,
+    &[
+        "youngs_modulus",
+        "poissons_ratio",
+        "porosity",
+        "amplitude_x",
+        "amplitude_y",
+        "amplitude",
+        "frequency",
+        "pressure",
+    ],
+];
 
 /// Intervals of the grid on which volumes are looked at.
 const GRID: u32 = 40;
@@ -59,7 +75,7 @@ impl Manufactured {
     }
 
     /// Least volume ratio `J` at the largest displacement, on a grid of points.
-    fn least_volume_ratio(&self) -> f64 {
+    pub fn least_volume_ratio(&self) -> f64 {
         let largest = self.time(0.5);
         let at = |i: u32| f64::from(i) / f64::from(GRID);
         let ratios = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| [at(i), at(j)]));
@@ -158,8 +174,13 @@ impl Solution for Manufactured {
         Ok(self.model.motion.largest_displacement(&self.parameters.motion))
     }
 
-    fn manufactured(&self) -> Option<&Manufactured> {
-        Some(self)
+    fn least_porosity(&self) -> Option<f64> {
+        Some(1.0 - (1.0 - self.parameters.soil.porosity) / self.least_volume_ratio())
+    }
+
+    /// Its degree is a share of its motion, and nothing consolidates.
+    fn has_degree(&self) -> bool {
+        false
     }
 }
 

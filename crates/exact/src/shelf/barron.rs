@@ -2,12 +2,16 @@
 
 use core::f64::consts::PI;
 
-use super::terms_for;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::inputs::OF_COLUMN;
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{self, exp, hypot, j0, j1, ln, y0, y1};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, &["radius"]];
 
 /// Roots that are known.
 const MOST_TERMS: usize = 1000;

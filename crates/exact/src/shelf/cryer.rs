@@ -2,13 +2,17 @@
 
 use core::f64::consts::PI;
 
-use super::biot::PorousSoil;
-use super::terms_for;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::inputs::{OF_BIOT, OF_COLUMN};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
+use crate::porous_soil::PorousSoil;
+use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT];
 
 /// Roots that are known: enough from `c t/a²` = 1e-6 on.
 const MOST_TERMS: usize = 2000;

@@ -2,9 +2,13 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, normal, positive};
+use crate::inputs::OF_COLUMN;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, &["initial_stress"]];
 
 /// Column of a soil that compresses with the logarithm of its effective stress, and whose permeability falls with its
 /// compressibility (Davis & Raymond 1965). Small strain, no weight, incompressible water.

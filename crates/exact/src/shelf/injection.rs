@@ -2,11 +2,15 @@
 
 use core::f64::consts::PI;
 
-use super::biot::PorousSoil;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
+use crate::inputs::{OF_BIOT, OF_COLUMN};
 use crate::parameters::ColumnParameters;
+use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT];
 
 /// Point source at a constant rate from `t = 0` on (Rudnicki 1986).
 ///
@@ -62,6 +66,10 @@ impl Solution for Injection {
 
     fn final_settlement(&self) -> Result<f64, ExactError> {
         Ok(-0.5 * self.compressed * self.soil.alpha)
+    }
+
+    fn has_degree(&self) -> bool {
+        false
     }
 
     /// Closed form.

@@ -20,10 +20,11 @@ mod cryer;
 mod davis_raymond;
 mod injection;
 mod seabed;
+mod terms;
 
 use crate::exact_error::ExactError;
 use crate::parameters::ColumnParameters;
-use crate::solution::{Accuracy, Solution};
+use crate::solution::Solution;
 use barron::{Barron, BarronFreeStrain};
 use biot::BiotColumn;
 use cryer::Cryer;
@@ -64,79 +65,19 @@ impl core::fmt::Display for ShelfProblem {
     }
 }
 
-/// What the problems of the shelf ask beyond a column; each heeds those of [`ShelfKey`] that name it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShelfParameters {
-    /// Biot coefficient `α`; without it `1 − K/K_s`, and 1 without both.
-    pub biot_coefficient: Option<f64>,
-    /// Bulk modulus of the grains `K_s`, Pa; without it `K/(1 − α)`, infinite where `α = 1`.
-    pub grain_bulk_modulus: Option<f64>,
-    /// Radius `r_w` of a drain, m.
-    pub drain_radius: f64,
-    /// Period of a wave, s.
-    pub wave_period: f64,
-    /// Vertical effective stress of the start, compression positive, Pa; without it that of the load.
-    pub initial_stress: Option<f64>,
-}
-
-impl Default for ShelfParameters {
-    fn default() -> Self {
-        Self {
-            biot_coefficient: None,
-            grain_bulk_modulus: None,
-            drain_radius: 0.05,
-            wave_period: 10.0,
-            initial_stress: None,
+impl ShelfProblem {
+    /// Keys that it reads.
+    pub(crate) const fn inputs(self) -> &'static [&'static [&'static str]] {
+        match self {
+            Self::BiotColumn => biot::INPUTS,
+            Self::Cryer => cryer::INPUTS,
+            Self::Barron | Self::BarronFreeStrain => barron::INPUTS,
+            Self::Seabed => seabed::INPUTS,
+            Self::Injection => injection::INPUTS,
+            Self::DavisRaymond => davis_raymond::INPUTS,
         }
     }
-}
 
-/// A key of a problem's own input, for command lines.
-#[derive(Clone, Copy, Debug)]
-pub struct ShelfKey {
-    /// Dotted, as other keys are.
-    pub key: &'static str,
-    /// Problems that heed it.
-    pub problems: &'static [ShelfProblem],
-    /// SI unit, empty where it has none.
-    pub unit: &'static str,
-    /// Sets it.
-    pub set: fn(&mut ShelfParameters, f64),
-}
-
-/// Problems of Biot's full equations.
-const OF_BIOT: &[ShelfProblem] =
-    &[ShelfProblem::BiotColumn, ShelfProblem::Cryer, ShelfProblem::Seabed, ShelfProblem::Injection];
-/// Problems of flow to a drain.
-const OF_DRAINS: &[ShelfProblem] = &[ShelfProblem::Barron, ShelfProblem::BarronFreeStrain];
-
-impl ShelfKey {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::of("material.biot_coefficient", OF_BIOT, "", |shelf, value| {
-            shelf.biot_coefficient = Some(value);
-        }),
-        Self::of("material.grain_bulk_modulus", OF_BIOT, "Pa", |shelf, value| {
-            shelf.grain_bulk_modulus = Some(value);
-        }),
-        Self::of("drain.radius", OF_DRAINS, "m", |shelf, value| shelf.drain_radius = value),
-        Self::of("wave.period", &[ShelfProblem::Seabed], "s", |shelf, value| shelf.wave_period = value),
-        Self::of("column.initial_stress", &[ShelfProblem::DavisRaymond], "Pa", |shelf, value| {
-            shelf.initial_stress = Some(value);
-        }),
-    ];
-
-    const fn of(
-        key: &'static str,
-        problems: &'static [ShelfProblem],
-        unit: &'static str,
-        set: fn(&mut ShelfParameters, f64),
-    ) -> Self {
-        Self { key, problems, unit, set }
-    }
-}
-
-impl ShelfProblem {
     /// Its solution for a column.
     pub(crate) fn solution(self, parameters: &ColumnParameters) -> Result<Arc<dyn Solution>, ExactError> {
         parameters.validate()?;
@@ -151,26 +92,3 @@ impl ShelfProblem {
         })
     }
 }
-
-/// What the terms left out of a series may add to the pressure over the load.
-const NEGLIGIBLE: f64 = 1e-17;
-
-/// The least number of terms, up to `most`, whose bound on the rest is negligible, with that bound.
-///
-/// # Errors
-/// When there are too few terms for the time.
-fn terms_for(most: usize, time_factor: f64, tail: impl Fn(usize) -> f64) -> Result<Accuracy, ExactError> {
-    if tail(most) > NEGLIGIBLE {
-        return Err(ExactError::TooEarly { time_factor, terms: most });
-    }
-    // The bound falls with the number of terms.
-    let (mut few, mut enough) = (0, most);
-    while enough - few > 1 {
-        let middle = usize::midpoint(few, enough);
-        if tail(middle) > NEGLIGIBLE { few = middle } else { enough = middle }
-    }
-    Ok(Accuracy { phase_bound: ROUND_OFF * enough as f64, ..Accuracy::of(enough, tail(enough)) })
-}
-
-/// What a term's round-off may add to the pressure over the load.
-const ROUND_OFF: f64 = 8.0 * f64::EPSILON;

@@ -2,12 +2,16 @@
 
 use core::f64::consts::PI;
 
-use super::biot::PorousSoil;
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
+use crate::inputs::{OF_BIOT, OF_COLUMN};
 use crate::parameters::ColumnParameters;
+use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use nalgebra::Complex;
 use oedometer_soil::elementary::{self, exp_complex, exp_m1_complex};
+
+/// Keys that it reads.
+pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT, &["period"]];
 
 /// Column of the depth `H` on an impermeable base under `q cos ωt` of total stress and pore pressure, long after its
 /// start: the bed under a wave much longer than it is deep (Verruijt 1982; Madsen 1978 and Yamamoto et al. 1978
@@ -90,6 +94,10 @@ impl Solution for Seabed {
 
     fn final_settlement(&self) -> Result<f64, ExactError> {
         Ok(self.final_settlement)
+    }
+
+    fn has_degree(&self) -> bool {
+        false
     }
 
     /// Closed form; a phase after many periods has lost their digits.
