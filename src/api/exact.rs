@@ -2,7 +2,7 @@
 
 use crate::api::scene_of;
 use crate::study::overrides::{Asked, Assignments};
-use oedometer_exact::{ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
+use oedometer_exact::{Accuracy, ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
 
 /// An exact solution at times and depths, in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub struct ExactValues {
     pub horizontal_displacement: Vec<f64>,
     /// Settlement of the surface, downward positive, m: `[time]`.
     pub settlement: Vec<f64>,
-    /// Degree of consolidation by settlement: `[time]`.
+    /// Degree of consolidation by settlement: `[time]`; NaN where it means nothing, as in a sealed element or in waves.
     pub degree_of_consolidation: Vec<f64>,
     /// Bound on the truncation error of the pressure over the load: `[time]`.
     pub tail_bound: Vec<f64>,
@@ -63,8 +63,9 @@ pub fn exact(
     for time_factor in time_factors {
         values.time.push(parameters.time(*time_factor));
         values.settlement.push(reference.settlement(*time_factor).map_err(told)?);
-        values.degree_of_consolidation.push(reference.degree_of_consolidation(*time_factor).map_err(told)?);
-        values.tail_bound.push(reference.accuracy(*time_factor).map_err(told)?.tail_bound);
+        let degree = degree_of(&reference, *time_factor).map_err(told)?;
+        values.degree_of_consolidation.push(degree.unwrap_or(f64::NAN));
+        values.tail_bound.push(accuracy_of(&reference, *time_factor).map_err(told)?.tail_bound);
         if kind == ReferenceKind::Mandel {
             for distance in x {
                 if !(0.0..=1.0).contains(distance) {
@@ -86,6 +87,29 @@ pub fn exact(
         }
     }
     Ok(values)
+}
+
+/// Tail, over the load, above which a half-space is no column.
+pub(crate) const MOST_TAIL: f64 = 1e-2;
+
+/// How far a solution can be trusted at a time.
+///
+/// # Errors
+/// When the time is impossible, or the solution is that of a half-space and the base is felt.
+pub(crate) fn accuracy_of(reference: &Reference, time_factor: f64) -> Result<Accuracy, ExactError> {
+    let accuracy = reference.accuracy(time_factor)?;
+    if reference.kind() == ReferenceKind::YieldFront && accuracy.tail_bound > MOST_TAIL {
+        return Err(ExactError::BaseFelt { time_factor, bound: accuracy.tail_bound });
+    }
+    Ok(accuracy)
+}
+
+/// The degree of consolidation by settlement, where it means anything.
+///
+/// # Errors
+/// When the time is impossible.
+pub(crate) fn degree_of(reference: &Reference, time_factor: f64) -> Result<Option<f64>, ExactError> {
+    reference.has_degree().then(|| reference.degree_of_consolidation(time_factor)).transpose()
 }
 
 impl ExactValues {

@@ -16,7 +16,7 @@ use crate::study::file::StudySource;
 use crate::study::solver::Preset;
 use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_exact::{ShelfKey, ShelfProblem};
+use oedometer_exact::{AddedKey, ShelfProblem};
 use oedometer_formats::input_file;
 use oedometer_mpm::scene::SceneKind;
 use std::path::PathBuf;
@@ -43,13 +43,10 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     if name.contains('.') {
         return Ok(name.to_owned());
     }
-    let own = |problem: ShelfProblem, key: &&ShelfKey| {
-        key.problems.contains(&problem) && key.key.rsplit('.').next() == Some(name)
-    };
-    if let Some(problem) = ShelfProblem::named(scene)
-        && let Some(key) = ShelfKey::ALL.iter().find(|key| own(problem, key))
+    if let Ok(kind) = scene.parse::<ReferenceKind>()
+        && let Some(added) = AddedKey::ALL.iter().find(|added| kind.takes(added) && added.name() == name)
     {
-        return Ok(key.key.to_owned());
+        return Ok(added.key.to_owned());
     }
     let scene = match SceneKind::named(scene) {
         Some(scene) => scene,

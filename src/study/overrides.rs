@@ -1,13 +1,15 @@
 //! Studies from the command line: `--set`, lists and step rules become the text of a study file, so that one checker
 //! judges both and its messages point at what was typed; and what an exact solution or a score is asked for.
 
-use crate::case::Case;
+use crate::case::{Case, Key};
 use crate::study::diagnostic::StudyError;
 use crate::study::units::{has_unit, in_si};
 use crate::study::{Purpose, Study, StudySource};
-use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfKey, ShelfParameters, ShelfProblem};
+use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, ShelfParameters, ShelfProblem};
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::continuity::Continuity;
+use oedometer_soil::law::Law;
 
 /// Repeats are for the cases of a study.
 pub const TIMING: (&str, &str) = ("timing.repeats", "cases are timed by `oedometer run` with a study file");
@@ -41,55 +43,95 @@ pub struct Assignments {
 }
 
 impl Assignments {
-    /// What is set of a problem of the shelf, and the assignments that are a column's; of other solutions all are.
-    pub fn of_shelf(&self, kind: ReferenceKind) -> Result<(Self, ShelfParameters), OverrideError> {
-        let mut shelf = ShelfParameters::default();
-        let ReferenceKind::Shelf(problem) = kind else { return Ok((self.clone(), shelf)) };
-        let mut others = Self::default();
+    /// What is set of the inputs that no scene has, and the assignments that are a column's.
+    pub fn of_problem(&self, kind: ReferenceKind) -> Result<(Self, ShelfParameters), OverrideError> {
+        let (mut others, mut set) = (Self::default(), ShelfParameters::default());
         for typed in &self.assignments {
             let (key, value) = assignment(typed)?;
-            if let Some((_, why)) = without_effect(problem).iter().find(|(refused, _)| *refused == key) {
-                return Err(OverrideError::typed(format!(
-                    "`--set {key}` has no effect in `{problem}`: {why}"
-                )));
-            }
-            match ShelfKey::ALL.iter().find(|own| own.key == key) {
-                None => others.assignments.push(typed.clone()),
-                Some(own) if !own.problems.contains(&problem) => {
-                    let problems: Vec<_> = own.problems.iter().map(|one| format!("`{one}`")).collect();
-                    let problems = problems.join(", ");
-                    return Err(OverrideError::typed(format!(
-                        "`--set {key}` has no effect in `{problem}`: it is for {problems}"
-                    )));
+            match AddedKey::ALL.iter().find(|added| added.key == key) {
+                Some(added) if kind.takes(added) => (added.set)(&mut set, number_of(added, &key, &value)?),
+                // A column may have a key of the same name.
+                Some(added) if is_on_shelf(kind) || column_key(&key).is_none() => {
+                    let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf).into_iter();
+                    let takers = shelf.chain(ReferenceKind::ALL).filter(|other| other.takes(added));
+                    let takers: Vec<_> = takers.map(|kind| format!("`{kind}`")).collect();
+                    return Err(without_effect(&key, kind, &format!("it is for {}", takers.join(", "))));
                 }
-                Some(own) if own.unit.is_empty() => match value.parse() {
-                    Ok(number) => (own.set)(&mut shelf, number),
-                    Err(_) => {
-                        return Err(OverrideError::typed(format!("`{key}` must be a number, got {value}")));
-                    }
-                },
-                Some(own) => {
-                    let typed = value.trim_matches(['"', '\'']);
-                    let number = typed.parse().or_else(|_| in_si(typed, own.unit));
-                    (own.set)(&mut shelf, number.map_err(|told| refused_quantity(&key, told))?);
-                }
+                _ => others.assignments.push(typed.clone()),
             }
         }
-        Ok((others, shelf))
+        Ok((others, set))
+    }
+
+    /// Refuses what a solution does not read: nothing that is typed is ignored. What is no key at all is left to the checker
+    /// of studies.
+    fn refuse_ignored(&self, kind: ReferenceKind, has_weight: bool) -> Result<(), OverrideError> {
+        let inputs = kind.inputs(has_weight);
+        for typed in &self.assignments {
+            let (key, _) = assignment(typed)?;
+            let is_read = column_key(&key).is_some_and(|key| inputs.contains(&key.name))
+                || (key == "column.soils" && inputs.contains(&"soils"))
+                || key == "column.strain";
+            if !is_read {
+                return Err(without_effect(&key, kind, why_ignored(kind, &key)));
+            }
+        }
+        Ok(())
     }
 }
 
-/// Keys of a column that a problem of the shelf does not heed, each with the reason.
-fn without_effect(problem: ShelfProblem) -> Vec<(&'static str, &'static str)> {
-    let mut keys = vec![
-        ("material.law", "the problem has its own law"),
-        ("column.loading_time", "its load acts at once, or in waves"),
-        ("column.self_weight", "it has no weight"),
-    ];
-    if !ShelfKey::ALL[0].problems.contains(&problem) {
-        keys.push(("material.water_bulk_modulus", "its water is incompressible"));
+fn is_on_shelf(kind: ReferenceKind) -> bool {
+    matches!(kind, ReferenceKind::Shelf(_))
+}
+
+/// The key of a body or its material by its dotted name.
+fn column_key(key: &str) -> Option<&'static Key> {
+    let (table, name) = key.split_once('.')?;
+    ["column", "layer", "manufactured", "material"].contains(&table).then(|| Key::named(name, table))?
+}
+
+fn without_effect(key: &str, kind: ReferenceKind, why: &str) -> OverrideError {
+    OverrideError::typed(format!("`--set {key}` has no effect in `{kind}`: {why}"))
+}
+
+/// The value of a key that no scene has, in SI units.
+fn number_of(added: &AddedKey, key: &str, value: &str) -> Result<f64, OverrideError> {
+    if added.unit.is_empty() {
+        return value
+            .parse()
+            .map_err(|_| OverrideError::typed(format!("`{key}` must be a number, got {value}")));
     }
-    keys
+    let typed = value.trim_matches(['"', '\'']);
+    typed.parse().or_else(|_| in_si(typed, added.unit)).map_err(|told| refused_quantity(key, told))
+}
+
+/// Why a solution does not read a key.
+fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
+    let of_large_strain = "`large-strain` takes it";
+    match (key, kind) {
+        (
+            "material.law"
+            | "material.continuity"
+            | "material.water_bulk_modulus"
+            | "column.soils"
+            | "column.loading_time",
+            ReferenceKind::XieLeo,
+        ) => of_large_strain,
+        ("material.law", _) => "the problem has its own law",
+        ("material.water_bulk_modulus", kind) if kind.inputs(false).contains(&"hydraulic_conductivity") => {
+            "its water is incompressible"
+        }
+        ("material.porosity", kind) if kind.inputs(false).contains(&"hydraulic_conductivity") => {
+            "its water is incompressible, so that the porosity has no part in it"
+        }
+        ("material.continuity", _) => "at small strain both forms are the same",
+        ("column.loading_time", ReferenceKind::Shelf(_)) => "its load acts at once, or in waves",
+        ("column.loading_time", _) => "its load acts at once",
+        ("column.self_weight", _) => "it has no weight",
+        ("material.grain_density", _) => "it has no inertia, and no weight without `column.self_weight=true`",
+        ("output.time_factors", _) => "`--time-factor` has the times",
+        _ => "what it prints does not depend on it",
+    }
 }
 
 /// Which results are compared with what.
@@ -270,11 +312,15 @@ impl Asked {
     /// # Errors
     /// What is wrong with the scene or an assignment.
     pub fn of_scene(scene: &str, outputs: &Outputs) -> Result<Self, OverrideError> {
-        let on_shelf = scene.parse().ok().filter(|kind| matches!(kind, ReferenceKind::Shelf(_)));
+        let kind = scene.parse::<ReferenceKind>().ok();
+        let on_shelf = kind.filter(|kind| is_on_shelf(*kind));
         let mut outputs = outputs.clone();
         let mut shelf = ShelfParameters::default();
+        if let Some(kind) = kind {
+            (outputs.set, shelf) = outputs.set.of_problem(kind)?;
+        }
         if let Some(kind) = on_shelf {
-            (outputs.set, shelf) = outputs.set.of_shelf(kind)?;
+            outputs.set.refuse_ignored(kind, false)?;
             if let Some(other) = outputs.reference.take().filter(|other| other != scene) {
                 return Err(OverrideError::Typed(format!(
                     "`{scene}` has no reference `{other}`: it is its own"
@@ -301,11 +347,22 @@ impl Asked {
     /// # Errors
     /// What is wrong with an assignment.
     pub fn of_solution(kind: ReferenceKind, set: &Assignments) -> Result<Self, OverrideError> {
-        let (set, shelf) = set.of_shelf(kind)?;
+        let (set, shelf) = set.of_problem(kind)?;
+        if is_on_shelf(kind) {
+            set.refuse_ignored(kind, false)?;
+        }
         let mut lines = StudyLines::of("exact", SceneKind::of_solution(kind).name(), "the solution's name")?;
         lines.assign(&set)?;
         let study = lines.theory_study()?;
         let case = &study.planned[0].case;
+        set.refuse_ignored(kind, case.column.self_weight)?;
+        let is_its_own =
+            case.material.law == Law::LogLinear && case.material.continuity == Continuity::Conservative;
+        if kind == ReferenceKind::XieLeo && !is_its_own {
+            let key = if case.material.law == Law::LogLinear { "continuity" } else { "law" };
+            let key = format!("material.{key}");
+            return Err(without_effect(&key, kind, why_ignored(kind, &key)));
+        }
         Ok(Self {
             parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
             references: vec![kind.of_soil(&case.material)],
@@ -323,6 +380,8 @@ impl Asked {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::keys::{KEYS, Kind};
+    use oedometer_exact::Reference;
 
     #[test]
     fn assignments_become_toml() {
@@ -494,6 +553,130 @@ mod tests {
         assert_eq!(Asked::of_scene("terzaghi", &outputs).expect("a scene").parameters.shelf, usual);
     }
 
+    /// Another value of a key than it has.
+    fn another(key: &Key, case: &Case) -> Vec<String> {
+        match key.kind {
+            Kind::Word(words) => {
+                let has = key.get(case).to_string();
+                words.iter().filter(|word| **word != has).map(|word| (*word).to_owned()).collect()
+            }
+            Kind::Flag => vec![if key.get(case).to_string() == "true" { "false" } else { "true" }.to_owned()],
+            Kind::Count(_) => vec!["2".to_owned()],
+            Kind::Number(_) => {
+                let has: f64 = key.get(case).to_string().parse().unwrap_or(0.0);
+                let others =
+                    [1.37 * has, 0.93 * has, has + 0.1, has + 3e5].into_iter().filter(|other| *other != has);
+                others.map(|other| format!("{other:e}")).collect()
+            }
+            Kind::Method | Kind::TimeStep => Vec::new(),
+        }
+    }
+
+    /// All that `exact` gives of a solution with an assignment; nothing where it is refused.
+    fn given(kind: ReferenceKind, assignments: &[String]) -> Option<Vec<u64>> {
+        let asked = Asked::of_solution(kind, &Assignments { assignments: assignments.to_vec() }).ok()?;
+        let times = if kind == ReferenceKind::YieldFront { [1e-3, 2e-3] } else { [0.07, 0.4] };
+        let reference = Reference::new(asked.references[0], &asked.parameters, &times).ok()?;
+        let mut numbers: Vec<f64> = reference.least_porosity().into_iter().collect();
+        for time in times {
+            if kind.has_time() {
+                numbers.push(asked.parameters.time(time));
+            }
+            numbers.push(reference.settlement(time).expect("a time"));
+            if let Some(motion) = reference.manufactured() {
+                let fields = motion.plane_fields(time, [0.25, 0.65]).expect("inside");
+                numbers
+                    .extend(fields.effective_stress.as_flattened().iter().map(|s| s / asked.parameters.load));
+                numbers.extend(fields.displacement);
+            }
+            if let Ok(fields) = reference.fields(time, 0.35) {
+                // What a row has: ratios.
+                numbers.extend([
+                    fields.pressure / asked.parameters.load,
+                    fields.effective_stress / asked.parameters.load,
+                    fields.displacement / asked.parameters.height,
+                ]);
+            }
+        }
+        Some(numbers.into_iter().map(f64::to_bits).collect())
+    }
+
+    #[test]
+    fn a_key_changes_what_a_solution_gives_or_is_refused() {
+        let mut told = Vec::new();
+        for kind in ReferenceKind::all() {
+            let usual = given(kind, &[]).unwrap_or_else(|| panic!("{kind} by itself"));
+            let case = Case::seed(crate::case::Task::Solve, SceneKind::of_solution(kind));
+            let added = AddedKey::ALL.iter().map(|added| {
+                let values = ["0.77", "0.91", "1e7", "0.2"].map(str::to_owned).to_vec();
+                (added.key.to_owned(), values)
+            });
+            let keys = KEYS.iter().flat_map(|key| {
+                let tables = key.tables.iter().filter(|table| **table != "sweep");
+                let case = &case;
+                tables.map(move |table| (format!("{table}.{}", key.name), another(key, case)))
+            });
+            let others =
+                ["column.soils", "output.time_factors", "output.references", "timing.repeats", "summary"]
+                    .map(|key| {
+                        (key.to_owned(), vec!["[{thickness=0.4},{thickness=0.6,porosity=0.4}]".to_owned()])
+                    });
+            for (key, values) in added.chain(keys).chain(others) {
+                for value in values {
+                    let set = format!("{key}={value}");
+                    // The same material as the log-linear one, in other words.
+                    if set != "material.law=engineering"
+                        && given(kind, &[set.clone()]).is_some_and(|numbers| numbers == usual)
+                    {
+                        told.push(format!("{kind}: {set}"));
+                    }
+                }
+            }
+            // What it names is refused for some values at most. Of motions each has amplitudes of its own.
+            let tables = ["column", "layer", "manufactured", "material"];
+            let others = ["law", "loading_time", "continuity"];
+            for name in kind.inputs(false).into_iter().filter(|name| !others.contains(name)) {
+                let keys: Vec<_> =
+                    tables.iter().filter_map(|table| Some((table, Key::named(name, table)?))).collect();
+                let takes = |(table, key): &(&&str, &Key)| {
+                    let values = another(key, &case);
+                    values.iter().any(|value| given(kind, &[format!("{table}.{name}={value}")]).is_some())
+                };
+                if !keys.is_empty() && !keys.iter().any(takes) && !kind.is_manufactured() {
+                    told.push(format!("{kind} names `{name}` and takes no value of it"));
+                }
+            }
+        }
+        assert!(told.is_empty(), "{}", told.join("\n"));
+    }
+
+    #[test]
+    fn what_is_ignored_is_refused_with_what_takes_it() {
+        for (kind, typed, told) in [
+            ("xie-leo", "material.law=porosity-dependent", "`xie-leo`: `large-strain` takes it"),
+            (
+                "xie-leo",
+                "material.continuity=constant-porosity-gradient",
+                "`xie-leo`: `large-strain` takes it",
+            ),
+            ("xie-leo", "material.water_bulk_modulus=1e9", "`xie-leo`: `large-strain` takes it"),
+            ("terzaghi-incompressible", "material.water_bulk_modulus=1e9", "its water is incompressible"),
+            ("cosine-layer-incompressible", "material.porosity=0.4", "its water is incompressible"),
+            ("terzaghi", "material.grain_density=2700", "no weight without `column.self_weight=true`"),
+            ("terzaghi", "material.biot_coefficient=0.6", "`seabed`, `injection`, `mandel`"),
+            ("terzaghi", "points.offset=0.1", "does not depend on it"),
+            ("sealed-element", "material.gravity=1.6", "does not depend on it"),
+        ] {
+            let set = Assignments { assignments: vec![typed.to_owned()] };
+            let error = Asked::of_solution(kind.parse().expect("a solution"), &set)
+                .err()
+                .map(|error| error.to_string());
+            assert!(error.as_ref().is_some_and(|error| error.contains(told)), "{kind} {typed}: {error:?}");
+        }
+        let set = ["column.self_weight=true", "material.grain_density=2700"].map(str::to_owned).to_vec();
+        assert!(Asked::of_solution(ReferenceKind::Terzaghi, &Assignments { assignments: set }).is_ok());
+    }
+
     #[test]
     fn a_problem_of_the_shelf_refuses_what_it_does_not_heed_and_takes_what_it_does() {
         const WEIGHT: &str = "column.self_weight=true";
@@ -522,8 +705,12 @@ mod tests {
             ),
         ] {
             let set = Assignments { assignments: vec![typed.to_owned()] };
-            let of = set.of_shelf(problem.parse().expect("a problem")).map_err(|error| error.to_string());
-            let others = of.map(|(others, _)| others.assignments);
+            let kind: ReferenceKind = problem.parse().expect("a problem");
+            let of = set.of_problem(kind).and_then(|(others, _)| {
+                others.refuse_ignored(kind, false)?;
+                Ok(others.assignments)
+            });
+            let others = of.map_err(|error| error.to_string());
             let key = typed.split('=').next().unwrap_or_default();
             let wanted = match told {
                 None => Ok(set.assignments),

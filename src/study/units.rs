@@ -274,6 +274,57 @@ mod tests {
     }
 
     #[test]
+    fn every_symbol_at_every_power_is_its_size_to_that_power() {
+        for (symbol, si, size) in [
+            ("Pa", "Pa", 1.0),
+            ("kPa", "Pa", 1e3),
+            ("MPa", "Pa", 1e6),
+            ("GPa", "Pa", 1e9),
+            ("bar", "Pa", 1e5),
+            ("N", "N", 1.0),
+            ("kN", "N", 1e3),
+            ("MN", "N", 1e6),
+            ("m", "m", 1.0),
+            ("km", "m", 1e3),
+            ("cm", "m", 1e-2),
+            ("mm", "m", 1e-3),
+            ("µm", "m", 1e-6),
+            ("g", "kg", 1e-3),
+            ("kg", "kg", 1.0),
+            ("Mg", "kg", 1e3),
+            ("t", "kg", 1e3),
+            ("s", "s", 1.0),
+            ("ms", "s", 1e-3),
+            ("µs", "s", 1e-6),
+            ("min", "s", 60.0),
+            ("h", "s", 3600.0),
+            ("d", "s", 86_400.0),
+            ("a", "s", 31_557_600.0),
+            ("deg", "rad", PI / 180.0),
+        ] {
+            for power in [1, 2, 3, -1, -2, -3] {
+                let size = f64::powi(size, power);
+                let digits = power.abs();
+                let of_si = format!("{si}^{power}");
+                let mut spellings = vec![format!("7 {symbol}^{power}"), format!("7 {symbol}{power}")];
+                if power < 0 {
+                    // Below a fraction bar the power is positive, and the product above it is none of its business.
+                    spellings = vec![format!("7 {symbol}^{power}"), format!("7 s^2/{symbol}^{digits}/s/s")];
+                }
+                for text in spellings {
+                    let found = in_si(&text, &of_si).unwrap_or_else(|told| panic!("{text}: {told:?}"));
+                    assert!((found / (7.0 * size) - 1.0).abs() < 2e-15, "{text}: {found:e} for {size:e}");
+                }
+                // Another power is of another kind, but of an angle.
+                assert!(
+                    si == "rad" || in_si(&format!("7 {symbol}^{}", power + 1), &of_si).is_err(),
+                    "{symbol}^{power}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn prefixes_that_nobody_means_and_powers_beyond_all_sense_are_no_units() {
         for symbol in [
             "mPa", "cPa", "µPa", "kbar", "mbar", "mN", "GN", "Mm", "Gm", "mg", "cg", "Gg", "kt", "Mt", "ks",

@@ -1,6 +1,6 @@
 //! `oedometer exact`: an exact solution as numbers.
 
-use crate::api::exact::{Place, places_of};
+use crate::api::exact::{MOST_TAIL, Place, accuracy_of, degree_of, places_of};
 use crate::api::scene_of;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
@@ -17,13 +17,12 @@ use oedometer_exact::{ShelfProblem, consolidation};
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
+/// Distance from the wall of a motion if none is given: on the wall a vortex moves nothing.
+const DISTANCE_IN_MOTION: &str = "0.25";
 /// Depths if none are given.
 const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
-/// Effect of round-off on the fields over the load: at most 7.5e-15 was seen against values of 40 digits.
-const ROUND_OFF: f64 = 1e-14;
-
-/// Tail, over the load, from which a value is warned of.
-const MOST_TAIL: f64 = 1e-2;
+/// Time factors if none are given; a yield front has its scene's.
+const DEFAULT_TIMES: &str = "0.05,0.1,0.2,0.5,1.0";
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -40,7 +39,7 @@ pub struct Arguments {
     /// Exact solution: terzaghi (compressible water), terzaghi-incompressible, single-mode, …
     scene: String,
     /// Time factors `T_v` = `c_v` t/H², comma-separated
-    #[arg(long, default_value = "0.05,0.1,0.2,0.5,1.0", value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, default_value = DEFAULT_TIMES, value_name = "LIST", allow_hyphen_values = true)]
     time_factor: String,
     /// Time factors at which these degrees of consolidation (by settlement) are reached, instead
     #[arg(long, value_name = "LIST", conflicts_with = "time_factor", allow_hyphen_values = true)]
@@ -59,8 +58,14 @@ pub struct Arguments {
     format: Format,
 }
 
-/// One printed row: names of columns with their numbers.
-struct PrintedRow(Vec<(&'static str, f64)>);
+/// One printed row: names of columns with their numbers; empty where a number means nothing.
+struct PrintedRow(Vec<(&'static str, Option<f64>)>);
+
+impl PrintedRow {
+    fn of(columns: &[(&'static str, f64)]) -> Self {
+        Self(columns.iter().map(|(name, number)| (*name, Some(*number))).collect())
+    }
+}
 
 impl serde::Serialize for PrintedRow {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -68,7 +73,7 @@ impl serde::Serialize for PrintedRow {
     }
 }
 
-/// Truncation and round-off at one time factor.
+/// Truncation and round-off at one time factor, with what has units.
 #[derive(serde::Serialize)]
 struct Truncation {
     time_factor: f64,
@@ -76,12 +81,38 @@ struct Truncation {
     tail_bound: f64,
     /// Effect of round-off on the fields over the load.
     round_off: f64,
+    /// Time, s, where there is one.
+    seconds: Option<f64>,
+    /// Settlement, m.
+    settlement: f64,
 }
 
 impl Truncation {
-    fn of(reference: &Reference, time_factor: f64) -> Result<Self, ExactError> {
-        let Accuracy { terms, tail_bound, phase_bound } = reference.accuracy(time_factor)?;
-        Ok(Self { time_factor, terms, tail_bound, round_off: ROUND_OFF.max(phase_bound) })
+    fn of(
+        reference: &Reference,
+        parameters: &ColumnParameters,
+        time_factor: f64,
+    ) -> Result<Self, ExactError> {
+        let accuracy = accuracy_of(reference, time_factor)?;
+        let Accuracy { terms, tail_bound, .. } = accuracy;
+        Ok(Self {
+            time_factor,
+            terms,
+            tail_bound,
+            round_off: accuracy.round_off(),
+            seconds: reference.kind().has_time().then(|| parameters.time(time_factor)),
+            settlement: reference.settlement(time_factor)?,
+        })
+    }
+
+    /// As a line of text.
+    fn told(&self) -> String {
+        let Self { time_factor, terms, tail_bound, round_off, seconds, settlement } = self;
+        let seconds = seconds.map_or(String::new(), |seconds| format!("t = {seconds:.6e} s, "));
+        format!(
+            "T_v = {time_factor}: {seconds}s = {settlement:.6e} m, {terms} terms, tail below {tail_bound:.1e}, \
+             round-off below {round_off:.0e}"
+        )
     }
 }
 
@@ -90,6 +121,9 @@ struct ExactJson<'a> {
     reference: &'a str,
     rows: &'a [PrintedRow],
     accuracy: &'a [Truncation],
+    /// Least porosity of all places and times, where it bounds what is possible.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    least_porosity: Option<f64>,
 }
 
 /// Evaluates and prints.
@@ -100,6 +134,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (parameters, kind) = (asked.parameters, asked.references[0]);
     let time_factors = match &arguments.degree {
         Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
+        None if kind == ReferenceKind::YieldFront && arguments.time_factor == DEFAULT_TIMES => {
+            asked.study.scene.default_time_factors().to_vec()
+        }
         None => numbers("--time-factor", &arguments.time_factor)?,
     };
     let reference = Reference::new(kind, &parameters, &time_factors)?;
@@ -108,21 +145,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         // The load at collapse, whatever the settlement.
         ReferenceKind::Footing => time_factors
             .iter()
-            .map(|time| PrintedRow(vec![("time_factor", *time), ("load_factor", LOAD_FACTOR)]))
+            .map(|time| PrintedRow::of(&[("time_factor", *time), ("load_factor", LOAD_FACTOR)]))
             .collect(),
         _ => column_rows(&reference, &parameters, &time_factors, arguments)?,
     };
-    let accuracy = time_factors.iter().map(|time| Truncation::of(&reference, *time));
+    let accuracy = time_factors.iter().map(|time| Truncation::of(&reference, &parameters, *time));
     let accuracy = accuracy.collect::<Result<Vec<_>, ExactError>>()?;
-    print(kind.name(), &rows, &accuracy, arguments.format)?;
+    print(&reference, &rows, &accuracy, arguments.format)?;
     for Truncation { time_factor, tail_bound, .. } in accuracy.iter().filter(|of| of.tail_bound > MOST_TAIL) {
-        let is_front = kind == ReferenceKind::YieldFront;
-        let why = if is_front {
-            ": it is that of a half-space; take earlier times, before the base is felt"
-        } else {
-            ""
-        };
-        say!("warning: at T_v = {time_factor} the solution may be off by {tail_bound:.1e} of the load{why}");
+        say!("warning: at T_v = {time_factor} the solution may be off by {tail_bound:.1e} of the load");
     }
     Ok(Exit::Pass)
 }
@@ -140,7 +171,8 @@ fn column_rows(
         // The source itself, where the pressure is infinite.
         depths.retain(|zeta| *zeta < 1.0);
     }
-    let distances = arguments.x.as_ref().map(|typed| numbers("--x", typed)).transpose()?;
+    let of_motion = kind.is_manufactured().then_some(DISTANCE_IN_MOTION);
+    let distances = arguments.x.as_deref().or(of_motion).map(|typed| numbers("--x", typed)).transpose()?;
     let is_layer = matches!(kind, ReferenceKind::CosineLayer | ReferenceKind::CosineLayerIncompressible);
     if distances.is_some() && !is_layer && !kind.is_manufactured() {
         return Err(Ended::usage(format!(
@@ -149,37 +181,42 @@ fn column_rows(
             ReferenceKind::Mandel
         )));
     }
+    // Where what is typed changes the stress alone, it is printed.
+    let has_stress = matches!(kind, ReferenceKind::Shelf(_)) || parameters.self_weight;
     let mut rows = Vec::new();
     for &time_factor in time_factors {
         let settlement = reference.settlement(time_factor)?;
-        let degree = reference.degree_of_consolidation(time_factor)?;
+        let degree = degree_of(reference, time_factor)?;
         let places = places_of(reference, parameters, time_factor, &depths, distances.as_deref())?;
         for Place { zeta, x, pressure, effective_stress: [xx, yy, xy], displacement } in
             places.into_iter().flatten()
         {
-            let mut columns = vec![
+            let mut row = PrintedRow::of(&[
                 ("time_factor", time_factor),
                 ("zeta", zeta),
                 ("pressure_ratio", pressure / parameters.load),
                 ("settlement_ratio", settlement / parameters.height),
-                ("degree_of_consolidation", degree),
-            ];
-            if let Some(x) = x {
-                columns.extend([
+            ]);
+            row.0.push(("degree_of_consolidation", degree));
+            let further = if let Some(x) = x {
+                PrintedRow::of(&[
                     ("x", x),
                     ("horizontal_displacement_ratio", displacement[0] / parameters.height),
                     ("vertical_displacement_ratio", displacement[1] / parameters.height),
                     ("effective_stress_ratio_xx", xx / parameters.load),
                     ("effective_stress_ratio_yy", yy / parameters.load),
                     ("effective_stress_ratio_xy", xy / parameters.load),
-                ]);
-            } else if matches!(kind, ReferenceKind::Shelf(_)) {
-                columns.extend([
+                ])
+            } else if has_stress {
+                PrintedRow::of(&[
                     ("effective_stress_ratio", yy / parameters.load),
                     ("displacement_ratio", displacement[1] / parameters.height + 0.0),
-                ]);
-            }
-            rows.push(PrintedRow(columns));
+                ])
+            } else {
+                PrintedRow::of(&[])
+            };
+            row.0.extend(further.0);
+            rows.push(row);
         }
     }
     Ok(rows)
@@ -202,7 +239,7 @@ fn slab_rows(
     for &time_factor in time_factors {
         for &distance in &distances {
             let ratios = slab.ratios(time_factor, distance)?;
-            rows.push(PrintedRow(vec![
+            rows.push(PrintedRow::of(&[
                 ("time_factor", time_factor),
                 ("x", distance),
                 ("pressure_ratio", ratios.pressure),
@@ -216,19 +253,25 @@ fn slab_rows(
 }
 
 /// Prints rows and their accuracy.
-fn print(name: &str, rows: &[PrintedRow], accuracy: &[Truncation], format: Format) -> anyhow::Result<()> {
-    match format {
-        Format::Csv => {
-            print_data(&rows_csv(rows)?)?;
-            for Truncation { time_factor, terms, tail_bound, round_off } in accuracy {
-                say!(
-                    "T_v = {time_factor}: {terms} terms, tail below {tail_bound:.1e}, round-off below {round_off:.0e}"
-                );
-            }
-            Ok(())
-        }
-        Format::Json => print_data(&json_of(&ExactJson { reference: name, rows, accuracy })?),
+fn print(
+    reference: &Reference,
+    rows: &[PrintedRow],
+    accuracy: &[Truncation],
+    format: Format,
+) -> anyhow::Result<()> {
+    let least_porosity = reference.least_porosity();
+    if format == Format::Json {
+        let json = ExactJson { reference: reference.name(), rows, accuracy, least_porosity };
+        return print_data(&json_of(&json)?);
     }
+    print_data(&rows_csv(rows)?)?;
+    for of in accuracy {
+        say!("{}", of.told());
+    }
+    if let Some(porosity) = least_porosity {
+        say!("the porosity stays above {porosity:.6e}");
+    }
+    Ok(())
 }
 
 /// Time factors at which degrees of consolidation are reached.
@@ -263,8 +306,10 @@ fn time_factors_of(
 fn rows_csv(rows: &[PrintedRow]) -> anyhow::Result<String> {
     let names = rows.first().into_iter().flat_map(|row| row.0.iter().map(|(name, _)| *name));
     let fields = |row: &PrintedRow| {
-        let field = |(place, (_, number)): (usize, &(&str, f64))| {
-            if place < 2 { number.to_string() } else { format!("{number:.16e}") }
+        let field = |(place, (_, number)): (usize, &(&str, Option<f64>))| match number {
+            Some(number) if place < 2 => number.to_string(),
+            Some(number) => format!("{number:.16e}"),
+            None => String::new(),
         };
         row.0.iter().enumerate().map(field).collect()
     };

@@ -1,7 +1,7 @@
 //! Checks geometry, material and loads: the tables `[column]`, `[layer]`, `[manufactured]` and `[material]`.
 
 use crate::case::{Case, Key, PlannedCase, Task, Value};
-use crate::study::check::Checker;
+use crate::study::check::{Checker, Purpose};
 use crate::study::diagnostic::Diagnostic;
 use crate::study::file::StudyFile;
 use crate::study::inputs::{Inputs, TypedInput};
@@ -239,14 +239,21 @@ impl Checker<'_> {
         }
     }
 
-    /// Complains of values outside the range of any soil.
+    /// Complains of values outside the range of any soil; where nothing is solved the problem may be one without dimensions,
+    /// and it warns.
     pub(super) fn units_are_si(&mut self, material: &Inputs) {
         for (name, strange, message, help) in UNIT_MISTAKES {
             let Some(typed) = material.typed(name) else { continue };
             if let TypedInput::Number(number) = &**typed
                 && strange.contains(number)
             {
-                self.complain(typed.span(), message.replace("{}", &number.to_string()), help);
+                let message = message.replace("{}", &number.to_string());
+                if self.purpose == Purpose::Theory {
+                    let help = format!("in a problem without dimensions it is right; else {help}");
+                    self.warn(&Diagnostic::at(typed.span(), message, help));
+                } else {
+                    self.complain(typed.span(), message, help);
+                }
             }
         }
     }
