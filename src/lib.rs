@@ -158,7 +158,7 @@ pub use golden::compare::compare;
 pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;
-pub use judge::race::RaceRow;
+pub use judge::race::RaceFindings;
 pub use judge::score::score;
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};

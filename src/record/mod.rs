@@ -7,6 +7,7 @@ pub mod csv;
 pub mod git;
 pub mod pack;
 pub mod provenance;
+pub mod race_errors;
 pub mod store;
 pub mod whole_file;
 

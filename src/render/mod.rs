@@ -6,12 +6,14 @@ mod chart;
 pub mod checks;
 pub mod escape;
 pub(crate) mod history_tables;
+pub mod method_words;
 mod number;
 pub mod page;
 pub mod report;
 mod script;
 pub mod table;
 pub mod tables;
+pub(crate) mod templates;
 
 /// A description that cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]
