@@ -167,7 +167,7 @@ pub use record::provenance::Origins;
 pub use record::provenance::Provenance;
 pub use record::store::RecordStore;
 pub use record::{ErrorRow, Record, Status, WallSample};
-pub use render::answers::{Answers, Making, answer_page};
+pub use render::answers::{Answers, Making, answer_page, matrix_page};
 pub use render::checks::{junit, verdicts};
 pub use render::page::{Block, Page, figures, render_html, render_markdown};
 pub use render::report::StudyResults;

@@ -3,31 +3,47 @@
 use crate::case::Case;
 use crate::case::contender::CONTENDERS;
 use crate::record::Record;
+use crate::record::calibration::cost_of;
 use crate::record::race_errors::{NEGLIGIBLE, largest_error};
 use std::collections::BTreeMap;
 
 /// Meshes in a row on which a contender may fail before it is given up.
 const MOST_FAILURES: usize = 2;
 
+/// Counted cost of a run, s, beyond which no finer mesh is begun: it would take several times as long.
+const MOST_WORK: f64 = 0.6;
+
+/// What a mesh came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mesh {
+    /// The largest error, none where the run failed.
+    error: Option<f64>,
+    /// Counted cost, s.
+    cost: f64,
+}
+
 /// The meshes of a contender that have run so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Refinement {
-    /// By cells: the largest error, none where every run failed.
-    meshes: BTreeMap<usize, Option<f64>>,
+    /// By cells.
+    meshes: BTreeMap<usize, Mesh>,
 }
 
 impl Refinement {
     /// Adds a run. The first one on a mesh counts: another one with half its step shows what the step does.
     pub fn add(&mut self, record: &Record) {
-        self.meshes.entry(record.case.cells).or_insert_with(|| largest_error(record));
+        let mesh = || Mesh { error: largest_error(record), cost: cost_of(record) };
+        self.meshes.entry(record.case.cells).or_insert_with(mesh);
     }
 
-    /// Whether a case is wanted still: no coarser mesh has arrived, and not two in a row before it have failed.
+    /// Whether a case is wanted still: no coarser mesh has arrived or spent the work of a mesh, and not two in a row before
+    /// it have failed.
     pub fn wants(&self, case: &Case) -> bool {
         let mut failures = 0;
-        for (_, error) in self.meshes.range(..case.cells) {
-            match error {
-                Some(error) if *error <= NEGLIGIBLE => return false,
+        for (_, mesh) in self.meshes.range(..case.cells) {
+            match mesh.error {
+                _ if mesh.cost > MOST_WORK => return false,
+                Some(error) if error <= NEGLIGIBLE => return false,
                 Some(_) => failures = 0,
                 None => failures += 1,
             }
@@ -92,11 +108,14 @@ mod tests {
         ] {
             let mut refinement = Refinement::default();
             for (cells, error) in meshes {
-                refinement.meshes.insert(*cells, *error);
+                refinement.meshes.insert(*cells, Mesh { error: *error, cost: MOST_WORK });
             }
             record.case.cells = 32;
             assert_eq!(refinement.wants(&record.case), wanted, "{meshes:?}");
         }
+        let mut spent = Refinement::default();
+        spent.meshes.insert(16, Mesh { error: Some(0.1), cost: 1.01 * MOST_WORK });
+        assert!(!spent.wants(&record.case));
     }
 
     #[test]
@@ -114,17 +133,22 @@ mod tests {
         assert_eq!(cells("GIMP"), [4, 8, 16, 32, 64]);
         let last = *cells("GC-SRI-patch").last().expect("it ran");
         assert!(last < 64, "{last}");
-        let arrived = report.records.iter().find(|record| {
-            record.case.cells == last && record.case.method.to_string() == "GC-SRI-patch"
-        });
+        let arrived = report
+            .records
+            .iter()
+            .find(|record| record.case.cells == last && record.case.method.to_string() == "GC-SRI-patch");
         assert!(largest_error(arrived.expect("a record")).is_some_and(|error| error <= NEGLIGIBLE));
-        let hashes = |records: &[Record]| records.iter().map(|record| record.hash.clone()).collect::<Vec<_>>();
+        let hashes =
+            |records: &[Record]| records.iter().map(|record| record.hash.clone()).collect::<Vec<_>>();
         assert_eq!(hashes(&report.records), hashes(&run(3).records));
         assert_eq!(report.tally.recorded, report.records.len());
         // What is not there is not wanted.
         let all = study.cases(Tier::Full);
-        let missing: Vec<&Case> =
-            all.iter().copied().filter(|case| report.records.iter().all(|record| record.case != **case)).collect();
+        let missing: Vec<&Case> = all
+            .iter()
+            .copied()
+            .filter(|case| report.records.iter().all(|record| record.case != **case))
+            .collect();
         assert!(!missing.is_empty() && wanted(missing, &report.records).is_empty());
     }
 }

@@ -89,7 +89,11 @@ pub fn run_studies_thinned(
     let of_studies = studies.iter().zip(&runners).zip(selected);
     let mut begun: Vec<Begun<'_>> =
         of_studies.map(|((study, runner), cases)| begun(study, runner, cases, options)).collect();
-    let mut ladders: Vec<Ladder<'_>> = begun.iter().enumerate().flat_map(|(study, begun)| begun.ladders(study, studies[study].study)).collect();
+    let mut ladders: Vec<Ladder<'_>> = begun
+        .iter()
+        .enumerate()
+        .flat_map(|(study, begun)| begun.ladders(study, studies[study].study))
+        .collect();
     // The longest first, so that the last ones to finish are short.
     let work_of = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
     let work_of_all =
@@ -128,7 +132,8 @@ pub fn run_studies_thinned(
                         } else if is_over {
                             Ending::Left
                         } else {
-                            run_and_keep(runner, store, job.case, threads == 1, stopped, tell).map_or(Ending::Left, Ending::Ended)
+                            run_and_keep(runner, store, job.case, threads == 1, stopped, tell)
+                                .map_or(Ending::Left, Ending::Ended)
                         };
                         if let Ending::Ended(Ok(record)) = &mut ending {
                             refinement.iter_mut().for_each(|known| known.add(record));

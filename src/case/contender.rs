@@ -43,8 +43,10 @@ const NAMES: [&str; 19] = [
 
 /// All contenders.
 pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
-    let contender =
-        |name: &&'static str| Contender { name, method: Method::named(name).expect("a test names every method") };
+    let contender = |name: &&'static str| Contender {
+        name,
+        method: Method::named(name).expect("a test names every method"),
+    };
     NAMES.iter().map(contender).collect()
 });
 

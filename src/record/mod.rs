@@ -3,6 +3,7 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+pub mod calibration;
 pub mod csv;
 pub mod git;
 pub mod pack;

@@ -6,7 +6,6 @@ mod chart;
 pub mod checks;
 pub mod escape;
 pub(crate) mod history_tables;
-pub mod method_words;
 mod number;
 pub mod page;
 pub mod report;

@@ -1,11 +1,13 @@
 //! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
 
 use crate::render::number;
+use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 2] = [
+const TEMPLATES: [(&str, &str); 3] = [
+    ("paper", include_str!("../../templates/paper.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
     ("race-limits", include_str!("../../templates/race-limits.md")),
 ];
@@ -14,9 +16,11 @@ const TEMPLATES: [(&str, &str); 2] = [
 pub(crate) fn environment() -> Environment<'static> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.set_trim_blocks(true);
-    environment.set_lstrip_blocks(true);
     environment.add_filter("percent", |share: f64| number::rounded_percent(share));
+    environment.add_filter("signed_percent", |share: f64| {
+        let sign = if share < 0.0 { "−" } else { "+" };
+        format!("{sign}{:.1} %", 100.0 * share.abs())
+    });
     for (name, text) in TEMPLATES {
         environment.add_template(name, text).expect("a test renders every template");
     }
@@ -26,5 +30,5 @@ pub(crate) fn environment() -> Environment<'static> {
 /// A template filled with findings: lightly marked paragraphs.
 pub(crate) fn render(environment: &Environment<'_>, name: &str, findings: &impl Serialize) -> String {
     let template = environment.get_template(name).expect("a name of this program");
-    template.render(Value::from_serialize(findings)).expect("a test renders every branch")
+    template.render(Value::from(Serde(findings))).expect("a test renders every branch")
 }

@@ -22,7 +22,8 @@ pub type NamedErrors<'a> = (&'a str, Vec<Option<f64>>);
 
 /// Every pair of situations, the most alike first. Errors below the negligible are equal.
 pub fn correlations(situations: &[NamedErrors<'_>]) -> Vec<Correlation> {
-    let pairs = (0..situations.len()).flat_map(|one| (one + 1..situations.len()).map(move |other| (one, other)));
+    let pairs =
+        (0..situations.len()).flat_map(|one| (one + 1..situations.len()).map(move |other| (one, other)));
     let mut all: Vec<Correlation> = pairs
         .filter_map(|(one, other)| {
             let value = pearson(&situations[one].1, &situations[other].1)?;
@@ -44,7 +45,8 @@ fn pearson(one: &[Option<f64>], other: &[Option<f64>]) -> Option<f64> {
     let count = both.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| both.iter().map(of).sum::<f64>() / count;
     let (mean_a, mean_b) = (mean(|pair| pair.0), mean(|pair| pair.1));
-    let sum = |of: &dyn Fn(f64, f64) -> f64| both.iter().map(|(a, b)| of(a - mean_a, b - mean_b)).sum::<f64>();
+    let sum =
+        |of: &dyn Fn(f64, f64) -> f64| both.iter().map(|(a, b)| of(a - mean_a, b - mean_b)).sum::<f64>();
     let value = sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
     value.is_finite().then_some(value)
 }
@@ -65,7 +67,14 @@ mod tests {
         let equal = errors([0.0; 5]);
         let mut few = rising.clone();
         few[0] = None;
-        let names = [("rising", rising), ("twice", twice), ("falling", falling), ("mixed", mixed), ("equal", equal), ("few", few)];
+        let names = [
+            ("rising", rising),
+            ("twice", twice),
+            ("falling", falling),
+            ("mixed", mixed),
+            ("equal", equal),
+            ("few", few),
+        ];
         let all = correlations(&names);
         let of = |a: &str, b: &str| {
             let pair = all.iter().find(|one| one.situations == [a, b]);

@@ -106,7 +106,7 @@ impl Reason {
 /// Cost to bring an error below a threshold, s: that of the first mesh from which on each run stays below it, between it and
 /// the mesh before by powers of both. `None` where the finest run is not below.
 pub fn cost_to(levels: &[Level], quantity: RaceQuantity, threshold: f64) -> Option<f64> {
-    level_to(levels, quantity, threshold).map(|reached| reached.between(levels, |level| Some(level.cost)))?
+    level_to(levels, quantity, threshold)?.between(levels, |level| Some(level.cost))
 }
 
 /// Measured seconds to the same.
@@ -128,7 +128,7 @@ impl Reached {
         if self.share >= 1.0 {
             return Some(fine);
         }
-        let coarse = cost(&levels[self.place - 1]).filter(|coarse| *coarse > 0.0)?;
+        let coarse = cost(&levels[self.place - 1]).filter(|coarse| *coarse > 0.0).unwrap_or(fine);
         Some(coarse * elementary::powf(fine / coarse, self.share))
     }
 }
@@ -170,12 +170,22 @@ mod tests {
     use super::*;
 
     fn level(cells: usize, cost: f64, error: Option<f64>) -> Level {
-        Level { cells, cost, seconds: Some(2.0 * cost), errors: [error.map(|error| error / 2.0), None, error] }
+        Level {
+            cells,
+            cost,
+            seconds: Some(2.0 * cost),
+            errors: [error.map(|error| error / 2.0), None, error],
+        }
     }
 
     fn levels(errors: &[Option<f64>]) -> Vec<Level> {
         let costs = [1.0, 8.0, 27.0, 64.0];
-        errors.iter().zip(costs).zip([4, 8, 16, 32]).map(|((error, cost), cells)| level(cells, cost, *error)).collect()
+        errors
+            .iter()
+            .zip(costs)
+            .zip([4, 8, 16, 32])
+            .map(|((error, cost), cells)| level(cells, cost, *error))
+            .collect()
     }
 
     #[test]
@@ -204,7 +214,8 @@ mod tests {
 
     #[test]
     fn who_does_not_arrive_has_a_reason() {
-        let reason = |errors: &[Option<f64>], failure, stiffness| reason_of(&levels(errors), failure, stiffness);
+        let reason =
+            |errors: &[Option<f64>], failure, stiffness| reason_of(&levels(errors), failure, stiffness);
         assert_eq!(reason(&[Some(0.3), Some(0.1)], None, Some(0.95)), Reason::Budget);
         assert_eq!(reason(&[Some(0.3), Some(0.1)], None, Some(0.85)), Reason::Locks);
         assert_eq!(reason(&[Some(0.3), Some(0.25)], None, None), Reason::Stalls);

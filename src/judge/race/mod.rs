@@ -1,7 +1,6 @@
 //! The race to one per cent: every contender refines its mesh in every situation until it arrives. What the records come
 //! to, as numbers and names; pages make sentences of it.
 
-pub mod calibration;
 pub mod correlation;
 pub mod finish;
 pub mod profile;
@@ -173,7 +172,10 @@ impl RaceFindings {
         let mut correlations = correlations(&errors);
         correlations.truncate(MOST_PAIRS);
         Self {
-            answers: Question::BOTH.into_iter().filter_map(|question| answer(question, &situations)).collect(),
+            answers: Question::BOTH
+                .into_iter()
+                .filter_map(|question| answer(question, &situations))
+                .collect(),
             profiles,
             trades: trades(&samples(&situations)),
             correlations,
@@ -234,7 +236,9 @@ fn answer(question: Question, situations: &[Situation]) -> Option<Answer> {
     let reason = |situation: &Situation| {
         let entry = situation.entries.iter().find(|entry| entry.contender == best.method)?;
         let reason = entry.reason.clone()?;
-        missed.contains(&situation.name.as_str()).then(|| Missed { situation: situation.name.clone(), reason })
+        missed
+            .contains(&situation.name.as_str())
+            .then(|| Missed { situation: situation.name.clone(), reason })
     };
     let of_family = |family: &str| FamilyChoice {
         family: family.to_owned(),

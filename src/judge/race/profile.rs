@@ -69,8 +69,12 @@ impl CostTable {
     /// The same for some contenders, whose best is taken among themselves.
     #[must_use]
     pub fn only(&self, is_kept: impl Fn(&str) -> bool) -> Self {
-        let kept: Vec<usize> = (0..self.contenders.len()).filter(|place| is_kept(&self.contenders[*place])).collect();
-        let row = |row: &CostRow| CostRow { costs: kept.iter().map(|place| row.costs[*place]).collect(), ..row.clone() };
+        let kept: Vec<usize> =
+            (0..self.contenders.len()).filter(|place| is_kept(&self.contenders[*place])).collect();
+        let row = |row: &CostRow| CostRow {
+            costs: kept.iter().map(|place| row.costs[*place]).collect(),
+            ..row.clone()
+        };
         Self {
             contenders: kept.iter().map(|place| self.contenders[*place].clone()).collect(),
             rows: self.rows.iter().map(row).collect(),
@@ -98,7 +102,8 @@ impl CostTable {
     /// The weight of each situation; together 1.
     fn weights(&self) -> Vec<f64> {
         let families = self.families().len() as f64;
-        let alike = |row: &CostRow| self.rows.iter().filter(|other| other.family == row.family).count() as f64;
+        let alike =
+            |row: &CostRow| self.rows.iter().filter(|other| other.family == row.family).count() as f64;
         self.rows.iter().map(|row| 1.0 / (families * alike(row))).collect()
     }
 
@@ -115,7 +120,9 @@ impl CostTable {
         let mut taus: Vec<f64> = TAUS.into_iter().chain(reached.iter().map(|(ratio, _)| *ratio)).collect();
         taus.sort_by(f64::total_cmp);
         taus.dedup();
-        let share = |tau: f64| reached.iter().filter(|(ratio, _)| *ratio <= tau).map(|(_, weight)| weight).sum::<f64>();
+        let share = |tau: f64| {
+            reached.iter().filter(|(ratio, _)| *ratio <= tau).map(|(_, weight)| weight).sum::<f64>()
+        };
         let steps = taus.into_iter().map(|tau| (tau, share(tau).min(1.0))).collect();
         Profile { contender: self.contenders[contender].clone(), steps }
     }
@@ -139,7 +146,9 @@ impl CostTable {
 
     /// The situations in which a contender does not arrive.
     pub fn missed(&self, contender: &str) -> Vec<&str> {
-        let Some(place) = self.contenders.iter().position(|name| name == contender) else { return Vec::new() };
+        let Some(place) = self.contenders.iter().position(|name| name == contender) else {
+            return Vec::new();
+        };
         self.rows.iter().filter(|row| row.costs[place].is_none()).map(|row| row.situation.as_str()).collect()
     }
 }
@@ -166,7 +175,10 @@ mod tests {
             situation: (*situation).to_owned(),
             costs: costs.map(|cost| cost.is_finite().then_some(cost)).to_vec(),
         };
-        CostTable { contenders: ["a", "b", "c"].map(str::to_owned).to_vec(), rows: rows.iter().map(row).collect() }
+        CostTable {
+            contenders: ["a", "b", "c"].map(str::to_owned).to_vec(),
+            rows: rows.iter().map(row).collect(),
+        }
     }
 
     #[test]
@@ -190,7 +202,10 @@ mod tests {
         let rest = table.only(|name| name != "a");
         assert_eq!(rest.profiles()[0].steps[0], (1.0, 0.5));
         assert_eq!(rest.best(), Some(Choice { method: "c".to_owned(), reached: 0.75, within_two: 0.5 }));
-        assert_eq!(table.of_families(|family| family == "p").best().map(|one| one.method), Some("a".to_owned()));
+        assert_eq!(
+            table.of_families(|family| family == "p").best().map(|one| one.method),
+            Some("a".to_owned())
+        );
     }
 
     #[test]

@@ -47,10 +47,11 @@ pub fn variants(table: impl Fn(RaceQuantity, f64) -> CostTable) -> Vec<Variant> 
         variant(Change::WithoutFamily(family.to_owned()), &rest)
     });
     let quantities = RaceQuantity::EACH.into_iter().filter(|quantity| *quantity != RaceQuantity::All);
-    let quantities = quantities.map(|quantity| variant(Change::Quantity(quantity), &table(quantity, THRESHOLD)));
+    let quantities =
+        quantities.map(|quantity| variant(Change::Quantity(quantity), &table(quantity, THRESHOLD)));
     let thresholds = OTHER_THRESHOLDS.into_iter();
-    let thresholds =
-        thresholds.map(|threshold| variant(Change::Threshold(threshold), &table(RaceQuantity::All, threshold)));
+    let thresholds = thresholds
+        .map(|threshold| variant(Change::Threshold(threshold), &table(RaceQuantity::All, threshold)));
     families.chain(quantities).chain(thresholds).collect()
 }
 
@@ -77,8 +78,10 @@ mod tests {
             }
         };
         let found = variants(table);
-        let told: Vec<(bool, &str)> =
-            found.iter().map(|one| (one.holds, one.choice.as_ref().map_or("", |choice| &choice.method))).collect();
+        let told: Vec<(bool, &str)> = found
+            .iter()
+            .map(|one| (one.holds, one.choice.as_ref().map_or("", |choice| &choice.method)))
+            .collect();
         let (holds, turns) = ((true, "a"), (false, "b"));
         assert_eq!(told, [holds, holds, holds, holds, holds, turns, holds, holds, turns]);
         assert_eq!(found[1].change, Change::WithoutFamily("q".to_owned()));

@@ -6,10 +6,10 @@ use crate::case::contender::{CONTENDERS, Contender};
 use crate::case::{Quantity, Sample, Task};
 use crate::judge::path_context;
 use crate::judge::paths::{Path, first_error, first_measure};
-use crate::judge::race::calibration::cost_of;
 use crate::judge::race::finish::{Level, RaceQuantity, Reason, cost_to, reason_of, seconds_to};
 use crate::judge::race::sensitivity::THRESHOLD;
 use crate::measure::statistics::median;
+use crate::record::calibration::cost_of;
 use crate::record::race_errors::{NEGLIGIBLE, RunErrors, errors_of, largest_error};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -108,7 +108,8 @@ impl Situation {
         }
         let runs: Vec<(&Contender, Runs<'_>)> =
             CONTENDERS.iter().map(|contender| (contender, Runs::new(study, contender, records))).collect();
-        let meshes = |runs: &Runs<'_>| runs.path.iter().map(|record| record.case.cells).collect::<BTreeSet<_>>();
+        let meshes =
+            |runs: &Runs<'_>| runs.path.iter().map(|record| record.case.cells).collect::<BTreeSet<_>>();
         let common = runs.iter().map(|(_, runs)| meshes(runs)).filter(|meshes| !meshes.is_empty());
         let common_cells = common.reduce(|one, other| &one & &other)?.into_iter().next_back()?;
         let name = study.name.strip_prefix("race-").unwrap_or(&study.name);
@@ -123,7 +124,10 @@ impl Situation {
             is_property: study.scene.is_at_rest() || case.task == Task::Stability,
             budget: study.planned.iter().map(|planned| planned.case.cells).max()?,
             common_cells,
-            entries: runs.iter().map(|(contender, runs)| entry(study, contender, runs, common_cells)).collect(),
+            entries: runs
+                .iter()
+                .map(|(contender, runs)| entry(study, contender, runs, common_cells))
+                .collect(),
         })
     }
 }
@@ -157,14 +161,21 @@ fn entry(study: &Study, contender: &Contender, runs: &Runs<'_>, common_cells: us
         locking: on_mesh.and_then(locking_of),
         step_ratio: on_mesh.and_then(step_ratio_of),
         asymmetry: on_mesh.and_then(|record| record.stability.as_ref()?.asymmetry),
-        spurious_velocity: on_mesh.filter(|record| record.case.scene.is_at_rest()).and_then(spurious_velocity_of),
+        spurious_velocity: on_mesh
+            .filter(|record| record.case.scene.is_at_rest())
+            .and_then(spurious_velocity_of),
         levels,
     }
 }
 
 fn level(record: &Record) -> Level {
     let seconds: Vec<f64> = record.wall.iter().filter_map(|sample| sample.cpu_seconds).collect();
-    Level { cells: record.case.cells, cost: cost_of(record), seconds: median(&seconds), errors: errors_of(record) }
+    Level {
+        cells: record.case.cells,
+        cost: cost_of(record),
+        seconds: median(&seconds),
+        errors: errors_of(record),
+    }
 }
 
 /// The runs of a contender: one path over the mesh, and one of its meshes again with half its step.
@@ -325,9 +336,13 @@ mod tests {
         for _ in 0..2 {
             let situation = Situation::from_records(&study, &records).expect("a race");
             assert_eq!((situation.family.as_str(), situation.name.as_str()), ("early", "early-front"));
-            assert_eq!((situation.title.as_str(), situation.budget, situation.common_cells), ("a front", 8, 8));
+            assert_eq!(
+                (situation.title.as_str(), situation.budget, situation.common_cells),
+                ("a front", 8, 8)
+            );
             assert!(!situation.moves && !situation.is_property);
-            let of = |name: &str| situation.entries.iter().find(|one| one.contender == name).expect("an entry");
+            let of =
+                |name: &str| situation.entries.iter().find(|one| one.contender == name).expect("an entry");
             let gimp = of("GIMP");
             let errors = |cells: f64| [0.25, 0.125, 1.0].map(|error| Some(error / cells));
             assert_eq!(gimp.levels.iter().map(|one| one.cells).collect::<Vec<_>>(), [2, 4, 8]);
@@ -355,7 +370,9 @@ mod tests {
             record.errors.iter_mut().for_each(|row| row.value = 1e-4);
         }
         let situation = Situation::from_records(&study, &records).expect("a race");
-        assert!(situation.entries.iter().all(|entry| entry.levels.last().is_none_or(|level| level.cells == 4)));
+        assert!(
+            situation.entries.iter().all(|entry| entry.levels.last().is_none_or(|level| level.cells == 4))
+        );
         let gimp = situation.entries.iter().find(|one| one.contender == "GIMP").expect("an entry");
         assert!(gimp.reason.is_none() && gimp.costs.iter().all(Option::is_some));
     }

@@ -10,7 +10,12 @@ fn situation(family: &str, name: &str, arrivals: &[(&str, Option<f64>)]) -> Situ
         let cost = arrivals.iter().find(|(known, _)| *known == contender).map(|(_, cost)| *cost);
         let levels: Vec<Level> = cost.map_or(Vec::new(), |cost| {
             let (seconds, error) = cost.map_or((9.0, 0.05), |cost| (cost, 0.01));
-            let level = |cells, cost, error: f64| Level { cells, cost, seconds: None, errors: [Some(error), Some(error), None] };
+            let level = |cells, cost, error: f64| Level {
+                cells,
+                cost,
+                seconds: None,
+                errors: [Some(error), Some(error), None],
+            };
             vec![level(4, 0.1 * seconds, 0.2), level(8, seconds, error)]
         });
         let costs = THRESHOLDS.map(|threshold| finish::cost_to(&levels, RaceQuantity::All, threshold));
@@ -49,7 +54,11 @@ fn situation(family: &str, name: &str, arrivals: &[(&str, Option<f64>)]) -> Situ
 
 fn findings() -> RaceFindings {
     RaceFindings::from_situations(vec![
-        situation("column", "column-a", &[("GIMP", Some(1.0)), ("MPM", Some(3.0)), ("TL-GC-SRI-patch", Some(0.1))]),
+        situation(
+            "column",
+            "column-a",
+            &[("GIMP", Some(1.0)), ("MPM", Some(3.0)), ("TL-GC-SRI-patch", Some(0.1))],
+        ),
         situation("column", "column-b", &[("GIMP", Some(1.0)), ("MPM", None)]),
         situation("waves", "waves", &[("GIMP", Some(4.0)), ("MPM", Some(1.0))]),
         situation("strain", "strain", &[("GIMP", None), ("MPM", Some(1.0)), ("TL-GC-SRI-patch", Some(1.0))]),

@@ -66,10 +66,12 @@ pub fn trades(samples: &[Sample<'_>]) -> Vec<Trade> {
 }
 
 fn trade(samples: &[Sample<'_>], without: &str, (with, operator): (&str, &str)) -> Trade {
-    let of = |contender: &'_ str| samples.iter().filter(move |one| one.contender == contender).collect::<Vec<_>>();
+    let of =
+        |contender: &'_ str| samples.iter().filter(move |one| one.contender == contender).collect::<Vec<_>>();
     let (before, after) = (of(without), of(with));
     let partner = |one: &&Sample<'_>| before.iter().find(|other| other.situation == one.situation).copied();
-    let pairs: Vec<(&Sample<'_>, &Sample<'_>)> = after.iter().filter_map(|one| Some((partner(one)?, *one))).collect();
+    let pairs: Vec<(&Sample<'_>, &Sample<'_>)> =
+        after.iter().filter_map(|one| Some((partner(one)?, *one))).collect();
     let effect = |(place, quantity): (usize, RaceQuantity)| {
         let error = |one: &Sample<'_>| quantity.error_in(&one.errors).map(|error| error.max(NEGLIGIBLE));
         let count = |wins: [bool; 2]| {
@@ -92,7 +94,10 @@ fn trade(samples: &[Sample<'_>], without: &str, (with, operator): (&str, &str)) 
 }
 
 /// Geometric mean over the families of the geometric means over their situations.
-fn mean_ratio(pairs: &[(&Sample<'_>, &Sample<'_>)], value: &dyn Fn(&Sample<'_>) -> Option<f64>) -> Option<f64> {
+fn mean_ratio(
+    pairs: &[(&Sample<'_>, &Sample<'_>)],
+    value: &dyn Fn(&Sample<'_>) -> Option<f64>,
+) -> Option<f64> {
     let mut families: Vec<(&str, Vec<f64>)> = Vec::new();
     for (before, after) in pairs {
         let Some((before_value, after_value)) = value(before).zip(value(after)) else { continue };
@@ -113,14 +118,15 @@ mod tests {
 
     #[test]
     fn an_operator_s_effect_is_the_mean_over_families_and_what_it_wins_and_loses_is_counted() {
-        let sample = |situation: &'static str, contender: &'static str, error: f64, arrives: bool, cost: f64| Sample {
-            family: &situation[..1],
-            situation,
-            contender,
-            errors: [Some(error), Some(1e-9), None],
-            arrives: [arrives, true, false, arrives],
-            cost: Some(cost),
-        };
+        let sample =
+            |situation: &'static str, contender: &'static str, error: f64, arrives: bool, cost: f64| Sample {
+                family: &situation[..1],
+                situation,
+                contender,
+                errors: [Some(error), Some(1e-9), None],
+                arrives: [arrives, true, false, arrives],
+                cost: Some(cost),
+            };
         let samples = [
             sample("p1", "GIMP", 0.4, false, 1.0),
             sample("p2", "GIMP", 0.4, false, 1.0),

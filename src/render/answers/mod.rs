@@ -164,15 +164,15 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let results = answers.results;
     let all = [
         race::answer(answers.race),
+        cost::answer(results),
+        paper::answer(results)?,
+        what_changed(answers.changes),
         locking::answer(results)?,
         converges::answer(results),
-        paper::answer(results)?,
         time_step::answer(results),
         soil::answer(results),
-        cost::answer(results),
         audit::answer(results),
         double_point::answer(results),
-        what_changed(answers.changes),
     ];
     let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
@@ -357,7 +357,8 @@ mod tests {
                 .map(|(study, records)| StudyResults::new(study, records, Tier::Full))
                 .collect();
             let making = Making::default();
-            let page = answer_page(&Answers { results: &results, changes: None, making: &making, race: None });
+            let page =
+                answer_page(&Answers { results: &results, changes: None, making: &making, race: None });
             let lead = page.expect("a page").lead;
             let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
             assert_eq!(listed.matches("](studies/").count(), links, "{lead}");

@@ -13,6 +13,7 @@ use crate::render::report::labels::capitalised;
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::templates;
 use minijinja::Environment;
+use minijinja::value::Serde;
 
 const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
@@ -56,8 +57,8 @@ fn environment(findings: &RaceFindings) -> Environment<'static> {
     environment.add_filter("title_of", move |name: String| {
         titles.iter().find(|(known, _)| *known == name).map_or(name.clone(), |(_, title)| title.clone())
     });
-    environment.add_filter("reason", |reason: minijinja::value::ViaDeserialize<Reason>| reason.0.words().to_owned());
-    environment.add_filter("change", |change: minijinja::value::ViaDeserialize<Change>| change_words(&change.0));
+    environment.add_filter("reason", |reason: Serde<Reason>| reason.0.words().to_owned());
+    environment.add_filter("change", |change: Serde<Change>| change_words(&change.0));
     environment
 }
 
@@ -101,19 +102,25 @@ pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
         let figure = profile_figure(findings, RaceQuestion::Total, RaceQuantity::All, &total);
         views.push(("The mesh follows the soil".to_owned(), vec![Block::Figure(figure)]));
     }
-    let panels = findings.families().into_iter().map(|(family, situations)| panel(family, &situations, &named)).collect();
+    let panels = findings
+        .families()
+        .into_iter()
+        .map(|(family, situations)| panel(family, &situations, &named))
+        .collect();
     let limits = templates::render(&environment(findings), "race-limits", findings);
     let mut blocks = vec![
         Block::Switch(views),
         Block::Figures(panels),
         Block::Paragraph(limits),
         Block::Table(trade_table(findings)),
-        Block::Details { summary: "The choice in each family, and when the race is changed".to_owned(), blocks: vec![
-            Block::Table(family_table(findings)),
-            Block::Table(change_table(findings)),
-        ] },
+        Block::Details {
+            summary: "The choice in each family, and when the race is changed".to_owned(),
+            blocks: vec![Block::Table(family_table(findings)), Block::Table(change_table(findings))],
+        },
     ];
-    let link = format!("[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)");
+    let link = format!(
+        "[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
+    );
     blocks.push(Block::Paragraph(link));
     Some(Section::new(QUESTION.heading, QUESTION.id, blocks))
 }
@@ -138,10 +145,15 @@ fn profile_figure(
     quantity: RaceQuantity,
     named: &[String],
 ) -> Figure {
-    let of = if quantity == RaceQuantity::All { "pressure, effective stress and settlement" } else { quantity_words(quantity) };
+    let of = if quantity == RaceQuantity::All {
+        "pressure, effective stress and settlement"
+    } else {
+        quantity_words(quantity)
+    };
     let mut chart = Chart::new(
         "Performance profile (Dolan & Moré): higher and further left is better",
-        ChartAxis::log10(format!("cost to 1 % of {of}, over that of the fastest method")).between(1.0, LARGEST_TAU),
+        ChartAxis::log10(format!("cost to 1 % of {of}, over that of the fastest method"))
+            .between(1.0, LARGEST_TAU),
         ChartAxis::linear("share of situations").between(0.0, 1.0),
     );
     chart.size = Size { width: 1300.0, plot_height: 230.0, equal_units: false };
@@ -166,7 +178,9 @@ fn profile_figure(
         }
     }
     let caption = match question {
-        RaceQuestion::Moving => "Grey: the other methods. At the left end how often a method is the fastest, at the right end how often it arrives.",
+        RaceQuestion::Moving => {
+            "Grey: the other methods. At the left end how often a method is the fastest, at the right end how often it arrives."
+        }
         RaceQuestion::Total => "Total Lagrangian methods alone: each profile is over the fastest of them.",
     };
     Figure::new(format!("race-profile-{}-{}", question.name(), quantity.name()), chart, caption)
@@ -193,7 +207,7 @@ fn panel(family: &str, situations: &[&Situation], named: &[String]) -> Figure {
         chart.series.push(Series::new(entry.contender.clone(), points(entry)).style(Style::Context));
     }
     for (slot, name) in named.iter().enumerate() {
-        for entry in entries().filter(|entry| entry.contender == *name) {
+        for entry in entries().filter(|entry| entry.contender == *name && !entry.levels.is_empty()) {
             chart.series.push(Series::new(name.clone(), points(entry)).style(Style::Line).slot(slot));
         }
     }
@@ -204,7 +218,8 @@ fn panel(family: &str, situations: &[&Situation], named: &[String]) -> Figure {
 fn strip(situations: &[&Situation], named: &[String]) -> String {
     let mut by_reason: Vec<(&str, Vec<String>)> = Vec::new();
     for name in named {
-        let entries = situations.iter().filter_map(|one| one.entries.iter().find(|entry| entry.contender == *name));
+        let entries =
+            situations.iter().filter_map(|one| one.entries.iter().find(|entry| entry.contender == *name));
         let missed: Vec<&Reason> = entries.filter_map(|entry| entry.reason.as_ref()).collect();
         let Some(first) = missed.first() else { continue };
         let told = if situations.len() == 1 {
@@ -226,7 +241,8 @@ fn strip(situations: &[&Situation], named: &[String]) -> String {
 
 /// What each operator buys and costs.
 fn trade_table(findings: &RaceFindings) -> Table {
-    let times = |ratio: Option<f64>| ratio.map_or("–".to_owned(), |ratio| format!("× {}", number::short(ratio)));
+    let times =
+        |ratio: Option<f64>| ratio.map_or("–".to_owned(), |ratio| format!("× {}", number::short(ratio)));
     let rows = findings.trades.iter().map(|trade| {
         let mut row = vec![Cell::Text(trade.operator.clone()), Cell::Code(trade.methods[1].clone())];
         row.push(Cell::Text(times(trade.cost_ratio)));
@@ -251,10 +267,14 @@ fn family_table(findings: &RaceFindings) -> Table {
     let rows = findings.families().into_iter().map(|(family, situations)| {
         let mut row = vec![Cell::Text(capitalised(words_of(family))), Cell::Count(situations.len() as u64)];
         for question in RaceQuestion::BOTH {
-            let choice = findings.answer(question).and_then(|answer| {
-                answer.by_family.iter().find(|one| one.family == family)?.choice.as_ref()
-            });
-            row.push(choice.map_or(Cell::missing("no method reaches 1 %"), |choice| Cell::Code(choice.method.clone())));
+            let choice = findings
+                .answer(question)
+                .and_then(|answer| answer.by_family.iter().find(|one| one.family == family)?.choice.as_ref());
+            row.push(
+                choice.map_or(Cell::missing("no method reaches 1 %"), |choice| {
+                    Cell::Code(choice.method.clone())
+                }),
+            );
             row.push(Cell::of(choice.map(|choice| choice.reached), Cell::Percent, "no method reaches 1 %"));
         }
         row
@@ -268,8 +288,10 @@ fn family_table(findings: &RaceFindings) -> Table {
 
 /// The choice when the race is changed.
 fn change_table(findings: &RaceFindings) -> Table {
-    let changes: Vec<&Change> =
-        findings.answers.first().map_or(Vec::new(), |answer| answer.variants.iter().map(|one| &one.change).collect());
+    let changes: Vec<&Change> = findings
+        .answers
+        .first()
+        .map_or(Vec::new(), |answer| answer.variants.iter().map(|one| &one.change).collect());
     let rows = changes.into_iter().map(|change| {
         let mut row = vec![Cell::Text(capitalised(&change_words(change)))];
         for question in RaceQuestion::BOTH {
@@ -284,19 +306,23 @@ fn change_table(findings: &RaceFindings) -> Table {
         }
         row
     });
-    Table::of(
-        "The choice when the race is changed",
-        columns("change | points move | the mesh follows"),
-        rows,
-    )
-    .note("✓ the same method; in brackets the share of situations in which it arrives")
+    Table::of("The choice when the race is changed", columns("change | points move | the mesh follows"), rows)
+        .note("✓ the same method; in brackets the share of situations in which it arrives")
 }
 
 /// The page of the full matrix: costs, errors on equal cells, and properties.
 pub fn matrix_page(findings: &RaceFindings) -> Page {
     let views = vec![
-        ("Cost to 1 %".to_owned(), vec![Block::Table(matrix(&findings.situations, &|situation, entry| cost_cell(situation, entry)))]),
-        ("Largest error on equal cells, %".to_owned(), vec![Block::Table(matrix(&findings.situations, &|situation, entry| error_cell(situation, entry)))]),
+        (
+            "Cost to 1 %".to_owned(),
+            vec![Block::Table(matrix(&findings.situations, &|situation, entry| cost_cell(situation, entry)))],
+        ),
+        (
+            "Largest error on equal cells, %".to_owned(),
+            vec![Block::Table(matrix(&findings.situations, &|situation, entry| {
+                error_cell(situation, entry)
+            }))],
+        ),
     ];
     let mut sections = vec![Section::new(
         "Every method in every situation",
@@ -311,15 +337,31 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         ],
     )];
     if !findings.properties.is_empty() {
-        sections.push(Section::new("Properties that are no errors", "properties", vec![Block::Table(property_table(findings))]));
+        sections.push(Section::new(
+            "Properties that are no errors",
+            "properties",
+            vec![Block::Table(property_table(findings))],
+        ));
     }
     if !findings.correlations.is_empty() {
         let rows = findings.correlations.iter().map(|one| {
-            vec![one.situations[0].as_str().into(), one.situations[1].as_str().into(), Cell::Number(one.value)]
+            vec![
+                one.situations[0].as_str().into(),
+                one.situations[1].as_str().into(),
+                Cell::Number(one.value),
+            ]
         });
-        let table = Table::of("The situations that are most alike", columns("situation | situation | > correlation"), rows)
-            .note("of the logarithms of the largest errors on equal cells over all methods");
-        sections.push(Section::new("How alike are the situations?", "correlation", vec![Block::Table(table)]));
+        let table = Table::of(
+            "The situations that are most alike",
+            columns("situation | situation | > correlation"),
+            rows,
+        )
+        .note("of the logarithms of the largest errors on equal cells over all methods");
+        sections.push(Section::new(
+            "How alike are the situations?",
+            "correlation",
+            vec![Block::Table(table)],
+        ));
     }
     Page {
         title: "The race to one per cent".to_owned(),
@@ -331,7 +373,10 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
     }
 }
 
-fn matrix(situations: &[Situation], show: &dyn Fn(&Situation, &Entry) -> (Shade, String, Option<f64>)) -> Table {
+fn matrix(
+    situations: &[Situation],
+    show: &dyn Fn(&Situation, &Entry) -> (Shade, String, Option<f64>),
+) -> Table {
     let names = situations.first().map_or(&[][..], |one| &one.entries);
     let mut heads = columns("situation");
     heads.extend(names.iter().map(|entry| TableColumn::number(entry.contender.as_str())));
@@ -376,9 +421,13 @@ fn property_table(findings: &RaceFindings) -> Table {
     let names = findings.properties.first().map_or(&[][..], |one| &one.entries);
     let rows = names.iter().map(|first| {
         let of_method = || {
-            findings.properties.iter().filter_map(|one| one.entries.iter().find(|entry| entry.contender == first.contender))
+            findings
+                .properties
+                .iter()
+                .filter_map(|one| one.entries.iter().find(|entry| entry.contender == first.contender))
         };
-        let step = of_method().filter(|entry| entry.spurious_velocity.is_none()).find_map(|entry| entry.step_ratio);
+        let step =
+            of_method().filter(|entry| entry.spurious_velocity.is_none()).find_map(|entry| entry.step_ratio);
         let asymmetry = of_method().find_map(|entry| entry.asymmetry);
         let velocity = of_method().find_map(|entry| entry.spurious_velocity);
         vec![
@@ -395,4 +444,111 @@ fn property_table(findings: &RaceFindings) -> Table {
         rows,
     )
     .note("skeleton, water: asymmetry of the stiffness; round-off where the forces do the power of the stresses")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::race::finish::Level;
+    use crate::judge::race::situation::THRESHOLDS;
+
+    /// A situation of some contenders with the cost of 1 %, or with none.
+    fn situation(name: &str, costs: &[(&str, Option<f64>)]) -> Situation {
+        let entry = |(contender, cost): &(&str, Option<f64>)| {
+            let error = if cost.is_some() { 0.009 } else { 0.5 };
+            let levels = [(4, 0.1, 0.6), (8, 1.0, error)].map(|(cells, share, error)| Level {
+                cells,
+                cost: share * cost.unwrap_or(2.0),
+                seconds: None,
+                errors: [Some(error); 3],
+            });
+            let levels = levels.to_vec();
+            let costs = THRESHOLDS
+                .map(|threshold| crate::judge::race::finish::cost_to(&levels, RaceQuantity::All, threshold));
+            Entry {
+                contender: (*contender).to_owned(),
+                costs,
+                seconds: None,
+                reason: costs[1].is_none().then_some(Reason::Locks),
+                detail: String::new(),
+                errors: [Some(error); 3],
+                cost: *cost,
+                order: None,
+                class: None,
+                scatter: None,
+                oscillation: None,
+                locking: None,
+                step_ratio: None,
+                asymmetry: None,
+                spurious_velocity: None,
+                levels,
+            }
+        };
+        Situation {
+            family: name.split('-').next().unwrap_or_default().to_owned(),
+            name: name.to_owned(),
+            title: format!("the {name}"),
+            study: format!("race-{name}"),
+            moves: false,
+            integrator: "implicit".to_owned(),
+            is_property: false,
+            budget: 8,
+            common_cells: 8,
+            entries: costs.iter().map(entry).collect(),
+        }
+    }
+
+    #[test]
+    fn every_branch_of_the_templates_says_what_the_findings_are() {
+        let costs = [("GIMP", Some(1.0)), ("MPM", Some(5.0)), ("TL-GC-SRI-patch", Some(0.5))];
+        let locked = [("GIMP", None), ("MPM", Some(1.0)), ("TL-GC-SRI-patch", None)];
+        let mut findings = RaceFindings::from_situations(vec![
+            situation("column-a", &costs),
+            situation("waves-b", &costs),
+            situation("layer-c", &locked),
+        ]);
+        let told = lead(&findings);
+        for part in [
+            "**Where points move through the mesh, take `MPM`:** it reaches 1 % of pressure, effective stress and settlement in \
+             100 % of the situations, and in 33 % at no more than twice the cost of the fastest method (3 situations in 3 \
+             families of equal weight, 2 methods; `implicit` in 3).",
+            "take `TL-GC-SRI-patch`:** it reaches 1 % in 67 %, and in 67 %",
+            "Contact, separation and flow are not tested.",
+        ] {
+            assert!(told.contains(part), "{part}\n{told}");
+        }
+        let limits = templates::render(&environment(&findings), "race-limits", &findings);
+        for part in [
+            "**`MPM`** (points move through the mesh) reaches 1 % in every situation.",
+            "**`TL-GC-SRI-patch`** (the mesh follows the soil) does not reach 1 % in 1 of 3 situations: the layer-c (locks).",
+            "it turns without undrained layers and slabs to `GIMP` (100 %)",
+        ] {
+            assert!(limits.contains(part), "{part}\n{limits}");
+        }
+        findings.answers.clear();
+        assert!(lead(&findings).contains("No method reaches 1 % in any situation."));
+    }
+
+    #[test]
+    fn a_panel_names_who_does_not_arrive_and_a_profile_its_best_and_known_methods() {
+        let costs = [("GIMP", None), ("MPM", Some(1.0)), ("GC-SRI-patch", Some(2.0))];
+        let findings =
+            RaceFindings::from_situations(vec![situation("layer-a", &costs), situation("layer-b", &costs)]);
+        let named = named(&findings);
+        assert_eq!(named, ["MPM", "GC-SRI-patch", "GIMP", "GIMP-SRI-patch", "VP-Bbar", "GIMP-Bbar-patch"]);
+        let situations: Vec<&Situation> = findings.situations.iter().collect();
+        let panel = panel("layer", &situations, &named);
+        assert_eq!(panel.caption, "✗ locks: `GIMP` 2/2");
+        assert_eq!(strip(&situations, &named[..2]), "✓ the named methods all arrive");
+        let figure = profile_figure(&findings, RaceQuestion::Moving, RaceQuantity::All, &named);
+        let stairs =
+            &figure.chart.series.iter().find(|one| one.name == "GC-SRI-patch").expect("drawn").points;
+        // Twice the best cost: from nothing to all at 2.
+        assert_eq!(stairs[0], (1.0, 0.0));
+        assert!(
+            stairs.contains(&(2.0, 0.0))
+                && stairs.contains(&(2.0, 1.0))
+                && stairs.last() == Some(&(LARGEST_TAU, 1.0))
+        );
+    }
 }

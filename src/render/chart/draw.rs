@@ -81,7 +81,8 @@ impl Layout {
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };
         let beside = end_names_width(chart);
-        let right = bar_axis(tall).map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
+        let right = bar_axis(tall)
+            .map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
         let room = (wide - left - right).max(60.0);
         let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
         let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
@@ -177,7 +178,8 @@ fn without_data(chart: &Chart) -> Option<String> {
     let with_points: Vec<&str> =
         chart.series.iter().filter(|one| !one.points.is_empty()).map(|one| one.name.as_str()).collect();
     let mut names: Vec<&str> = chart.series.iter().map(|one| one.name.as_str()).collect();
-    let is_context = |name: &str| chart.series.iter().any(|one| one.name == name && one.style == Style::Context);
+    let is_context =
+        |name: &str| chart.series.iter().any(|one| one.name == name && one.style == Style::Context);
     names.retain(|name| !name.is_empty() && !with_points.contains(name) && !is_context(name));
     names.dedup();
     let is_told = !with_points.is_empty() && !names.is_empty();

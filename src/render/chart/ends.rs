@@ -76,7 +76,11 @@ mod tests {
         chart.naming = Naming::Ends;
         let svg = chart.svg().expect("a figure");
         // Written beside the plot and at the line; the grey one only when one points at it.
-        assert_eq!((svg.matches(">\nupper\n<").count(), svg.matches("<title>grey</title>").count()), (1, 1), "{svg}");
+        assert_eq!(
+            (svg.matches(">\nupper\n<").count(), svg.matches("<title>grey</title>").count()),
+            (1, 1),
+            "{svg}"
+        );
         assert!(!svg.contains(">\ngrey\n<"), "{svg}");
     }
 }

@@ -178,7 +178,9 @@ impl Legend {
     pub fn of(chart: &Chart, looks: &[Look], is_drawn: impl Fn(usize) -> bool, room: f64) -> Self {
         let mut seen: Vec<(Look, &str)> = Vec::new();
         let in_legend = |series: &Series| chart.naming == Naming::Legend && series.style != Style::Context;
-        for (place, (series, look)) in chart.series.iter().zip(looks).enumerate().filter(|(_, (one, _))| in_legend(one)) {
+        for (place, (series, look)) in
+            chart.series.iter().zip(looks).enumerate().filter(|(_, (one, _))| in_legend(one))
+        {
             let entry = (*look, series.name.as_str());
             if is_drawn(place) && !series.name.is_empty() && !seen.contains(&entry) {
                 seen.push(entry);

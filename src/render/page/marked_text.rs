@@ -1,5 +1,5 @@
 //! Lightly marked text, taken apart and written as HTML and Markdown.
-use crate::render::method_words::method_words;
+use crate::case::method_words::method_words;
 use crate::render::escape::{html, markdown, markdown_target, plain_html};
 
 /// The paragraphs of a text, each on one line.

@@ -38,7 +38,8 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
 /// Those that arrive first by their cost, then those with an error, then the others.
 fn ranked(entries: &[Entry]) -> Vec<&Entry> {
     let mut ranked: Vec<&Entry> = entries.iter().collect();
-    let worth = |entry: &Entry| [entry.costs[1], entry.largest_error()].map(|value| value.unwrap_or(f64::INFINITY));
+    let worth =
+        |entry: &Entry| [entry.costs[1], entry.largest_error()].map(|value| value.unwrap_or(f64::INFINITY));
     ranked.sort_by(|a, b| {
         let [cost, error] = worth(a);
         let [other_cost, other_error] = worth(b);
@@ -48,9 +49,15 @@ fn ranked(entries: &[Entry]) -> Vec<&Entry> {
 }
 
 /// One error of all contenders against their cost.
-fn figure(results: &StudyResults<'_>, ranked: &[&Entry], quantity: RaceQuantity, words: &str) -> Option<Figure> {
+fn figure(
+    results: &StudyResults<'_>,
+    ranked: &[&Entry],
+    quantity: RaceQuantity,
+    words: &str,
+) -> Option<Figure> {
     let points = |entry: &Entry| -> Vec<(f64, f64)> {
-        let point = |level: &crate::judge::race::finish::Level| Some((level.cost, quantity.error_in(&level.errors)?));
+        let point =
+            |level: &crate::judge::race::finish::Level| Some((level.cost, quantity.error_in(&level.errors)?));
         entry.levels.iter().filter_map(point).collect()
     };
     let drawn: Vec<(&str, Vec<(f64, f64)>)> = ranked
@@ -58,7 +65,11 @@ fn figure(results: &StudyResults<'_>, ranked: &[&Entry], quantity: RaceQuantity,
         .map(|entry| (entry.contender.as_str(), points(entry)))
         .filter(|(_, points)| points.len() > 1)
         .collect();
-    let title = if quantity == RaceQuantity::All { "The largest error".to_owned() } else { format!("Error of the {words}") };
+    let title = if quantity == RaceQuantity::All {
+        "The largest error".to_owned()
+    } else {
+        format!("Error of the {words}")
+    };
     let mut chart = Chart::new(
         format!("{title} against the cost"),
         ChartAxis::log10("counted work (s)"),
@@ -76,14 +87,17 @@ fn table_of(situation: &Situation, ranked: &[&Entry]) -> Table {
     let number = |value: Option<f64>, kind: fn(f64) -> Cell| Cell::of(value, kind, "");
     let rows = ranked.iter().map(|entry| {
         let reason = entry.reason.as_ref().map_or(ARRIVES, |reason| reason.words());
-        let reason = if entry.detail.is_empty() { reason.to_owned() } else { format!("{reason}: {}", entry.detail) };
+        let reason =
+            if entry.detail.is_empty() { reason.to_owned() } else { format!("{reason}: {}", entry.detail) };
         let mut cells: Vec<Cell> = vec![Cell::Code(entry.contender.clone())];
         cells.extend(entry.costs.map(|cost| number(cost, Cell::Seconds)));
         cells.push(number(entry.seconds, Cell::Seconds));
         cells.extend(entry.errors.map(|error| number(error, Cell::Error)));
         cells.push(number(entry.order, Cell::Order));
         cells.push(number(entry.scatter, Cell::Percent));
-        cells.extend([entry.oscillation, entry.locking, entry.step_ratio].map(|value| number(value, Cell::Number)));
+        cells.extend(
+            [entry.oscillation, entry.locking, entry.step_ratio].map(|value| number(value, Cell::Number)),
+        );
         cells.push(reason.into());
         cells
     });
@@ -128,7 +142,9 @@ fn row(situation: &Situation, entry: &Entry) -> Vec<Cell> {
     row.push(entry.class.as_deref().unwrap_or_default().into());
     row.extend([entry.scatter, entry.oscillation, entry.locking, entry.seconds].map(number));
     let alone = [RaceQuantity::Pressure, RaceQuantity::Stress, RaceQuantity::Settlement];
-    row.extend(alone.map(|quantity| number(entry.cost_to(quantity, crate::judge::race::sensitivity::THRESHOLD))));
+    row.extend(
+        alone.map(|quantity| number(entry.cost_to(quantity, crate::judge::race::sensitivity::THRESHOLD))),
+    );
     row
 }
 
@@ -182,7 +198,10 @@ mod tests {
         };
         assert!(of("B2-Bbar-patch").contains(",,,,by definition,"), "{}", of("B2-Bbar-patch"));
         let profile = profile_table(&findings).to_plain_csv().expect("a table");
-        assert!(profile.starts_with("answer,quantity,contender,tau,share\nmoving,pressure,MPM,1.0,"), "{profile}");
+        assert!(
+            profile.starts_with("answer,quantity,contender,tau,share\nmoving,pressure,MPM,1.0,"),
+            "{profile}"
+        );
         for tau in ["1.0", "1.3", "2.0", "5.0", "10.0", "100.0"] {
             assert!(profile.contains(&format!("total,all,TL-GC-SRI-patch,{tau},")), "{tau}");
         }

@@ -1,10 +1,10 @@
 //! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
 
-use crate::render::method_words::method_words;
-use crate::render::page::marked_text::html_code;
+use crate::case::method_words::method_words;
 use crate::render::escape::{
     csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
 };
+use crate::render::page::marked_text::html_code;
 use crate::render::table::{Align, Cell, Table, marked};
 use crate::render::{RenderError, number};
 use std::fmt::Write as _;
@@ -97,7 +97,9 @@ impl Table {
             let unit = column.unit.as_ref().map(|unit| format!(" <small>{}</small>", html(unit)));
             let (class, unit) = (class(column.align), unit.unwrap_or_default());
             let head = match method_words(&column.header) {
-                Some(words) => format!("<abbr title=\"{}\">{}</abbr>", plain_html(&words), html(&column.header)),
+                Some(words) => {
+                    format!("<abbr title=\"{}\">{}</abbr>", plain_html(&words), html(&column.header))
+                }
                 None => html(&column.header),
             };
             let _ = write!(out, "<th scope=\"col\" class=\"{class}\">{head}{unit}</th>");
