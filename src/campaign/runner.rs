@@ -97,7 +97,7 @@ pub fn run_studies_thinned(
     // The longest first, so that the last ones to finish are short.
     let work_of = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
     let work_of_all =
-        |jobs: &mut dyn Iterator<Item = &Job<'_>>| jobs.map(work_of).fold(0, u64::saturating_add);
+        |jobs: &mut dyn Iterator<Item = &Job<'_>>| jobs.map(|job| work_of(job)).fold(0, u64::saturating_add);
     ladders.sort_by_cached_key(|ladder| Reverse(work_of_all(&mut ladder.jobs.iter())));
     let jobs = || ladders.iter().flat_map(|ladder| &ladder.jobs);
     let threads = options.jobs.clamp(1, ladders.len().max(1));
@@ -127,7 +127,9 @@ pub fn run_studies_thinned(
                         let store = selected.store.filter(|_| selected.is_kept);
                         let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
                         let mut ending = if refinement.as_ref().is_some_and(|known| !known.wants(job.case)) {
-                            tell(Progress::Advanced(estimated_work(job.case)));
+                            tell(Progress::Advanced(work_of_seconds(
+                                runner.study().estimated_seconds(job.case),
+                            )));
                             Ending::Spared
                         } else if is_over {
                             Ending::Left
