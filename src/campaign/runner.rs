@@ -2,6 +2,7 @@
 //! not go on.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
+use crate::campaign::refinement::{Refinement, ladders};
 use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
 use crate::campaign::taken_over::TakenOver;
@@ -88,64 +89,79 @@ pub fn run_studies_thinned(
     let of_studies = studies.iter().zip(&runners).zip(selected);
     let mut begun: Vec<Begun<'_>> =
         of_studies.map(|((study, runner), cases)| begun(study, runner, cases, options)).collect();
-    let mut jobs: Vec<Job<'_>> = Vec::new();
-    for (study, begun) in begun.iter().enumerate() {
-        let missing = begun.cases.iter().enumerate().filter(|(_, (_, outcome))| outcome.is_none());
-        jobs.extend(missing.map(|(place, (case, _))| Job { case, study, place }));
-    }
+    let mut ladders: Vec<Ladder<'_>> = begun
+        .iter()
+        .enumerate()
+        .flat_map(|(study, begun)| begun.ladders(study, studies[study].study))
+        .collect();
     // The longest first, so that the last ones to finish are short.
     let work_of = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
-    jobs.sort_by_cached_key(|job| Reverse(work_of(job)));
-    let threads = options.jobs.clamp(1, jobs.len().max(1));
+    let work_of_all =
+        |jobs: &mut dyn Iterator<Item = &Job<'_>>| jobs.map(|job| work_of(job)).fold(0, u64::saturating_add);
+    ladders.sort_by_cached_key(|ladder| Reverse(work_of_all(&mut ladder.jobs.iter())));
+    let jobs = || ladders.iter().flat_map(|ladder| &ladder.jobs);
+    let threads = options.jobs.clamp(1, ladders.len().max(1));
     let longest = |job: &Job<'_>| LongestCase {
         study: studies[job.study].study.name.clone(),
         case: job.case.clone(),
         case_seconds: studies[job.study].study.case_seconds,
     };
     tell(Progress::Planned {
-        cases: jobs.len(),
+        cases: jobs().count(),
         resumed: begun.iter().map(|begun| begun.report.resumed).sum(),
-        work: jobs.iter().map(work_of).fold(0, u64::saturating_add),
+        work: work_of_all(&mut jobs()),
         jobs: threads,
-        longest: jobs.first().map(|job| Box::new(longest(job))),
+        longest: jobs().max_by_key(|job| work_of(job)).map(|job| Box::new(longest(job))),
     });
     let (next, stopped) = (&AtomicUsize::new(0), &AtomicBool::new(false));
-    let (jobs, runners) = (&jobs, &runners);
-    let (send, outcomes) = channel();
+    let (ladders, runners) = (&ladders, &runners);
+    let (send, endings) = channel();
     std::thread::scope(|scope| {
         for _ in 0..threads {
             let send = send.clone();
             scope.spawn(move || {
-                while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let (runner, selected) = (&runners[job.study], &studies[job.study]);
-                    let store = selected.store.filter(|_| selected.is_kept);
-                    let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
-                    let mut outcome = if is_over {
-                        None
-                    } else {
-                        run_and_keep(runner, store, job.case, threads == 1, stopped, tell)
-                    };
-                    if let Some(Ok(record)) = &mut outcome {
-                        thin(runner.study(), record);
+                while let Some(ladder) = ladders.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let mut refinement = ladder.begun.clone();
+                    for job in &ladder.jobs {
+                        let (runner, selected) = (&runners[job.study], &studies[job.study]);
+                        let store = selected.store.filter(|_| selected.is_kept);
+                        let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
+                        let mut ending = if refinement.as_ref().is_some_and(|known| !known.wants(job.case)) {
+                            tell(Progress::Advanced(work_of_seconds(
+                                runner.study().estimated_seconds(job.case),
+                            )));
+                            Ending::Spared
+                        } else if is_over {
+                            Ending::Left
+                        } else {
+                            run_and_keep(runner, store, job.case, threads == 1, stopped, tell)
+                                .map_or(Ending::Left, Ending::Ended)
+                        };
+                        if let Ending::Ended(Ok(record)) = &mut ending {
+                            refinement.iter_mut().for_each(|known| known.add(record));
+                            thin(runner.study(), record);
+                        }
+                        let _ = send.send((*job, ending));
                     }
-                    let _ = send.send((*job, outcome));
                 }
             });
         }
         drop(send);
-        for (job, outcome) in outcomes {
+        for (job, ending) in endings {
             let Begun { cases, report } = &mut begun[job.study];
-            match &outcome {
-                None => report.tally.left += 1,
-                Some(Ok(record)) => report.tally.add(studies[job.study].study, record),
-                Some(Err(_)) => {}
+            match &ending {
+                Ending::Left => report.tally.left += 1,
+                Ending::Ended(Ok(record)) => report.tally.add(studies[job.study].study, record),
+                Ending::Ended(Err(_)) | Ending::Spared => {}
             }
+            let outcome = if let Ending::Ended(outcome) = ending { Some(outcome) } else { None };
             cases[job.place].1 = outcome.filter(|outcome| outcome.is_err() || !options.only_on_disk);
         }
     });
     let report_of = |Begun { cases, mut report }: Begun<'_>| {
         for outcome in cases.into_iter().filter_map(|(_, outcome)| outcome) {
             match outcome {
+                Ok(_) if options.only_on_disk => {}
                 Ok(record) => report.records.push(*record),
                 Err(error) => report.errors.push(*error),
             }
@@ -172,6 +188,23 @@ fn cases_of<'a>(studies: &[Selected<'a>], options: &RunOptions) -> Vec<Vec<&'a C
 /// The record of a case, or the reason why it is missing.
 type Outcome = Result<Box<Record>, Box<RunError>>;
 
+/// How a case ended in a run.
+enum Ending {
+    /// It was not begun, or not ended, for the run was stopped.
+    Left,
+    /// A coarser mesh of its ladder had arrived.
+    Spared,
+    /// With a record, or without one.
+    Ended(Outcome),
+}
+
+/// Cases that run one after the other: one alone, or the meshes of a contender of the race until it arrives.
+struct Ladder<'a> {
+    jobs: Vec<Job<'a>>,
+    /// What is known of its meshes before the run; none of a case alone.
+    begun: Option<Refinement>,
+}
+
 /// One case to run. Small, because a study may have a million.
 #[derive(Clone, Copy)]
 struct Job<'a> {
@@ -186,6 +219,27 @@ struct Job<'a> {
 struct Begun<'a> {
     cases: Vec<(&'a Case, Option<Outcome>)>,
     report: RunReport,
+}
+
+impl<'a> Begun<'a> {
+    /// What is left to run, in the order of the study.
+    fn ladders(&self, number: usize, study: &Study) -> Vec<Ladder<'a>> {
+        let job = |place: usize| Job { case: self.cases[place].0, study: number, place };
+        let is_open = |place: &usize| self.cases[*place].1.is_none();
+        if !study.is_race {
+            let open = (0..self.cases.len()).filter(is_open);
+            return open.map(|place| Ladder { jobs: vec![job(place)], begun: None }).collect();
+        }
+        let cases: Vec<&Case> = self.cases.iter().map(|(case, _)| *case).collect();
+        let ladder = |places: Vec<usize>| {
+            let known = places.iter().filter_map(|place| self.cases[*place].1.as_ref()?.as_ref().ok());
+            let mut begun = Refinement::default();
+            known.for_each(|record| begun.add(record));
+            let jobs = places.into_iter().filter(is_open).map(job).collect();
+            Ladder { jobs, begun: Some(begun) }
+        };
+        ladders(&cases).into_iter().map(ladder).filter(|ladder| !ladder.jobs.is_empty()).collect()
+    }
 }
 
 /// Takes up the records there are; those that are only to be on disk are counted and left out.
@@ -224,7 +278,8 @@ fn begun<'a>(
         report.tally.add(selected.study, &record);
         report.taken_over.extend(TakenOver::of(&record, standing == Some(Standing::Proven)));
         taken_up.push(case);
-        if !options.only_on_disk {
+        // A ladder goes on from what its coarser meshes came to.
+        if !options.only_on_disk || selected.study.is_race {
             open.push((case, Some(Ok(record))));
         }
     }

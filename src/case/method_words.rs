@@ -18,6 +18,12 @@ pub struct MethodPart {
     pub source: &'static str,
 }
 
+/// The method of a name in one line; `None` where it is no method's.
+pub fn method_words(name: &str) -> Option<String> {
+    let method = Method::named(name)?;
+    Some(parts(&method).iter().map(|part| part.description).collect::<Vec<_>>().join("; "))
+}
+
 /// The parts of a method, from the shape functions to the configuration.
 pub fn parts(method: &Method) -> Vec<MethodPart> {
     let part = |choice, word, (description, source)| MethodPart { choice, word, description, source };

@@ -32,6 +32,11 @@ impl Quantity {
         matches!(self, Self::Settlement | Self::LoadFactor)
     }
 
+    /// The norm in which it is told first.
+    pub fn first_norm(self) -> Norm {
+        if self.is_of_surface() { Norm::Relative } else { Norm::L2 }
+    }
+
     /// Its field among samples; `None` for what is of the surface.
     pub fn field(self, samples: &Samples) -> Option<&[f64]> {
         match self {

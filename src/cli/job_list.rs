@@ -1,9 +1,11 @@
 //! Job lists: the commands that run the shares of a campaign, one per line, for any scheduler.
 
+use crate::campaign::refinement;
 use crate::campaign::shares::{Parting, balance_of, shares_of};
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::output::say;
+use crate::record::Record;
 use crate::record::store::RecordStore;
 use crate::study::check::Study;
 use oedometer_soil::wording::{count_of, duration};
@@ -105,7 +107,12 @@ impl JobList {
 /// The cases that have no finished record of this program.
 pub fn missing_of<'a>(study: &Study, cases: &[&'a Case], folder: &Path) -> Vec<&'a Case> {
     let store = RecordStore::for_cases(folder, &study.name, study.planned.len());
-    cases.iter().filter(|case| !store.is_done(case)).copied().collect()
+    let missing: Vec<&Case> = cases.iter().filter(|case| !store.is_done(case)).copied().collect();
+    if !study.is_race {
+        return missing;
+    }
+    let records: Vec<Record> = cases.iter().filter_map(|case| store.kept(case)).collect();
+    refinement::wanted(missing, &records)
 }
 
 fn quoted_path(path: &Path) -> String {

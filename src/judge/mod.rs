@@ -10,6 +10,7 @@ pub mod levels;
 pub mod path_context;
 pub mod paths;
 pub mod proposals;
+pub mod published_equations;
 pub mod race;
 pub mod score;
 pub mod soundness;

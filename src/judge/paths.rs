@@ -233,7 +233,7 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
 
 /// The norm in which a quantity is reported first.
 pub fn first_norm(quantity: Quantity) -> Norm {
-    if quantity.is_of_surface() { Norm::Relative } else { Norm::L2 }
+    quantity.first_norm()
 }
 
 /// A quantity in its first norm, against a reference at a time factor.

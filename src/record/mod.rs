@@ -3,10 +3,12 @@
 //! A record is plain data on disk. Tables, plots, verdicts and goldens read records and never a
 //! live solver, so that a report can be made again without solving.
 
+pub mod calibration;
 pub mod csv;
 pub mod git;
 pub mod pack;
 pub mod provenance;
+pub mod race_errors;
 pub mod store;
 pub mod whole_file;
 

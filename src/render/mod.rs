@@ -12,6 +12,7 @@ pub mod report;
 mod script;
 pub mod table;
 pub mod tables;
+pub(crate) mod templates;
 
 /// A description that cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]

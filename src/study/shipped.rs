@@ -28,12 +28,12 @@ const SHIPPED: &[(&str, &str)] = shipped! {
     "large-strain-ramp-steps" "large-strain-limit" "large-strain-layers" "nodal-pressure" "large-strain-nodal" "double-point"
     "double-point-large-strain" "double-point-plane" "stability-double-point" "manufactured-box" "manufactured-shear"
     "manufactured-vortex" "map"
-    "race-column-usual" "race-column-early" "race-column-stiff-water" "race-points-jitter-10"
-    "race-points-jitter-30" "race-points-offset" "race-points-one" "race-points-three" "race-points-unequal" "race-waves-column"
-    "race-waves-standing" "race-waves-limit" "race-waves-step" "race-layer-0.3" "race-layer-0.49"
-    "race-layer-0.4999" "race-layer-mandel" "race-layer-mandel-0.4999" "race-strain-15" "race-strain-30"
-    "race-strain-50" "race-strain-50-growing" "race-plane-box" "race-plane-shear" "race-plane-vortex"
-    "race-rest-weight" "race-soil-node" "race-soil-cell" "race-soil-yield" "race-footing"
+    "race-column-usual" "race-points-jitter-30" "race-points-offset" "race-points-one"
+    "race-points-unequal" "race-waves-column" "race-waves-standing" "race-layer-0.3" "race-layer-0.49"
+    "race-layer-0.4999" "race-layer-mandel-0.4999" "race-strain-30" "race-strain-50"
+    "race-strain-50-growing" "race-plane-box" "race-plane-shear" "race-plane-vortex" "race-plane-vortex-large"
+    "race-plane-crossings" "race-soil-cell" "race-soil-yield" "race-property-step" "race-property-rest"
+    "race-footing"
 };
 
 /// The shipped study of a name.

@@ -3,8 +3,8 @@
 
 use crate::program::{call, folder_with};
 use oedometer::{
-    Answers, Block, Making, Page, RaceRow, Record, RunOptions, Study, StudyResults, StudySource, Table, Tier,
-    answer_page, render_html, render_markdown, run_study, study_page,
+    Answers, Block, Making, Page, RaceFindings, Record, RunOptions, Study, StudyResults, StudySource, Table,
+    Tier, answer_page, matrix_page, render_html, render_markdown, run_study, study_page,
 };
 use std::fs;
 use std::sync::LazyLock;
@@ -85,10 +85,9 @@ static PAIRED: LazyLock<(Study, Vec<Record>)> = LazyLock::new(|| study_of("pairi
 fn page_of(all: &[&(Study, Vec<Record>)]) -> Page {
     let results: Vec<StudyResults<'_>> =
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
-    let race: Vec<RaceRow<'_>> =
-        all.iter().filter_map(|(study, records)| RaceRow::of(study, records)).collect();
+    let race = RaceFindings::from_studies(all.iter().map(|(study, records)| (study, records.as_slice())));
     let making = Making::default();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &race };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: race.as_ref() };
     answer_page(&answers).expect("a page")
 }
 
@@ -113,7 +112,11 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_not_put() {
         assert!(!markdown.contains(question), "nothing was run for it: {question}\n{markdown}");
     }
     for section in &page.sections {
-        let Some(Block::Paragraph(sentence)) = section.blocks.first() else { panic!("{section:?}") };
+        // The sentences on the race are the lead of the page.
+        let Some(Block::Paragraph(sentence)) = section.blocks.first().filter(|_| section.id != "choice")
+        else {
+            continue;
+        };
         assert!(sentence.ends_with(['.', ':']), "{}: {sentence}", section.heading);
     }
     for table in tables(&page) {
@@ -130,21 +133,24 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_not_put() {
 #[test]
 fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_cannot_run() {
     let page = page_of(&[&RACE]);
-    let choice = page.sections.iter().find(|section| section.id == "choice").expect("answered");
-    let [Block::Paragraph(_), Block::Switch(views), Block::List(_)] = choice.blocks.as_slice() else {
+    let choice = page.sections.first().filter(|section| section.id == "choice").expect("answered first");
+    let [Block::Switch(views), Block::Figures(panels), ..] = choice.blocks.as_slice() else {
         panic!("{choice:?}")
     };
     let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
-    assert_eq!(words, ["Error, %", "Order", "Cost to 1 %"]);
-    let html = render_html(&page).expect("a page");
-    assert!(!html.contains("not tried"), "{html}");
-    // Splines hold no plate; each of the three views has their four cells, with the reason.
-    assert_eq!(html.matches(">n/a</a>").count(), 3 * 4);
-    assert!(html.contains("B2: n/a, a rigid plate holds the nodes of a face"), "{html}");
-    assert!(html.contains("href=\"studies/race-plate.html\" title="), "every cell leads to its situation");
+    let quantities = ["All three", "Pressure", "Effective stress", "Settlement"];
+    assert_eq!((&words[..4], panels.len()), (&quantities[..], 1));
+    assert!(page.lead.contains("take `"), "the sentence stands before everything: {}", page.lead);
+    let race = RaceFindings::from_studies([(&RACE.0, RACE.1.as_slice())]).expect("a race");
+    let matrix = render_html(&matrix_page(&race)).expect("a page");
+    // Splines hold no plate; each of the two views has their cell, with the reason.
+    let reason = "B2-Bbar-patch: by definition, a rigid plate holds the nodes of a face";
+    assert_eq!(matrix.matches(reason).count(), 2, "{matrix}");
+    assert!(matrix.contains("href=\"studies/race-plate.html#figure-race-plate-race-all\" title="));
+    assert!(matrix.contains("\">MPM</abbr>"));
     let results = StudyResults::new(&RACE.0, &RACE.1, Tier::Full);
-    let own = render_markdown(&study_page(&results).expect("a page")).expect("a page");
-    assert!(own.contains("figures/race-plate-race-0.svg") && own.contains("`GC-SRI-patch`"), "{own}");
+    let situation = study_page(&results).expect("a page");
+    assert!(render_html(&situation).expect("a page").contains("id=\"figure-race-plate-race-all\""));
 }
 
 #[test]

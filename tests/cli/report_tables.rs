@@ -116,7 +116,7 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: &[] };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: None };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
     assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");

@@ -1,5 +1,6 @@
 //! `oedometer list`: the names of scenes, methods, integrators, references and shipped studies.
 
+use crate::case::contender::CONTENDERS;
 use crate::case::method_words::parts;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::print_data;
@@ -17,6 +18,9 @@ pub struct Arguments {
     /// Explain a method in words, or print the file of a shipped study
     #[arg(long, value_name = "METHOD|STUDY")]
     show: Option<String>,
+    /// Print every method, those too that do not race
+    #[arg(long, conflicts_with = "show")]
+    all: bool,
 }
 
 /// Prints all names, a method in words, or the file of a shipped study.
@@ -30,9 +34,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         writeln!(out, "  {:<26} {}", scene.name(), scene.summary())?;
     }
     writeln!(out, "methods")?;
-    for name in Method::names() {
-        let parts = Method::named(&name).map(|method| method.choices()).unwrap_or_default();
+    let racing = CONTENDERS.iter().map(|contender| contender.name.to_owned());
+    let names: Vec<String> = if arguments.all { Method::names() } else { racing.collect() };
+    for name in &names {
+        let parts = Method::named(name).map(|method| method.choices()).unwrap_or_default();
         writeln!(out, "  {name:<26} {parts}")?;
+    }
+    let others = Method::names().len() - names.len();
+    if others > 0 {
+        writeln!(out, "  and {others} more: `oedometer list --all`")?;
     }
     writeln!(out, "integrators")?;
     for integrator in IntegratorKind::ALL {

@@ -1,5 +1,6 @@
 //! `oedometer merge`: the records of shards into one folder, with the whole table of each study.
 
+use crate::campaign::refinement;
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::cli::commands::run::{DEFAULT_RESULTS, load};
@@ -120,6 +121,10 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
         }
     }
     let there = cases.len() - holes.len();
+    if study.is_race {
+        let records: Vec<Record> = cases.iter().filter_map(|case| target.kept(case)).collect();
+        holes = refinement::wanted(holes, &records);
+    }
     if there > 0 {
         let table = write_table(study, &target, &[], Some(TableForm::Plain))?;
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());

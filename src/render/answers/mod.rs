@@ -13,8 +13,10 @@ mod race;
 mod soil;
 mod time_step;
 
+pub use race::matrix_page;
+
 use crate::history::comparison::StudyComparison;
-use crate::judge::race::RaceRow;
+use crate::judge::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Page, Section, slug};
@@ -33,8 +35,8 @@ pub struct Answers<'a> {
     pub changes: Option<&'a [StudyComparison]>,
     /// When, where and by which command.
     pub making: &'a Making,
-    /// Every contender in every situation of the race.
-    pub race: &'a [RaceRow<'a>],
+    /// What the race has found, where there was one.
+    pub race: Option<&'a RaceFindings>,
 }
 
 /// When, where and by which command a report was made.
@@ -162,15 +164,15 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let results = answers.results;
     let all = [
         race::answer(answers.race),
+        cost::answer(results),
+        paper::answer(results)?,
+        what_changed(answers.changes),
         locking::answer(results)?,
         converges::answer(results),
-        paper::answer(results)?,
         time_step::answer(results),
         soil::answer(results),
-        cost::answer(results),
         audit::answer(results),
         double_point::answer(results),
-        what_changed(answers.changes),
     ];
     let sections = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
@@ -182,17 +184,35 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         [one] => setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n"),
         _ => String::new(),
     };
-    let made = answers.making.words(results);
+    let made = format!(
+        "**How was it made?** {}\n\n[All studies, with every table and figure](studies/index.html){few}",
+        answers.making.words(results)
+    );
+    // With a race its sentences stand first, and how it was made at the end.
+    let (lead, footer) = match answers.race.filter(|findings| !findings.situations.is_empty()) {
+        Some(findings) => (race::lead(findings), made),
+        None => (format!("{setting}{made}"), String::new()),
+    };
     Ok(Page {
         title: "Convergence report".to_owned(),
-        lead: format!(
-            "{setting}**How was it made?** {made}\n\n[All studies, with every table and figure](studies/index.html){few}"
-        ),
-        callout: Some(verdict(results)),
-        sections,
+        lead,
+        callout: Some(verdict(results)).filter(|_| footer.is_empty()),
+        sections: sections_with(sections, (!footer.is_empty()).then(|| verdict(results))),
+        footer,
         is_wide: true,
         ..Page::default()
     })
+}
+
+/// The sections, with the verdict on all expectations as the last one where it does not stand at the head.
+fn sections_with(mut sections: Vec<Section>, verdict: Option<Callout>) -> Vec<Section> {
+    sections.extend(verdict.map(|(mood, text)| Section {
+        heading: "Is everything as expected?".to_owned(),
+        id: "expected".to_owned(),
+        mood: Some(mood),
+        blocks: vec![Block::Paragraph(text)],
+    }));
+    sections
 }
 
 /// Studies up to which the head of the page names each.
@@ -337,7 +357,8 @@ mod tests {
                 .map(|(study, records)| StudyResults::new(study, records, Tier::Full))
                 .collect();
             let making = Making::default();
-            let page = answer_page(&Answers { results: &results, changes: None, making: &making, race: &[] });
+            let page =
+                answer_page(&Answers { results: &results, changes: None, making: &making, race: None });
             let lead = page.expect("a page").lead;
             let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
             assert_eq!(listed.matches("](studies/").count(), links, "{lead}");

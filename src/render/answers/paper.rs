@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations};
 use crate::record::{Record, Status};
 use crate::render::answers::{Answer, Question};
 use crate::render::chart::{Size, Style};
@@ -10,12 +11,16 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
 use crate::render::report::{StudyResults, theory_lines};
+use crate::render::templates;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::Column;
 use oedometer_soil::material::Material;
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
+
+/// Number of the figure at large strain.
+const LARGE_STRAIN_FIGURE: u32 = 4;
 
 /// Methods of a figure of consolidation, the paper's first.
 const MOST_METHODS: usize = 3;
@@ -31,7 +36,7 @@ struct PaperRun<'a> {
 
 /// Four figures with the theory line, and how far the runs are from it.
 pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
-    let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (4, true)]
+    let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (LARGE_STRAIN_FIGURE, true)]
         .into_iter()
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
         .collect();
@@ -42,9 +47,17 @@ pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
     let mut sentences = Vec::new();
     for (number, run) in &runs {
         let own = run.results.study.references[0];
-        figures.push(quarter(theory_lines::isochrones(run.results, run.record)?, &format!("{number}a")));
+        figures.push(quarter(
+            theory_lines::isochrones(run.results, run.record)?,
+            &format!("{number}a"),
+            own.name(),
+        ));
         let shown = beside(run);
-        figures.push(quarter(theory_lines::consolidation(run.results, &shown)?, &format!("{number}b")));
+        figures.push(quarter(
+            theory_lines::consolidation(run.results, &shown)?,
+            &format!("{number}b"),
+            own.name(),
+        ));
         if let Some((error, at)) = largest_error(run.record, own.name()) {
             sentences.push(format!(
                 "Figs {number}a and {number}b: on {QUOTED_CELLS} cells the pressure of `{PAPERS}` is within {} of {} at every \
@@ -55,7 +68,12 @@ pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
         }
     }
     let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
-    Ok(Some(QUESTION.told(&sentences.join(" "), studies, vec![Block::Figures(figures)])))
+    let mut shown = vec![Block::Figures(figures)];
+    if runs.iter().any(|(number, _)| *number == LARGE_STRAIN_FIGURE) {
+        let printed = PublishedEquations::new()?;
+        shown.push(Block::Paragraph(templates::render(&templates::environment(), "paper", &printed)));
+    }
+    Ok(Some(QUESTION.told(&sentences.join(" "), studies, shown)))
 }
 
 /// The sound run of the paper's method on the paper's mesh with most outputs.
@@ -77,9 +95,6 @@ fn run_of<'a>(results: &'a [StudyResults<'a>], is_large: bool) -> Option<PaperRu
         if next.record.case.time_factors.len() > best.record.case.time_factors.len() { next } else { best }
     })
 }
-
-/// Load of the paper's column at large strain, Pa.
-const LARGE_STRAIN_LOAD: f64 = 200e3;
 
 /// Whether a case is of the soil, height and, at large strain, load of Figs 3 and 4.
 fn is_papers_column(case: &Case, is_large: bool) -> bool {
@@ -109,13 +124,13 @@ fn beside<'a>(run: &PaperRun<'a>) -> Vec<&'a Record> {
 }
 
 /// A figure of the report as one of the four.
-fn quarter(mut figure: Figure, number: &str) -> Figure {
+fn quarter(mut figure: Figure, number: &str, theory: &str) -> Figure {
     figure.name = format!("readme-fig-{number}");
     figure.with_chart(|chart| {
         chart.title = format!("Fig. {number}: {}", chart.title);
         chart.size = QUARTER;
         for series in chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
-            "theory".clone_into(&mut series.name);
+            labels::solution(theory).clone_into(&mut series.name);
         }
     })
 }
@@ -194,9 +209,16 @@ mod tests {
             answer(&results).expect("an answer")
         };
         let section = answered(&all).expect("answered");
-        let [Block::Paragraph(sentence), Block::Figures(figures)] = &section.blocks[..] else {
-            panic!("two")
+        let [Block::Paragraph(sentence), Block::Figures(figures), Block::Paragraph(printed)] =
+            &section.blocks[..]
+        else {
+            panic!("three")
         };
+        assert!(
+            printed.contains("settlement +7.7 %, +6.8 %, +3.2 %, −2.7 %, −3.9 % and pressure 7 %, 11 %, 21 %, 36 %, 41 % at")
+                && printed.contains("final settlement −6.9 %."),
+            "{printed}"
+        );
         assert_eq!(
             *sentence,
             "Figs 3a and 3b: on 10 cells the pressure of `GC-SRI-patch` is within 3.00 % of Terzaghi's solution with \
@@ -211,16 +233,30 @@ mod tests {
             format!("{}: {}: {series}", figure.name, figure.chart.title)
         };
         let told: Vec<String> = figures.iter().map(told).collect();
+        // The theory by its name.
+        let (small_strain, large_strain) = (
+            "Terzaghi's solution with compressible water",
+            "the exact large-strain solution of its own equations",
+        );
         assert_eq!(
             told[..3],
             [
-                "readme-fig-3a: Fig. 3a: Isochrones, GC-SRI-patch: theory | T_v = 0.1 | theory | T_v = 0.2",
+                &*format!(
+                    "readme-fig-3a: Fig. 3a: Isochrones, GC-SRI-patch: {small_strain} | T_v = 0.1 | {small_strain} | T_v = 0.2"
+                ),
                 // That of MPM failed, and three are enough.
-                "readme-fig-3b: Fig. 3b: Degree of consolidation: theory | GC-SRI-patch | GIMP | GIMP-SRI",
-                "readme-fig-4a: Fig. 4a: Isochrones, GC-SRI-patch: theory | T_v = 0.100, U = 36 %",
+                &*format!(
+                    "readme-fig-3b: Fig. 3b: Degree of consolidation: {small_strain} | GC-SRI-patch | GIMP | GIMP-SRI"
+                ),
+                &*format!(
+                    "readme-fig-4a: Fig. 4a: Isochrones, GC-SRI-patch: {large_strain} | T_v = 0.100, U = 36 %"
+                ),
             ]
         );
-        assert_eq!(told[3], "readme-fig-4b: Fig. 4b: Degree of consolidation: theory | GC-SRI-patch");
+        assert_eq!(
+            told[3],
+            format!("readme-fig-4b: Fig. 4b: Degree of consolidation: {large_strain} | GC-SRI-patch")
+        );
         assert!(figures.iter().all(|figure| figure.chart.size == QUARTER));
         for (_, records) in &mut all {
             records.retain(|record| record.case.method.to_string() != PAPERS || record.case.cells != 10);

@@ -1,581 +1,554 @@
-//! Which method should I take? Every contender in every situation, and sentences computed from it.
+//! Which method should I take? The race's sentences, profiles and panels, and the page with its full matrix.
 
 use crate::case::contender::PAPERS;
-use crate::judge::race::grid::{Grid, GridRow, Overall, Score};
-use crate::judge::race::{Ended, RaceCell, RaceRow, grid_of};
+use crate::judge::race::finish::{RaceQuantity, Reason};
+use crate::judge::race::sensitivity::Change;
+use crate::judge::race::situation::{Entry, Situation};
+use crate::judge::race::{Question as RaceQuestion, RaceFindings};
 use crate::render::answers::{Answer, Question, page_of};
+use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
 use crate::render::number;
-use crate::render::page::Block;
-use crate::render::report::labels::is_settled;
-use crate::render::table::{Cell, Shade, Table, TableColumn, columns};
-use oedometer_soil::wording::count_of;
+use crate::render::page::{Block, Figure, Page, Section, slug};
+use crate::render::report::labels::capitalised;
+use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
+use crate::render::templates;
+use minijinja::Environment;
+use minijinja::value::Serde;
 
 const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
-/// Contenders that a sentence names as tied with the best.
-const MOST_TIED: usize = 5;
-/// Relative change by half the step from which on the step counts.
-const STEP_COUNTS: f64 = 0.05;
+/// Methods that are named and coloured in the figures.
+const NAMED: usize = 6;
+/// Methods that a reader looks for, after the best ones.
+const KNOWN: [&str; 5] = [PAPERS, "GIMP-SRI-patch", "MPM", "VP-Bbar", "GIMP-Bbar-patch"];
+/// The best ones that are named.
+const BEST: usize = 3;
+/// Multiples of the best cost that a profile shows.
+const LARGEST_TAU: f64 = 1000.0;
+/// The page of the full matrix.
+const MATRIX: &str = "race.html";
 
-/// Relative asymmetry of a stiffness up to which it is round-off.
-const ADJOINT: f64 = 1e-10;
-
-/// Words for the groups of situations.
-const GROUPS: [(&str, &str); 9] = [
+/// Words for the families of situations.
+const FAMILIES: [(&str, &str); 8] = [
     ("column", "columns at small strain"),
     ("points", "points out of place"),
-    ("waves", "waves and explicit steps"),
+    ("waves", "waves"),
     ("layer", "undrained layers and slabs"),
     ("strain", "columns at large strain"),
     ("plane", "large strain in the plane"),
-    ("rest", "rest under weight"),
-    ("soil", "soils with jumps and yielding"),
+    ("soil", "layers and yielding"),
     ("footing", "a footing at collapse"),
 ];
 
-/// The matrix with its switch, and the sentences.
-pub(crate) fn answer(rows: &[RaceRow<'_>]) -> Answer {
-    if rows.is_empty() {
+fn words_of(family: &str) -> &str {
+    FAMILIES.iter().find(|(known, _)| *known == family).map_or(family, |(_, words)| words)
+}
+
+/// The sentences at the head of the page.
+pub(crate) fn lead(findings: &RaceFindings) -> String {
+    templates::render(&environment(findings), "race-answers", findings)
+}
+
+/// The templates with what the race's need to know.
+fn environment(findings: &RaceFindings) -> Environment<'static> {
+    let mut environment = templates::environment();
+    let titles: Vec<(String, String)> =
+        findings.situations.iter().map(|one| (one.name.clone(), one.title.clone())).collect();
+    environment.add_filter("title_of", move |name: String| {
+        titles.iter().find(|(known, _)| *known == name).map_or(name.clone(), |(_, title)| title.clone())
+    });
+    environment.add_filter("reason", |reason: Serde<Reason>| reason.0.words().to_owned());
+    environment.add_filter("change", |change: Serde<Change>| change_words(&change.0));
+    environment
+}
+
+/// What is changed, in words.
+fn change_words(change: &Change) -> String {
+    match change {
+        Change::WithoutFamily(family) => format!("without {}", words_of(family)),
+        Change::Quantity(quantity) => format!("for {} alone", quantity_words(*quantity)),
+        Change::Threshold(threshold) => format!("at {} %", 100.0 * threshold),
+    }
+}
+
+fn quantity_words(quantity: RaceQuantity) -> &'static str {
+    match quantity {
+        RaceQuantity::Pressure => "pressure",
+        RaceQuantity::Stress => "effective stress",
+        RaceQuantity::Settlement => "settlement",
+        RaceQuantity::All => "all three",
+    }
+}
+
+/// The profiles with a switch, a panel per family, and what the answers rest on.
+pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
+    let findings = findings?;
+    if findings.situations.is_empty() {
         return None;
     }
-    let grid = grid_of(rows);
-    let ranked = grid.by_rank();
-    let view = |show: &dyn Fn(&RaceCell, usize, usize) -> Shown| table_of(rows, &ranked, show);
-    let errors = view(&|cell, row, contender| error_shown(cell, grid.rows[row].ratio(contender)))
-        .note(format!(
-            "Largest error of pressure, effective stress and settlement (of a plane, displacement; of a footing, load), in %, on the finest mesh \
-             that every contender ran; at rest the largest velocity over the conductivity; for the critical step the observed one over the formula's. \
-             Shades: as good as the best of the row, within a factor of 2, within 10, beyond, no usable result (an error of \
-             100 % and more, or ✗ a run that failed); n/a what the method cannot do by its definition. Columns by mean rank over the \
-             situations that a contender can run in (that of the first is {:.1})",
-            ranked.first().map_or(f64::NAN, |one| one.mean_rank)
-        ));
-    let orders = view(&|cell, _, _| order_shown(cell)).note(
-        "Order of the pressure at the points on three meshes; ~ marks an order that is not settled (pre-asymptotic, limited \
-         by a floor, or by cancelling errors)",
-    );
-    let costs = view(&|cell, row, _| cost_shown(cell, &rows[row])).note(
-        "Processor time to a largest error of 1 %, between meshes by powers; – where the finest mesh does not reach it. Of the \
-         coarsest mesh where that is good enough already. The processor's time of one run: times of a millisecond vary by a fifth",
-    );
-    let views = [("Error, %", errors), ("Order", orders), ("Cost to 1 %", costs)];
-    let views = views.map(|(word, table)| (word.to_owned(), vec![Block::Table(table)]));
-    let mut sentences = sentences(&grid);
-    sentences.extend(of_the_power(rows));
-    let first = sentences.remove(0);
-    let files = "[Every cell with all its measures](tables/race.csv).";
-    let blocks = vec![Block::Switch(views.to_vec()), Block::List(sentences)];
-    Some(QUESTION.told(&format!("{first} {files}"), [], blocks))
-}
-
-fn table_of(
-    rows: &[RaceRow<'_>],
-    ranked: &[Overall],
-    show: &dyn Fn(&RaceCell, usize, usize) -> Shown,
-) -> Table {
-    let mut heads = columns("situation");
-    heads.extend(ranked.iter().map(|one| TableColumn::number(rows[0].contenders[one.contender].name)));
-    let row = |place: usize| {
-        let (words, target) = (rows[place].title().to_owned(), page_of(&rows[place].study.name));
-        let mut row = vec![Cell::Link { words, target: target.clone() }];
-        row.extend(ranked.iter().map(|one| {
-            let cell = &rows[place].contenders[one.contender];
-            shaded(cell, target.clone(), || show(cell, place, one.contender))
-        }));
-        row
-    };
-    Table::of("", heads, (0..rows.len()).map(row))
-}
-
-/// Background, words, the number to sort by, and what is shown on request.
-type Shown = (Shade, String, Option<f64>, String);
-
-/// A cell of the matrix; one without a number says why it has none.
-fn shaded(cell: &RaceCell, target: String, show: impl FnOnce() -> Shown) -> Cell {
-    let without = |shade, words: &str| {
-        let (name, why) = cell.ending();
-        (shade, words.to_owned(), None, format!("{}: {name}, {why}", cell.name))
-    };
-    let (shade, words, value, title) = match &cell.ended {
-        Ended::Well => show(),
-        Ended::Failed(..) => without(Shade::Failed, "✗"),
-        Ended::NotApplicable(_) => without(Shade::Empty, "n/a"),
-    };
-    Cell::Shaded { shade, words, value, title, target }
-}
-
-fn error_shown(cell: &RaceCell, ratio: Option<f64>) -> Shown {
-    let is_error = cell.errors.iter().any(Option::is_some);
-    let words = cell.score.map_or("✗".to_owned(), |score| match cell.step_ratio {
-        _ if is_error => in_percent(score),
-        Some(ratio) => times(ratio),
-        None => number::error(score),
+    let named = named(findings);
+    let mut views: Vec<(String, Vec<Block>)> = [3, 0, 1, 2]
+        .map(|place| RaceQuantity::EACH[place])
+        .into_iter()
+        .map(|quantity| {
+            let figure = profile_figure(findings, RaceQuestion::Moving, quantity, &named);
+            (capitalised(quantity_words(quantity)), vec![Block::Figure(figure)])
+        })
+        .collect();
+    let total: Vec<String> = findings.answer(RaceQuestion::Total).map_or(Vec::new(), |answer| {
+        answer.ranked.iter().take(NAMED).map(|choice| choice.method.clone()).collect()
     });
-    let (shade, title) = match ratio {
-        Some(ratio) => (Shade::of_ratio(ratio), error_title(cell, ratio)),
-        None => (Shade::Failed, format!("{}: no usable result", cell.name)),
-    };
-    (shade, words, cell.score, title)
-}
-
-/// The contender, its ratio to the best, and how much half the step changes.
-fn error_title(cell: &RaceCell, ratio: f64) -> String {
-    let scatter =
-        cell.scatter.map(|scatter| format!("; half the step changes it by {}", number::percent(scatter)));
-    format!("{}: {ratio:.1} times the best of the row{}", cell.name, scatter.unwrap_or_default())
-}
-
-fn order_shown(cell: &RaceCell) -> Shown {
-    let (value, title) = (cell.order, cell.class.map_or("not measured", |class| class.name()));
-    let settled = cell.class.is_some_and(is_settled);
-    let words =
-        value.map_or("–".to_owned(), |order| format!("{order:.1}{}", if settled { "" } else { "~" }));
-    let shade = match value {
-        Some(order) if order >= 1.7 => Shade::Best,
-        Some(order) if order >= 1.3 => Shade::Good,
-        Some(order) if order >= 0.7 => Shade::Middling,
-        Some(_) => Shade::Poor,
-        None => Shade::Empty,
-    };
-    (shade, words, value, format!("{}: {title}", cell.name))
-}
-
-fn cost_shown(cell: &RaceCell, row: &RaceRow<'_>) -> Shown {
-    let least = row.contenders.iter().filter_map(|one| one.cost[0]).fold(f64::INFINITY, f64::min);
-    let value = cell.cost[0];
-    let words = value.map_or("–".to_owned(), number::seconds);
-    let tenth = cell.cost[1].map_or("not reached".to_owned(), number::seconds);
-    let title = format!("{}: 0.1 % {tenth}", cell.name);
-    // A cost within a quarter of the least is as good.
-    let shade = value.map_or(Shade::Empty, |seconds| Shade::of_ratio(seconds / least / 1.25));
-    (shade, words, value, title)
-}
-
-/// A share in percent, two digits.
-fn in_percent(share: f64) -> String {
-    match 100.0 * share {
-        percent if percent < 0.001 => "<0.001".to_owned(),
-        percent if percent < 0.0995 => format!("{percent:.3}"),
-        percent if percent < 0.995 => format!("{percent:.2}"),
-        percent if percent < 9.95 => format!("{percent:.1}"),
-        percent if percent < 999.5 => format!("{percent:.0}"),
-        percent => format!("{percent:.0e}"),
+    if !total.is_empty() {
+        let figure = profile_figure(findings, RaceQuestion::Total, RaceQuantity::All, &total);
+        views.push(("The mesh follows the soil".to_owned(), vec![Block::Figure(figure)]));
     }
+    let panels = findings
+        .families()
+        .into_iter()
+        .map(|(family, situations)| panel(family, &situations, &named))
+        .collect();
+    let limits = templates::render(&environment(findings), "race-limits", findings);
+    let mut blocks = vec![
+        Block::Switch(views),
+        Block::Figures(panels),
+        Block::Paragraph(limits),
+        Block::Table(trade_table(findings)),
+        Block::Details {
+            summary: "The choice in each family, and when the race is changed".to_owned(),
+            blocks: vec![Block::Table(family_table(findings)), Block::Table(change_table(findings))],
+        },
+    ];
+    let link = format!(
+        "[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
+    );
+    blocks.push(Block::Paragraph(link));
+    Some(Section::new(QUESTION.heading, QUESTION.id, blocks))
 }
 
-/// The sentences that follow from a grid: the one method to take, then one for each group, the paper's method, and the
-/// situations that decide.
-fn sentences(grid: &Grid) -> Vec<String> {
-    let all = grid.everywhere();
-    let Some(one) = grid.one_for(&all) else {
-        return vec!["No contender has a usable result in any situation.".to_owned()];
-    };
-    let mut told = vec![the_one(grid, &one)];
-    told.extend(grid.groups().into_iter().filter_map(|(group, places)| best_of_group(grid, group, &places)));
-    told.extend(of_the_paper(grid));
-    told.push(what_decides(grid, one.contender));
-    told.extend(of_the_step(grid));
-    told
-}
-
-/// Which contenders' forces do the power of their stresses.
-fn of_the_power(rows: &[RaceRow<'_>]) -> Option<String> {
-    let known =
-        rows.iter().flat_map(|row| &row.contenders).filter_map(|cell| Some((cell.name, cell.asymmetry?)));
-    let known: Vec<(&str, [f64; 2])> = known.collect();
-    let adjoint = |part: usize| {
-        let names = known
-            .iter()
-            .filter(|(_, asymmetry)| asymmetry[part] < ADJOINT)
-            .map(|(name, _)| format!("`{name}`"));
-        names.collect::<Vec<_>>()
-    };
-    let [skeleton, water] = [0, 1].map(adjoint);
-    (!known.is_empty()).then(|| {
-        format!(
-            "**Power**: on the lattice of a column the forces of the skeleton do the power of its stresses, to round-off, in {} \
-             of {} contenders, those of the water in {} ({}).",
-            skeleton.len(),
-            known.len(),
-            water.len(),
-            water.join(", ")
-        )
-    })
-}
-
-/// How far half the step changes the errors.
-fn of_the_step(grid: &Grid) -> Option<String> {
-    let scatter = |(place, row): (usize, &GridRow)| {
-        let of_score = move |(one, score): (usize, &Score)| match score {
-            // Where no second step was run there is no scatter.
-            Score::Value { scatter, .. } if *scatter > 0.0 => Some((*scatter, one, place)),
-            _ => None,
-        };
-        row.scores.iter().enumerate().filter_map(of_score).collect::<Vec<_>>()
-    };
-    let all: Vec<(f64, usize, usize)> = grid.rows.iter().enumerate().flat_map(scatter).collect();
-    let counts = all.iter().filter(|one| one.0 > STEP_COUNTS).count();
-    let (most, one, place) = all.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(format!(
-        "**Half the step** changes the largest error by more than {} in {counts} of {} cells, most that of `{}` in {} ({}). \
-         Errors that differ by less than this scatter are ties.",
-        number::percent(STEP_COUNTS),
-        all.len(),
-        grid.contenders[one],
-        quoted(grid, place),
-        number::percent(most)
-    ))
-}
-
-fn the_one(grid: &Grid, one: &Overall) -> String {
-    let (name, of) = (&grid.contenders[one.contender], grid.rows.len());
-    let worst = one.worst_at.map_or(String::new(), |place| {
-        format!(" and at most {} times the best ({})", times(one.worst_ratio), quoted(grid, place))
-    });
-    let results = match one.without {
-        0 => "it has a result in each of them".to_owned(),
-        lacking => {
-            let places = grid
-                .everywhere()
-                .into_iter()
-                .filter(|place| grid.rows[*place].ratio(one.contender).is_none());
-            let names: Vec<String> = places.map(|place| quoted(grid, place)).collect();
-            format!(
-                "it has no usable result in {lacking} ({}), and no contender has one in all",
-                names.join(", ")
-            )
+/// The methods with a colour: the best of the moving ones, then those that a reader looks for.
+fn named(findings: &RaceFindings) -> Vec<String> {
+    let ranked = findings.answer(RaceQuestion::Moving).map_or(&[][..], |answer| &answer.ranked);
+    let best = ranked.iter().take(BEST).map(|choice| choice.method.as_str());
+    let mut named: Vec<String> = Vec::new();
+    for name in best.chain(KNOWN) {
+        if named.len() < NAMED && named.iter().all(|known| known != name) {
+            named.push(name.to_owned());
         }
+    }
+    named
+}
+
+/// Performance profiles of one question and quantity: staircases, the named ones in colour.
+fn profile_figure(
+    findings: &RaceFindings,
+    question: RaceQuestion,
+    quantity: RaceQuantity,
+    named: &[String],
+) -> Figure {
+    let of = if quantity == RaceQuantity::All {
+        "pressure, effective stress and settlement"
+    } else {
+        quantity_words(quantity)
     };
-    format!(
-        "If you may have only one method, take **`{name}`**: its error is within a factor of 2 of the best in {} of {}{worst}; \
-         {results}.",
-        one.nearly_best,
-        count_of(of, "situation", "situations")
+    let mut chart = Chart::new(
+        "Performance profile (Dolan & Moré): higher and further left is better",
+        ChartAxis::log10(format!("cost to 1 % of {of}, over that of the fastest method"))
+            .between(1.0, LARGEST_TAU),
+        ChartAxis::linear("share of situations").between(0.0, 1.0),
+    );
+    chart.size = Size { width: 1300.0, plot_height: 230.0, equal_units: false };
+    chart.naming = Naming::Ends;
+    let staircase = |steps: &[(f64, f64)]| {
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        for (tau, share) in steps.iter().filter(|(tau, _)| *tau <= LARGEST_TAU) {
+            points.extend(points.last().map(|(_, before)| (*tau, *before)));
+            points.push((*tau, *share));
+        }
+        points.extend(points.last().map(|(_, share)| (LARGEST_TAU, *share)));
+        points
+    };
+    let profiles = findings.profiles(question, quantity);
+    let others = profiles.iter().filter(|one| !named.contains(&one.contender));
+    chart.series.extend(
+        others.map(|one| Series::new(one.contender.clone(), staircase(&one.steps)).style(Style::Context)),
+    );
+    for (slot, name) in named.iter().enumerate() {
+        if let Some(one) = profiles.iter().find(|one| one.contender == *name) {
+            chart.series.push(Series::new(name.clone(), staircase(&one.steps)).style(Style::Line).slot(slot));
+        }
+    }
+    let caption = match question {
+        RaceQuestion::Moving => {
+            "Grey: the other methods. At the left end how often a method is the fastest, at the right end how often it arrives."
+        }
+        RaceQuestion::Total => "Total Lagrangian methods alone: each profile is over the fastest of them.",
+    };
+    Figure::new(format!("race-profile-{}-{}", question.name(), quantity.name()), chart, caption)
+}
+
+/// Cost against error in the situations of a family, and who does not arrive.
+fn panel(family: &str, situations: &[&Situation], named: &[String]) -> Figure {
+    let mut chart = Chart::new(
+        capitalised(words_of(family)),
+        ChartAxis::log10("counted work (s)"),
+        ChartAxis::log10("largest error").between(1e-4, 3.0),
+    );
+    chart.size = Size { width: 340.0, plot_height: 150.0, equal_units: false };
+    chart.naming = Naming::Hover;
+    chart.rules.push(Rule { at: 1e-2, label: "1 %".to_owned() });
+    let points = |entry: &Entry| -> Vec<(f64, f64)> {
+        let point = |level: &crate::judge::race::finish::Level| {
+            Some((level.cost, RaceQuantity::All.error_in(&level.errors)?.clamp(1e-4, 3.0)))
+        };
+        entry.levels.iter().filter_map(point).collect()
+    };
+    let entries = || situations.iter().flat_map(|situation| &situation.entries);
+    for entry in entries().filter(|entry| !named.contains(&entry.contender)) {
+        chart.series.push(Series::new(entry.contender.clone(), points(entry)).style(Style::Context));
+    }
+    for (slot, name) in named.iter().enumerate() {
+        for entry in entries().filter(|entry| entry.contender == *name && !entry.levels.is_empty()) {
+            chart.series.push(Series::new(name.clone(), points(entry)).style(Style::Line).slot(slot));
+        }
+    }
+    Figure::new(format!("race-family-{}", slug(family)), chart, strip(situations, named))
+}
+
+/// The named methods that do not arrive in some situations of a family, by their reasons.
+fn strip(situations: &[&Situation], named: &[String]) -> String {
+    let mut by_reason: Vec<(&str, Vec<String>)> = Vec::new();
+    for name in named {
+        let entries =
+            situations.iter().filter_map(|one| one.entries.iter().find(|entry| entry.contender == *name));
+        let missed: Vec<&Reason> = entries.filter_map(|entry| entry.reason.as_ref()).collect();
+        let Some(first) = missed.first() else { continue };
+        let told = if situations.len() == 1 {
+            format!("`{name}`")
+        } else {
+            format!("`{name}` {}/{}", missed.len(), situations.len())
+        };
+        match by_reason.iter_mut().find(|(known, _)| *known == first.words()) {
+            Some((_, names)) => names.push(told),
+            None => by_reason.push((first.words(), vec![told])),
+        }
+    }
+    if by_reason.is_empty() {
+        return "✓ the named methods all arrive".to_owned();
+    }
+    let told = by_reason.iter().map(|(reason, names)| format!("✗ {reason}: {}", names.join(", ")));
+    told.collect::<Vec<_>>().join(" · ")
+}
+
+/// What each operator buys and costs.
+fn trade_table(findings: &RaceFindings) -> Table {
+    let times =
+        |ratio: Option<f64>| ratio.map_or("–".to_owned(), |ratio| format!("× {}", number::short(ratio)));
+    let rows = findings.trades.iter().map(|trade| {
+        let mut row = vec![Cell::Text(trade.operator.clone()), Cell::Code(trade.methods[1].clone())];
+        row.push(Cell::Text(times(trade.cost_ratio)));
+        row.extend(trade.effects.iter().take(3).map(|effect| Cell::Text(times(effect.error_ratio))));
+        let all = trade.effects.last();
+        row.push(Cell::Text(all.map_or(String::new(), |all| format!("+{} −{}", all.won, all.lost))));
+        row
+    });
+    Table::of(
+        "What each operator buys and costs",
+        columns("operator | with it | > cost | > pressure | > effective stress | > settlement | > situations that reach 1 %"),
+        rows,
+    )
+    .note(
+        "each step of the ladder from GIMP over the method of the row above: cost and errors on equal cells, geometric means over \
+         families in which both ran; errors below 0.1 % count as 0.1 %; situations won and lost",
     )
 }
 
-fn best_of_group(grid: &Grid, group: &str, places: &[usize]) -> Option<String> {
-    let best = grid.one_for(places)?;
-    let words = GROUPS.iter().find(|(known, _)| *known == group).map_or(group, |(_, words)| words);
-    let alike = (0..grid.contenders.len()).map(|one| grid.overall(one, places));
-    let alike = alike.filter(|one| {
-        one.contender != best.contender && one.without == best.without && one.worst_ratio <= best.worst_ratio
-    });
-    let mut tied: Vec<String> = alike.map(|one| format!("`{}`", grid.contenders[one.contender])).collect();
-    if tied.len() > MOST_TIED {
-        let others = tied.split_off(MOST_TIED - 1).len();
-        tied.push(format!("{others} others"));
-    }
-    let tied = if tied.is_empty() { String::new() } else { format!(", tied with {}", tied.join(", ")) };
-    let lacking = match best.without {
-        0 => String::new(),
-        lacking => format!("; without a result in {lacking}"),
-    };
-    Some(format!(
-        "**{}** ({}): `{}`, at most {} times the best error{lacking}{tied}.",
-        crate::render::report::labels::capitalised(words),
-        count_of(places.len(), "situation", "situations"),
-        grid.contenders[best.contender],
-        times(best.worst_ratio)
-    ))
-}
-
-/// Where the paper's method is best and worst.
-fn of_the_paper(grid: &Grid) -> Option<String> {
-    let paper = grid.contenders.iter().position(|name| name == PAPERS)?;
-    let overall = grid.overall(paper, &grid.everywhere());
-    let rank = 1 + grid.by_rank().iter().position(|one| one.contender == paper)?;
-    let (mut failed, mut first) = (Vec::new(), Vec::new());
-    for (place, row) in grid.rows.iter().enumerate() {
-        if row.scores[paper] == Score::Failed {
-            failed.push(quoted(grid, place));
-        } else if row.rank(paper) == Some(1) {
-            first.push(quoted(grid, place));
+/// The choice in each family.
+fn family_table(findings: &RaceFindings) -> Table {
+    let rows = findings.families().into_iter().map(|(family, situations)| {
+        let mut row = vec![Cell::Text(capitalised(words_of(family))), Cell::Count(situations.len() as u64)];
+        for question in RaceQuestion::BOTH {
+            let choice = findings
+                .answer(question)
+                .and_then(|answer| answer.by_family.iter().find(|one| one.family == family)?.choice.as_ref());
+            row.push(
+                choice.map_or(Cell::missing("no method reaches 1 %"), |choice| {
+                    Cell::Code(choice.method.clone())
+                }),
+            );
+            row.push(Cell::of(choice.map(|choice| choice.reached), Cell::Percent, "no method reaches 1 %"));
         }
-    }
-    let best = match first.as_slice() {
-        [] => "it is first in no situation".to_owned(),
-        all => format!("it is first, alone or tied, in {} ({})", all.len(), all.join(", ")),
-    };
-    let worst = overall.worst_at.filter(|_| overall.worst_ratio > 1.0).map_or(String::new(), |place| {
-        format!(
-            "; it is farthest from the best in {}, {} times its error",
-            quoted(grid, place),
-            times(overall.worst_ratio)
-        )
+        row
     });
-    let failed = if failed.is_empty() {
-        String::new()
-    } else {
-        format!("; it has no result in {}", failed.join(", "))
-    };
-    Some(format!(
-        "**The paper's method**, `{PAPERS}`, is number {rank} of {} by mean rank ({:.1} over {}): {best}{worst}{failed}.",
-        grid.contenders.len(),
-        overall.mean_rank,
-        count_of(overall.ranked_in, "situation", "situations")
-    ))
+    Table::of(
+        "The choice in each family",
+        columns("family | > situations | points move | > reaches 1 % | the mesh follows | > reaches 1 %"),
+        rows,
+    )
 }
 
-/// How the choice of one method depends on single situations.
-fn what_decides(grid: &Grid, winner: usize) -> String {
-    let (deciding, of) = (grid.deciding_situations(), grid.rows.len());
-    let changes: Vec<String> = deciding
-        .iter()
-        .map(|(place, other)| {
-            format!("without {} it would be `{}`", quoted(grid, *place), grid.contenders[*other])
-        })
-        .collect();
-    let name = &grid.contenders[winner];
-    match changes.as_slice() {
-        [] => format!("**Leaving out any one** of the {of} situations, the choice stays `{name}`."),
-        all => format!(
-            "**Leaving out one situation** changes the choice of `{name}` in {} of {of}: {}.",
-            all.len(),
-            all.join("; ")
+/// The choice when the race is changed.
+fn change_table(findings: &RaceFindings) -> Table {
+    let changes: Vec<&Change> = findings
+        .answers
+        .first()
+        .map_or(Vec::new(), |answer| answer.variants.iter().map(|one| &one.change).collect());
+    let rows = changes.into_iter().map(|change| {
+        let mut row = vec![Cell::Text(capitalised(&change_words(change)))];
+        for question in RaceQuestion::BOTH {
+            let variant = findings
+                .answer(question)
+                .and_then(|answer| answer.variants.iter().find(|variant| variant.change == *change));
+            let told = variant.and_then(|variant| Some((variant.holds, variant.choice.as_ref()?)));
+            row.push(told.map_or(Cell::missing("no method reaches it"), |(holds, choice)| {
+                let words = format!("{} ({})", choice.method, number::rounded_percent(choice.reached));
+                Cell::Verdict(if holds { Mood::Pass } else { Mood::Note }, words)
+            }));
+        }
+        row
+    });
+    Table::of("The choice when the race is changed", columns("change | points move | the mesh follows"), rows)
+        .note("✓ the same method; in brackets the share of situations in which it arrives")
+}
+
+/// The page of the full matrix: costs, errors on equal cells, and properties.
+pub fn matrix_page(findings: &RaceFindings) -> Page {
+    let views = vec![
+        (
+            "Cost to 1 %".to_owned(),
+            vec![Block::Table(matrix(&findings.situations, &|situation, entry| cost_cell(situation, entry)))],
         ),
+        (
+            "Largest error on equal cells, %".to_owned(),
+            vec![Block::Table(matrix(&findings.situations, &|situation, entry| {
+                error_cell(situation, entry)
+            }))],
+        ),
+    ];
+    let mut sections = vec![Section::new(
+        "Every method in every situation",
+        "matrix",
+        vec![
+            Block::Switch(views),
+            Block::Paragraph(
+                "Cost: counted work to 1 % of pressure, effective stress and settlement; in the plane displacement, under the footing load. Shades: \
+                 as good as the best of the row, within a factor of 2, within 10, beyond, ✗ not reached. A cell leads to the figure of its situation."
+                    .to_owned(),
+            ),
+        ],
+    )];
+    if !findings.properties.is_empty() {
+        sections.push(Section::new(
+            "Properties that are no errors",
+            "properties",
+            vec![Block::Table(property_table(findings))],
+        ));
+    }
+    if !findings.correlations.is_empty() {
+        let rows = findings.correlations.iter().map(|one| {
+            vec![
+                one.situations[0].as_str().into(),
+                one.situations[1].as_str().into(),
+                Cell::Number(one.value),
+            ]
+        });
+        let table = Table::of(
+            "The situations that are most alike",
+            columns("situation | situation | > correlation"),
+            rows,
+        )
+        .note("of the logarithms of the largest errors on equal cells over all methods");
+        sections.push(Section::new(
+            "How alike are the situations?",
+            "correlation",
+            vec![Block::Table(table)],
+        ));
+    }
+    Page {
+        title: "The race to one per cent".to_owned(),
+        lead: "[Back to the answers](index.html). Every number: [race.csv](tables/race.csv).".to_owned(),
+        sections,
+        is_wide: true,
+        files: Some("race".to_owned()),
+        ..Page::default()
     }
 }
 
-fn quoted(grid: &Grid, place: usize) -> String {
-    format!("“{}”", grid.rows[place].situation)
+fn matrix(
+    situations: &[Situation],
+    show: &dyn Fn(&Situation, &Entry) -> (Shade, String, Option<f64>),
+) -> Table {
+    let names = situations.first().map_or(&[][..], |one| &one.entries);
+    let mut heads = columns("situation");
+    heads.extend(names.iter().map(|entry| TableColumn::number(entry.contender.as_str())));
+    let rows = situations.iter().map(|situation| {
+        let target = format!("{}#figure-{}-race-all", page_of(&situation.study), slug(&situation.study));
+        let mut row = vec![Cell::Link { words: situation.title.clone(), target: page_of(&situation.study) }];
+        row.extend(situation.entries.iter().map(|entry| {
+            let (shade, words, value) = show(situation, entry);
+            let reason = entry.reason.as_ref().map_or("arrives", |reason| reason.words());
+            let detail = if entry.detail.is_empty() { String::new() } else { format!(", {}", entry.detail) };
+            let title = format!("{}: {reason}{detail}", entry.contender);
+            Cell::Shaded { shade, words, value, title, target: target.clone() }
+        }));
+        row
+    });
+    Table::of("", heads, rows)
 }
 
-/// A ratio, two digits.
-fn times(ratio: f64) -> String {
-    if ratio < 9.95 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }
+fn cost_cell(situation: &Situation, entry: &Entry) -> (Shade, String, Option<f64>) {
+    let least = situation.entries.iter().filter_map(|one| one.costs[1]).min_by(f64::total_cmp);
+    match (entry.costs[1], least) {
+        (Some(cost), Some(least)) => (Shade::of_ratio(cost / least / 1.1), number::seconds(cost), Some(cost)),
+        _ if entry.reason == Some(Reason::ByDefinition) => (Shade::Empty, "–".to_owned(), None),
+        _ => (Shade::Failed, "✗".to_owned(), None),
+    }
+}
+
+fn error_cell(situation: &Situation, entry: &Entry) -> (Shade, String, Option<f64>) {
+    let least = situation.entries.iter().filter_map(Entry::largest_error).min_by(f64::total_cmp);
+    match (entry.largest_error(), least) {
+        (Some(error), Some(least)) => {
+            let tenth = |error: f64| error.max(crate::judge::race::finish::NEGLIGIBLE);
+            (Shade::of_ratio(tenth(error) / tenth(least) / 1.02), number::short(100.0 * error), Some(error))
+        }
+        _ if entry.reason == Some(Reason::ByDefinition) => (Shade::Empty, "–".to_owned(), None),
+        _ => (Shade::Failed, "✗".to_owned(), None),
+    }
+}
+
+/// Critical step, rest and power, per method.
+fn property_table(findings: &RaceFindings) -> Table {
+    let names = findings.properties.first().map_or(&[][..], |one| &one.entries);
+    let rows = names.iter().map(|first| {
+        let of_method = || {
+            findings
+                .properties
+                .iter()
+                .filter_map(|one| one.entries.iter().find(|entry| entry.contender == first.contender))
+        };
+        let step =
+            of_method().filter(|entry| entry.spurious_velocity.is_none()).find_map(|entry| entry.step_ratio);
+        let asymmetry = of_method().find_map(|entry| entry.asymmetry);
+        let velocity = of_method().find_map(|entry| entry.spurious_velocity);
+        vec![
+            Cell::Code(first.contender.clone()),
+            Cell::of(step, Cell::Number, "not observed"),
+            Cell::of(velocity, Cell::Error, "not run"),
+            Cell::of(asymmetry.map(|one| one[0]), Cell::Error, "not measured"),
+            Cell::of(asymmetry.map(|one| one[1]), Cell::Error, "not measured"),
+        ]
+    });
+    Table::of(
+        "",
+        columns("method | > critical step over the formula's | > velocity at rest over k | > skeleton | > water"),
+        rows,
+    )
+    .note("skeleton, water: asymmetry of the stiffness; round-off where the forces do the power of the stresses")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::study_of;
-    use oedometer_convergence::Class;
+    use crate::judge::race::finish::Level;
+    use crate::judge::race::situation::THRESHOLDS;
 
-    /// A grid of the paper's method and two others, by rows of scores that scatter by a hundredth; infinite: failed, NaN:
-    /// not applicable.
-    fn grid(rows: &[(&str, [f64; 3])]) -> Grid {
-        let score = |value: &f64| match *value {
-            value if value.is_nan() => Score::NotApplicable,
-            value if value.is_infinite() => Score::Failed,
-            value => Score::Value { value, scatter: 0.01 },
-        };
-        let row = |(situation, scores): &(&str, [f64; 3])| GridRow {
-            situation: (*situation).to_owned(),
-            group: situation.split('-').next().unwrap_or_default().to_owned(),
-            scores: scores.iter().map(score).collect(),
-        };
-        Grid {
-            contenders: [PAPERS, "b", "c"].map(str::to_owned).to_vec(),
-            rows: rows.iter().map(row).collect(),
-        }
-    }
-
-    #[test]
-    fn the_sentences_say_what_the_numbers_of_a_grid_are() {
-        let told = sentences(&grid(&[
-            ("column-a", [0.1, 0.101, 0.4]),
-            ("column-b", [0.2, 0.3, 0.1]),
-            ("plane", [f64::INFINITY, 0.3, f64::NAN]),
-        ]));
-        let expected = [
-            "If you may have only one method, take **`b`**: its error is within a factor of 2 of the best in 2 of 3 \
-             situations and at most 3.0 times the best (“column-b”); it has a result in each of them.",
-            "**Columns at small strain** (2 situations): `GC-SRI-patch`, at most 2.0 times the best error.",
-            "**Large strain in the plane** (1 situation): `b`, at most 1.0 times the best error.",
-            "**The paper's method**, `GC-SRI-patch`, is number 1 of 3 by mean rank (1.7 over 3 situations): it is first, alone \
-             or tied, in 1 (“column-a”); it is farthest from the best in “column-b”, 2.0 times its error; it has no result in \
-             “plane”.",
-            "**Leaving out one situation** changes the choice of `b` in 1 of 3: without “plane” it would be `GC-SRI-patch`.",
-        ];
-        assert_eq!(told[..expected.len()], expected);
-        assert!(told[expected.len()].contains("by more than 5.00 % in 0 of 7 cells"), "{told:?}");
-    }
-
-    #[test]
-    fn a_grid_without_a_usable_contender_recommends_none() {
-        let told = sentences(&grid(&[("a", [f64::INFINITY, f64::NAN, f64::INFINITY])]));
-        assert_eq!(told, ["No contender has a usable result in any situation."]);
-        // Only `c` has both.
-        let one = sentences(&grid(&[("a", [0.1, f64::INFINITY, 0.2]), ("b", [f64::NAN, 0.1, 0.3])]));
-        assert!(
-            one[0].contains("take **`c`**") && one[0].contains("it has a result in each of them"),
-            "{}",
-            one[0]
-        );
-        let none =
-            sentences(&grid(&[("a", [0.1, f64::INFINITY, f64::INFINITY]), ("b", [f64::NAN, 0.1, 0.3])]));
-        assert!(none[0].contains("and no contender has one in all"), "{}", none[0]);
-    }
-
-    #[test]
-    fn shares_have_two_digits() {
-        let told = [1e-6, 8.4e-5, 0.0056, 0.0123, 0.156, 4.38, 36.0].map(in_percent);
-        assert_eq!(told, ["<0.001", "0.008", "0.56", "1.2", "16", "438", "4e3"]);
-    }
-
-    fn cell(name: &'static str) -> RaceCell {
-        RaceCell {
-            name,
-            errors: [Some(0.02), None, None],
-            levels: Vec::new(),
-            order: None,
-            class: None,
-            cost: [None; 2],
-            oscillation: None,
-            locking: None,
-            step_ratio: None,
-            asymmetry: None,
-            score: Some(0.02),
-            scatter: None,
-            ended: Ended::Well,
-            complaint: None,
-        }
-    }
-
-    #[test]
-    fn a_cell_of_the_errors_is_shaded_by_its_ratio_and_says_why_it_has_none() {
-        let shown = |change: &dyn Fn(&mut RaceCell), ratio: Option<f64>| {
-            let mut cell = cell("a");
-            change(&mut cell);
-            let target = "t".to_owned();
-            match shaded(&cell, target, || error_shown(&cell, ratio)) {
-                Cell::Shaded { shade, words, value, title, .. } => (shade, words, value, title),
-                other => panic!("{other:?}"),
+    /// A situation of some contenders with the cost of 1 %, or with none.
+    fn situation(name: &str, costs: &[(&str, Option<f64>)]) -> Situation {
+        let entry = |(contender, cost): &(&str, Option<f64>)| {
+            let error = if cost.is_some() { 0.009 } else { 0.5 };
+            let levels = [(4, 0.1, 0.6), (8, 1.0, error)].map(|(cells, share, error)| Level {
+                cells,
+                cost: share * cost.unwrap_or(2.0),
+                seconds: None,
+                errors: [Some(error); 3],
+            });
+            let levels = levels.to_vec();
+            let costs = THRESHOLDS
+                .map(|threshold| crate::judge::race::finish::cost_to(&levels, RaceQuantity::All, threshold));
+            Entry {
+                contender: (*contender).to_owned(),
+                costs,
+                seconds: None,
+                reason: costs[1].is_none().then_some(Reason::Locks),
+                detail: String::new(),
+                errors: [Some(error); 3],
+                cost: *cost,
+                order: None,
+                class: None,
+                scatter: None,
+                oscillation: None,
+                locking: None,
+                step_ratio: None,
+                asymmetry: None,
+                spurious_velocity: None,
+                levels,
             }
         };
-        let is = |shade: Shade, words: &str, value: Option<f64>, title: &str| {
-            (shade, words.to_owned(), value, format!("a: {title}"))
-        };
-        let best = "1.0 times the best of the row";
-        assert_eq!(shown(&|_| (), Some(1.0)), is(Shade::Best, "2.0", Some(0.02), best));
-        let scatter = "2.5 times the best of the row; half the step changes it by 3.10 %";
-        let scattered = shown(&|cell| cell.scatter = Some(0.031), Some(2.5));
-        assert_eq!(scattered, is(Shade::Middling, "2.0", Some(0.02), scatter));
-        let at_rest = shown(&|cell| (cell.errors, cell.score) = ([None; 3], Some(3.2e-9)), Some(1.0));
-        assert_eq!(at_rest, is(Shade::Best, "3.20e-9", Some(3.2e-9), best));
-        // The critical step is told as a ratio, unless errors were measured.
-        for (errors, words) in [([None; 3], "0.5"), ([None, None, Some(0.02)], "2.0")] {
-            let step = shown(&|cell| (cell.errors, cell.step_ratio) = (errors, Some(0.51)), Some(1.0));
-            assert_eq!(step, is(Shade::Best, words, Some(0.02), best));
+        Situation {
+            family: name.split('-').next().unwrap_or_default().to_owned(),
+            name: name.to_owned(),
+            title: format!("the {name}"),
+            study: format!("race-{name}"),
+            moves: false,
+            integrator: "implicit".to_owned(),
+            is_property: false,
+            budget: 8,
+            common_cells: 8,
+            entries: costs.iter().map(entry).collect(),
         }
-        assert_eq!(shown(&|_| (), None), is(Shade::Failed, "2.0", Some(0.02), "no usable result"));
-        assert_eq!(shown(&|cell| cell.score = None, None), is(Shade::Failed, "✗", None, "no usable result"));
-        let failed =
-            shown(&|cell| cell.ended = Ended::Failed("unstable", "on 8 cells".to_owned()), Some(1.0));
-        assert_eq!(failed, is(Shade::Failed, "✗", None, "unstable, on 8 cells"));
-        let refused = shown(&|cell| cell.ended = Ended::NotApplicable("no plate".to_owned()), Some(1.0));
-        assert_eq!(refused, is(Shade::Empty, "n/a", None, "n/a, no plate"));
     }
 
     #[test]
-    fn orders_and_costs_have_shades_of_their_own() {
-        for (order, class, words, shade) in [
-            (Some(1.7), Class::Asymptotic, "1.7", Shade::Best),
-            (Some(1.69), Class::Superconvergent, "1.7", Shade::Good),
-            (Some(1.3), Class::PreAsymptotic, "1.3~", Shade::Good),
-            (Some(1.29), Class::Contaminated, "1.3~", Shade::Middling),
-            (Some(0.7), Class::Asymptotic, "0.7", Shade::Middling),
-            (Some(0.69), Class::Asymptotic, "0.7", Shade::Poor),
-            (Some(f64::NAN), Class::Asymptotic, "NaN", Shade::Poor),
-            (None, Class::Divergent, "–", Shade::Empty),
+    fn every_branch_of_the_templates_says_what_the_findings_are() {
+        let costs = [("GIMP", Some(1.0)), ("MPM", Some(5.0)), ("TL-GC-SRI-patch", Some(0.5))];
+        let locked = [("GIMP", None), ("MPM", Some(1.0)), ("TL-GC-SRI-patch", None)];
+        let mut findings = RaceFindings::from_situations(vec![
+            situation("column-a", &costs),
+            situation("waves-b", &costs),
+            situation("layer-c", &locked),
+        ]);
+        let told = lead(&findings);
+        for part in [
+            "**Where points move through the mesh, take `MPM`:** it reaches 1 % of pressure, effective stress and settlement in \
+             100 % of the situations, and in 33 % at no more than twice the cost of the fastest method (3 situations in 3 \
+             families of equal weight, 2 methods; `implicit` in 3).",
+            "take `TL-GC-SRI-patch`:** it reaches 1 % in 67 %, and in 67 %",
+            "Contact, separation and flow are not tested.",
         ] {
-            let title = format!("a: {}", class.name());
-            let own = RaceCell { order, class: Some(class), ..cell("a") };
-            let (found, told, value, said) = order_shown(&own);
-            assert_eq!((found, told.as_str(), said), (shade, words, title));
-            assert!(value.map(f64::to_bits) == order.map(f64::to_bits), "{value:?}");
+            assert!(told.contains(part), "{part}\n{told}");
         }
-        assert_eq!(order_shown(&cell("a")).3, "a: not measured");
-        let study = study_of("race-column", RACED);
-        let costs = [Some(2.5), Some(2.0), Some(2.6), Some(5.0), Some(5.1), Some(25.1), None];
-        let mut contenders = costs.map(|cost| RaceCell { cost: [cost, None], ..cell("a") }).to_vec();
-        contenders[1].cost[1] = Some(0.5);
-        let row = RaceRow { study: &study, group: "column", cells: 8, contenders };
-        let shown: Vec<Shown> = row.contenders.iter().map(|cell| cost_shown(cell, &row)).collect();
-        // A quarter more than the least is as good.
-        let shades =
-            [Shade::Best, Shade::Best, Shade::Good, Shade::Good, Shade::Middling, Shade::Poor, Shade::Empty];
-        assert_eq!(shown.iter().map(|one| one.0).collect::<Vec<_>>(), shades);
-        assert_eq!(shown[0].1, "2.50 s");
-        assert_eq!((shown[1].2, shown[1].3.as_str()), (Some(2.0), "a: 0.1 % 500 ms"));
-        assert_eq!((shown[6].1.as_str(), shown[6].3.as_str()), ("–", "a: 0.1 % not reached"));
-        // Forces do the power of the stresses where the stiffness is symmetric.
-        let power = |all: [Option<[f64; 2]>; 4]| {
-            let contenders = ["a", "b", "c", "d"].into_iter().zip(all);
-            let contenders =
-                contenders.map(|(name, asymmetry)| RaceCell { asymmetry, ..cell(name) }).collect();
-            of_the_power(&[RaceRow { contenders, ..row.clone() }])
-        };
-        let told = power([Some([1e-12, 0.3]), Some([2e-11, 1e-11]), None, Some([1e-10, 9e-11])]);
-        assert_eq!(
-            told.as_deref(),
-            Some(
-                "**Power**: on the lattice of a column the forces of the skeleton do the power of its stresses, to \
-                 round-off, in 2 of 3 contenders, those of the water in 2 (`b`, `d`)."
-            )
-        );
-        assert_eq!(power([None; 4]), None);
+        let limits = templates::render(&environment(&findings), "race-limits", &findings);
+        for part in [
+            "**`MPM`** (points move through the mesh) reaches 1 % in every situation.",
+            "**`TL-GC-SRI-patch`** (the mesh follows the soil) does not reach 1 % in 1 of 3 situations: the layer-c (locks).",
+            "it turns without undrained layers and slabs to `GIMP` (100 %)",
+        ] {
+            assert!(limits.contains(part), "{part}\n{limits}");
+        }
+        findings.answers.clear();
+        assert!(lead(&findings).contains("No method reaches 1 % in any situation."));
     }
 
-    const RACED: &str = "title = 'Race: a column'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
-        method = ['race']\nintegrator = ['implicit']\ncells = [4]\n";
-
     #[test]
-    fn contenders_that_are_as_good_are_named_and_what_the_step_changes_is_counted() {
-        let alike = |count: usize| Grid {
-            contenders: ["a", "b", "c", "d", "e", "f", "g"][..count]
-                .iter()
-                .copied()
-                .map(str::to_owned)
-                .collect(),
-            rows: ["rest-a", "rest-b", "own"]
-                .map(|situation| GridRow {
-                    situation: situation.to_owned(),
-                    group: situation.split('-').next().unwrap_or_default().to_owned(),
-                    scores: vec![Score::Value { value: 0.1, scatter: 0.0 }; count],
-                })
-                .to_vec(),
-        };
-        let told =
-            |grid: &Grid, group: &str, places: &[usize]| best_of_group(grid, group, places).expect("a best");
-        let best = "**Rest under weight** (2 situations): `a`, at most 1.0 times the best error";
-        assert_eq!(told(&alike(1), "rest", &[0, 1]), format!("{best}."));
-        assert_eq!(told(&alike(6), "rest", &[0, 1]), format!("{best}, tied with `b`, `c`, `d`, `e`, `f`."));
-        let mut grid = alike(7);
-        assert_eq!(told(&grid, "rest", &[0, 1]), format!("{best}, tied with `b`, `c`, `d`, `e`, 2 others."));
+    fn a_panel_names_who_does_not_arrive_and_a_profile_its_best_and_known_methods() {
+        let costs = [("GIMP", None), ("MPM", Some(1.0)), ("GC-SRI-patch", Some(2.0))];
+        let findings =
+            RaceFindings::from_situations(vec![situation("layer-a", &costs), situation("layer-b", &costs)]);
+        let named = named(&findings);
+        assert_eq!(named, ["MPM", "GC-SRI-patch", "GIMP", "GIMP-SRI-patch", "VP-Bbar", "GIMP-Bbar-patch"]);
+        let situations: Vec<&Situation> = findings.situations.iter().collect();
+        let panel = panel("layer", &situations, &named);
+        assert_eq!(panel.caption, "✗ locks: `GIMP` 2/2");
+        assert_eq!(strip(&situations, &named[..2]), "✓ the named methods all arrive");
+        let figure = profile_figure(&findings, RaceQuestion::Moving, RaceQuantity::All, &named);
+        let stairs =
+            &figure.chart.series.iter().find(|one| one.name == "GC-SRI-patch").expect("drawn").points;
+        // Twice the best cost: from nothing to all at 2.
+        assert_eq!(stairs[0], (1.0, 0.0));
         assert!(
-            told(&grid, "own", &[2]).starts_with("**Own** (1 situation): "),
-            "a group of somebody else's"
-        );
-        // One has a result in both, though a worse one; then none has.
-        grid.rows[0].scores[..6].fill(Score::Failed);
-        grid.rows[1].scores[6] = Score::Value { value: 0.3, scatter: 0.0 };
-        let worse = "**Rest under weight** (2 situations): `g`, at most 3.0 times the best error.";
-        assert_eq!(told(&grid, "rest", &[0, 1]), worse);
-        grid.rows[0].scores[6] = Score::Failed;
-        let none = format!("{best}; without a result in 1, tied with `b`, `c`, `d`, `e`, `f`.");
-        assert_eq!(told(&grid, "rest", &[0, 1]), none);
-        let of = |scatter: f64| Score::Value { value: 0.1, scatter };
-        grid.rows[0].scores = [0.01, 0.05, 0.0, 0.0, 0.0, 0.0, 0.0].map(of).to_vec();
-        assert_eq!(
-            of_the_step(&grid).as_deref(),
-            Some(
-                "**Half the step** changes the largest error by more than 5.00 % in 0 of 2 cells, most that of `b` in \
-                 “rest-a” (5.00 %). Errors that differ by less than this scatter are ties."
-            )
-        );
-        grid.rows[1].scores[3] = of(0.2);
-        let told = of_the_step(&grid).expect("some have a scatter");
-        assert!(told.contains("in 1 of 3 cells, most that of `d` in “rest-b” (20.0 %)."), "{told}");
-        assert_eq!(of_the_step(&alike(3)), None);
-        let never_first = self::grid(&[("column-a", [0.3, 0.1, 0.4]), ("column-b", [0.3, 0.3, 0.02])]);
-        assert_eq!(
-            of_the_paper(&never_first).as_deref(),
-            Some(
-                "**The paper's method**, `GC-SRI-patch`, is number 3 of 3 by mean rank (2.0 over 2 situations): it is first \
-                 in no situation; it is farthest from the best in “column-b”, 15 times its error."
-            )
+            stairs.contains(&(2.0, 0.0))
+                && stairs.contains(&(2.0, 1.0))
+                && stairs.last() == Some(&(LARGEST_TAU, 1.0))
         );
     }
 }

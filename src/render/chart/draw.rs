@@ -2,6 +2,7 @@
 
 use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
+use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
 use crate::render::chart::multiples::side_by_side;
 use crate::render::chart::svg::{
@@ -52,7 +53,7 @@ pub(super) struct Layout {
     subtitle: Vec<String>,
     notes: Vec<String>,
     legend: Legend,
-    looks: Vec<Look>,
+    pub looks: Vec<Look>,
     /// The places of the points of each series, if they can be drawn.
     pub points: Vec<Vec<Option<Px>>>,
 }
@@ -79,7 +80,9 @@ impl Layout {
             let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };
-        let right = bar_axis(tall).map_or(PAD + 14.0, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
+        let beside = end_names_width(chart);
+        let right = bar_axis(tall)
+            .map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
         let room = (wide - left - right).max(60.0);
         let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
         let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
@@ -175,7 +178,9 @@ fn without_data(chart: &Chart) -> Option<String> {
     let with_points: Vec<&str> =
         chart.series.iter().filter(|one| !one.points.is_empty()).map(|one| one.name.as_str()).collect();
     let mut names: Vec<&str> = chart.series.iter().map(|one| one.name.as_str()).collect();
-    names.retain(|name| !name.is_empty() && !with_points.contains(name));
+    let is_context =
+        |name: &str| chart.series.iter().any(|one| one.name == name && one.style == Style::Context);
+    names.retain(|name| !name.is_empty() && !with_points.contains(name) && !is_context(name));
     names.dedup();
     let is_told = !with_points.is_empty() && !names.is_empty();
     is_told.then(|| format!("Without data here: {}.", names.join(", ")))
@@ -207,7 +212,8 @@ impl Chart {
         let markers = self.markers(&layout, &mut space)?;
         let words = triangles(&mut space, self, &layout)?
             + &rules(&mut space, self, &layout)?
-            + &names(&mut space, self, &layout)?;
+            + &names(&mut space, self, &layout)?
+            + &end_names(self, &layout)?;
         let below = (PAD, layout.plot.bottom + BELOW + 8.0);
         let around = layout.legend.elements(layout.size, below)? + &self.texts(&layout)?;
         Ok((layout.size, [back, markers, words, around].concat()))

@@ -3,7 +3,7 @@
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
-use crate::render::chart::{Chart, Style};
+use crate::render::chart::{Chart, Naming, Series, Style};
 use crate::render::script::{width, wrap};
 use plotters::element::Circle;
 use plotters::prelude::{Color, RGBColor};
@@ -177,7 +177,10 @@ impl Legend {
     /// The legend of the series that have something drawn, within so many pixels.
     pub fn of(chart: &Chart, looks: &[Look], is_drawn: impl Fn(usize) -> bool, room: f64) -> Self {
         let mut seen: Vec<(Look, &str)> = Vec::new();
-        for (place, (series, look)) in chart.series.iter().zip(looks).enumerate() {
+        let in_legend = |series: &Series| chart.naming == Naming::Legend && series.style != Style::Context;
+        for (place, (series, look)) in
+            chart.series.iter().zip(looks).enumerate().filter(|(_, (one, _))| in_legend(one))
+        {
             let entry = (*look, series.name.as_str());
             if is_drawn(place) && !series.name.is_empty() && !seen.contains(&entry) {
                 seen.push(entry);

@@ -5,6 +5,7 @@
 
 mod axis;
 mod draw;
+mod ends;
 mod looks;
 mod multiples;
 mod svg;
@@ -36,8 +37,22 @@ pub struct Chart {
     pub triangles: Vec<SlopeTriangle>,
     /// Names written beside single points.
     pub names: Vec<PointName>,
+    /// Where the names of series stand.
+    pub naming: Naming,
     /// Width of the figure and height of the plot.
     pub size: Size,
+}
+
+/// Where the names of series stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Naming {
+    /// In a legend below the plot.
+    #[default]
+    Legend,
+    /// Right of the plot, at the ends of their lines.
+    Ends,
+    /// Shown when one points at a line: another figure has their colours.
+    Hover,
 }
 
 impl Chart {
@@ -53,6 +68,7 @@ impl Chart {
             rules: Vec::new(),
             triangles: Vec::new(),
             names: Vec::new(),
+            naming: Naming::default(),
             size: Size::default(),
         }
     }

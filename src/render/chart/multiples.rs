@@ -65,7 +65,7 @@ impl Chart {
 
 /// Whether a series takes a colour: theory is dark, and what has no name has no entry in the legend.
 fn is_counted(series: &Series) -> bool {
-    series.style != Style::Theory && !series.name.is_empty()
+    !matches!(series.style, Style::Theory | Style::Context) && !series.name.is_empty()
 }
 
 /// Panels side by side, row by row: the size of the whole and its elements.

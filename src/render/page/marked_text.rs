@@ -1,4 +1,5 @@
 //! Lightly marked text, taken apart and written as HTML and Markdown.
+use crate::case::method_words::method_words;
 use crate::render::escape::{html, markdown, markdown_target, plain_html};
 
 /// The paragraphs of a text, each on one line.
@@ -31,7 +32,7 @@ struct Format {
 
 const HTML: Format = Format {
     text: html,
-    code: |code| format!("<code>{}</code>", plain_html(code)),
+    code: html_code,
     strong: ["<strong>", "</strong>"],
     stressed: ["<em>", "</em>"],
     link: |words, target| format!("<a href=\"{}\">{words}</a>", plain_html(target)),
@@ -46,6 +47,15 @@ const MARKDOWN: Format = Format {
         format!("[{words}]({})", markdown_target(target).replace('<', "%3C").replace('>', "%3E"))
     },
 };
+
+/// A word of code; the name of a method explains itself when one points at it.
+pub(crate) fn html_code(code: &str) -> String {
+    let code_html = format!("<code>{}</code>", plain_html(code));
+    match method_words(code) {
+        Some(words) => format!("<abbr title=\"{}\">{code_html}</abbr>", plain_html(&words)),
+        None => code_html,
+    }
+}
 
 /// Marked text as HTML.
 pub(crate) fn to_html(text: &str) -> String {

@@ -4,7 +4,7 @@
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
-mod marked_text;
+pub(crate) mod marked_text;
 mod writers;
 
 pub use writers::{render_html, render_markdown};

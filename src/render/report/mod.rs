@@ -73,8 +73,11 @@ impl<'a> StudyResults<'a> {
         self
     }
 
-    /// Cases of the study that have no record.
+    /// Cases of the study that have no record. A race leaves out what nobody needs any more.
     pub fn left_out(&self) -> usize {
+        if self.study.is_race {
+            return 0;
+        }
         self.study.planned.len().saturating_sub(self.records.len())
     }
 

@@ -1,8 +1,10 @@
 //! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
 
+use crate::case::method_words::method_words;
 use crate::render::escape::{
     csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
 };
+use crate::render::page::marked_text::html_code;
 use crate::render::table::{Align, Cell, Table, marked};
 use crate::render::{RenderError, number};
 use std::fmt::Write as _;
@@ -94,7 +96,13 @@ impl Table {
         for column in &self.columns {
             let unit = column.unit.as_ref().map(|unit| format!(" <small>{}</small>", html(unit)));
             let (class, unit) = (class(column.align), unit.unwrap_or_default());
-            let _ = write!(out, "<th scope=\"col\" class=\"{class}\">{}{unit}</th>", html(&column.header));
+            let head = match method_words(&column.header) {
+                Some(words) => {
+                    format!("<abbr title=\"{}\">{}</abbr>", plain_html(&words), html(&column.header))
+                }
+                None => html(&column.header),
+            };
+            let _ = write!(out, "<th scope=\"col\" class=\"{class}\">{head}{unit}</th>");
         }
         out.push_str("</tr>\n</thead>\n<tbody>\n");
         for row in &self.rows {
@@ -218,7 +226,7 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
 
 fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
-        (Cell::Code(name), _) => format!("<code>{}</code>", plain_html(name)),
+        (Cell::Code(name), _) => html_code(name),
         (Cell::Text(text), _) => html(text),
         (Cell::Link { words, target }, _) => {
             format!("<a href=\"{}\">{}</a>", plain_html(target), html(words))

@@ -78,7 +78,9 @@ impl Checker<'_> {
         }
         let mut keys = Vec::new();
         for key in Key::of("sweep") {
-            if let Some(value) = entry.and_then(|entry| entry.value(key.name, base.scene)) {
+            if let Some(value) =
+                entry.filter(|_| key.name == "method").map(|entry| Value::Method(entry.method()))
+            {
                 let place = table.inputs.span(key.name).unwrap_or(start.clone());
                 keys.extend(
                     self.entered(value, place, base.scene).map(|value| SweptKey { key, values: vec![value] }),

@@ -13,12 +13,13 @@ use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
-use crate::judge::race::RaceRow;
+use crate::judge::race::RaceFindings;
 use crate::record::Record;
+use crate::record::calibration::{calibrate, calibration_csv};
 use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_rebuildable;
-use crate::render::answers::{Answers, Making, answer_page};
+use crate::render::answers::{Answers, Making, answer_page, matrix_page};
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::pages::{index_page, study_page};
@@ -53,6 +54,9 @@ pub struct Arguments {
     /// Cases at the same time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     jobs: Option<u64>,
+    /// Write what counted work costs on this machine, measured by the records of the race
+    #[arg(long, value_name = "FILE", hide = true)]
+    calibrate: Option<PathBuf>,
     #[command(flatten)]
     trust: TrustArguments,
 }
@@ -69,6 +73,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         arguments.trust.mark(&mut studies, &chosen);
         run_missing(&studies, arguments)?
     };
+    if let Some(file) = &arguments.calibrate {
+        let of_race = studies.iter().zip(&reports).filter(|(study, _)| study.is_race);
+        let records: Vec<Record> = of_race.flat_map(|(_, report)| report.records.iter().cloned()).collect();
+        write_page(file, &calibration_csv(&calibrate(&records)))?;
+    }
     let with_records: Vec<(&Study, &RunReport)> =
         studies.iter().zip(&reports).filter(|(_, report)| !report.records.is_empty()).collect();
     let results = with_records
@@ -100,12 +109,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(trust::end_with(tally, if is_whole { Exit::Pass } else { Exit::CaseFailed }))
 }
 
-/// The cases that a report runs of a study. Of the race only those of the CI tier where no study is named: the whole of
-/// it takes as long as everything else, and `report race` runs it.
-fn selected(study: &Study, is_named: bool) -> Study {
+/// The cases that a report runs of a study. Of the race all of them, whatever the tier: it has one budget, so that its
+/// sentences are the same on every page.
+fn selected(study: &Study) -> Study {
     let mut selected = study.clone();
-    if study.is_race && !is_named {
-        selected.planned.retain(|planned| planned.tier <= Tier::Ci);
+    if study.is_race {
+        selected.planned.iter_mut().for_each(|planned| planned.tier = Tier::Smoke);
     }
     selected
 }
@@ -120,8 +129,7 @@ fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<R
     // A page shows what there is and says what made it; a gate runs it again.
     let whole = RunOptions::whole(tier, jobs_of(arguments.jobs));
     let options = RunOptions { resume: true, keep_unproven: true, ..whole };
-    let is_named = !arguments.studies.names_none();
-    let chosen: Vec<Study> = studies.iter().map(|study| selected(study, is_named)).collect();
+    let chosen: Vec<Study> = studies.iter().map(selected).collect();
     let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, None)?;
     refuse_unfinished(&reports)?;
     for ((study, chosen), report) in studies.iter().zip(&chosen).zip(&mut reports) {
@@ -149,7 +157,7 @@ fn add_finished(study: &Study, report: &mut RunReport, records: &Path) {
 
 /// The tier that a study is judged by: the whole of it, unless it has the records of the CI tier and none beyond.
 fn tier_of(study: &Study, report: &RunReport) -> Tier {
-    let is_of_ci = report.records.len() == study.cases(Tier::Ci).len();
+    let is_of_ci = !study.is_race && report.records.len() == study.cases(Tier::Ci).len();
     if is_of_ci && report.records.len() < study.cases(Tier::Full).len() { Tier::Ci } else { Tier::Full }
 }
 
@@ -228,24 +236,34 @@ fn write_files(
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
     write_both(&studies, "index", "README", &index_page(results))?;
-    let rows: Vec<RaceRow<'_>> =
-        results.iter().filter_map(|one| RaceRow::of(one.study, one.records)).collect();
-    if !rows.is_empty() {
-        write_page(&out.join("tables/race.csv"), &race::whole_table(&rows).to_plain_csv()?)?;
+    let findings = RaceFindings::from_studies(results.iter().map(|one| (one.study, one.records)));
+    if let Some(findings) = &findings {
+        let tables = out.join("tables");
+        write_page(&tables.join("race.csv"), &race::whole_table(findings).to_plain_csv()?)?;
+        write_page(&tables.join("profile.csv"), &race::profile_table(findings).to_plain_csv()?)?;
+        write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(findings)? + "\n"))?;
     }
-
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, making: &making, race: &rows };
+    let answers = Answers { results, changes, making: &making, race: findings.as_ref() };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
-    let readme = results.iter().fold(render_markdown(&front)?, |text, one| match path_from(out, &one.file) {
-        Some(file) => {
-            text.replace(&format!("](studies/{}.md)", slug(&one.study.name)), &format!("]({file})"))
-        }
-        None => text,
-    });
-    write_page(&out.join("README.md"), &readme)?;
+    write_page(&out.join("README.md"), &linked_to_files(&render_markdown(&front)?, out, results))?;
+    if let Some(findings) = &findings {
+        let page = matrix_page(findings);
+        write_both(out, "race", "race", &page)?;
+        write_page(&out.join("race.md"), &linked_to_files(&render_markdown(&page)?, out, results))?;
+    }
     Ok(out.join("index.html"))
+}
+
+/// A page whose links to pages of studies lead to their files, where both are below the current folder.
+fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> String {
+    results.iter().fold(page.to_owned(), |text, one| {
+        let Some(file) = path_from(out, &one.file) else { return text };
+        let name = slug(&one.study.name);
+        let text = text.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
+        text.replace(&format!("](studies/{name}.md#figure-{name}-race-all)"), &format!("]({file})"))
+    })
 }
 
 /// The pages of a study with their figures and tables.
@@ -314,17 +332,12 @@ mod tests {
     }
 
     #[test]
-    fn of_a_race_that_is_not_named_the_ci_tier_is_run_and_of_all_else_the_whole() {
+    fn the_race_is_run_whole_at_every_tier_and_of_all_else_what_the_tier_says() {
         let (mut study, _) = study();
-        for (is_race, is_named, count) in
-            [(false, false, 6), (false, true, 6), (true, false, 3), (true, true, 6)]
-        {
-            study.is_race = is_race;
-            assert_eq!(selected(&study, is_named).planned.len(), count, "{is_race} {is_named}");
-        }
+        let run = |study: &Study| Tier::ALL.map(|tier| selected(study).cases(tier).len());
+        assert_eq!(run(&study), [1, 3, 6]);
         study.is_race = true;
-        let run: Vec<usize> = selected(&study, false).planned.iter().map(|one| one.case.cells).collect();
-        assert_eq!(run, [5, 6, 7]);
+        assert_eq!(run(&study), [6; 3]);
     }
 
     #[test]

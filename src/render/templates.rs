@@ -1,0 +1,34 @@
+//! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
+
+use crate::render::number;
+use minijinja::value::Serde;
+use minijinja::{Environment, UndefinedBehavior, Value};
+use serde::Serialize;
+
+/// The templates by their names.
+const TEMPLATES: [(&str, &str); 3] = [
+    ("paper", include_str!("../../templates/paper.md")),
+    ("race-answers", include_str!("../../templates/race-answers.md")),
+    ("race-limits", include_str!("../../templates/race-limits.md")),
+];
+
+/// An environment that knows every template and the filters that all share.
+pub(crate) fn environment() -> Environment<'static> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.add_filter("percent", |share: f64| number::rounded_percent(share));
+    environment.add_filter("signed_percent", |share: f64| {
+        let sign = if share < 0.0 { "−" } else { "+" };
+        format!("{sign}{:.1} %", 100.0 * share.abs())
+    });
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text).expect("a test renders every template");
+    }
+    environment
+}
+
+/// A template filled with findings: lightly marked paragraphs.
+pub(crate) fn render(environment: &Environment<'_>, name: &str, findings: &impl Serialize) -> String {
+    let template = environment.get_template(name).expect("a name of this program");
+    template.render(Value::from(Serde(findings))).expect("a test renders every branch")
+}
