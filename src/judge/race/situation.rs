@@ -15,7 +15,7 @@ use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::{Class, Classification};
-use oedometer_mpm::critical_step::formula;
+use oedometer_mpm::integrate::critical_step::formula;
 use oedometer_mpm::method::Configuration;
 use oedometer_mpm::scene::SceneKind;
 use schemars::JsonSchema;
