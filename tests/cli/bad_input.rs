@@ -145,7 +145,6 @@ fn impossible_materials_are_refused_with_what_is_possible() {
         ("water_bulk_modulus = 2.2", ["no liquid has a bulk modulus of 2.2 Pa", "like \"2.2 GPa\""]),
         ("law = \"linaer\"", ["no law is called `linaer`", "did you mean `linear`?"]),
         ("continuity = \"exact\"", ["no continuity is called `exact`", "`conservative`"]),
-        ("conductivity_mean = \"chord\"", ["at small strain the conductivity is uniform", "large strain"]),
     ] {
         let told = refused_with("porosity = 0.3", line);
         assert_says(&told, &parts);

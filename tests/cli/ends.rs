@@ -115,7 +115,7 @@ fn a_job_list_goes_on_where_its_results_are() {
 
 #[test]
 fn all_names_are_listed_under_their_headings() {
-    let told = call(place().path(), &["list"]);
+    let told = call(place().path(), &["list", "--all"]);
     assert_eq!((told.code, told.err.as_str()), (0, ""));
     let mut sections: Vec<(&str, Vec<(&str, &str)>)> = Vec::new();
     for line in told.out.lines() {

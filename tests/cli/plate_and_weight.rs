@@ -40,7 +40,6 @@ fn what_a_slab_or_a_weight_cannot_have_is_refused_in_sentences() {
         (&["mandel", "--set", "column.self_weight=true"][..], "the soil of `mandel` has no weight"),
         (&["single-mode", "--set", "column.self_weight=true"], "self-weight belongs to the scenes"),
         (&["mandel", "--set", "column.dimensions=1"], "`mandel` has two dimensions"),
-        (&["mandel", "--method", "TL-GIMP-SRI"], "a rigid plate holds the nodes of a face"),
         (&["mandel", "--set", "layer.length=1.0"], "the scene `mandel` has no [layer]"),
     ] {
         let (code, _, err) = told(&[&["solve"], arguments, &["--cells", "10"]].concat());

@@ -284,7 +284,6 @@ fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
             keep(&|place| place < 80),
             "time-missing: there is no T_v = 0.2 (and 1 more)",
         ),
-        ("rows twice", [&whole[..], &whole[155..]].concat(), "rows-repeated: at T_v = 0.5, 5 of 45 rows"),
     ] {
         let asked = ["--time-factor", "0.05,0.1,0.2,0.5"];
         let told = score(at, &rows, &asked);

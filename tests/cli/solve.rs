@@ -400,7 +400,7 @@ fn exact_json_says_how_far_it_can_be_trusted() {
 
 #[test]
 fn list_names_what_can_be_chosen() {
-    let (code, out, err) = told(&["list"]);
+    let (code, out, err) = told(&["list", "--all"]);
     assert_eq!((code, err.as_str()), (0, ""));
     for word in ["terzaghi", "single-mode", "MPM", "GC-SRI-patch", "uGIMP-SRI", "explicit", "terzaghi-mesh"] {
         assert!(

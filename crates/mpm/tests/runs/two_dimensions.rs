@@ -5,7 +5,7 @@ use crate::run;
 use oedometer_exact::parameters::Base;
 use oedometer_mpm::kernel::body::Problem;
 use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::{Basis, Method};
+use oedometer_mpm::method::{Basis, Memory, Method};
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};
 use oedometer_mpm::run::results::snapshot::Snapshot;
@@ -103,7 +103,9 @@ fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
 
 #[test]
 fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
-    for method in methods() {
+    // Points of a column share the length of their cell (`-cells`); domains that turn do so in the column alone.
+    let turns = |method: &Method| method.basis == Basis::Cpdi && method.memory == Memory::Cells;
+    for method in methods().into_iter().filter(|method| !turns(method)) {
         let (column, plane) = both(SceneKind::XieLeo, method, 2e5, 0.03, Drag::Implicit);
         assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
     }
