@@ -10,7 +10,8 @@ fn files() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign")
 }
 
-/// Scores files of a seed column against Terzaghi's series for incompressible water, with a mapping or without.
+/// Scores files of a seed column against Terzaghi's series, for incompressible water but in `formats/`, with a mapping or
+/// without.
 fn score(mapping: &str, arguments: &[&str]) -> Told {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("map.toml");
@@ -20,6 +21,8 @@ fn score(mapping: &str, arguments: &[&str]) -> Told {
     let named = if mapping.is_empty() { vec![] } else { vec!["--mapping", &path] };
     let scene = if arguments.contains(&"--scene") {
         &[][..]
+    } else if arguments[0].starts_with("formats/") {
+        &["--scene", "terzaghi", "--reference", "terzaghi"]
     } else {
         &["--scene", "terzaghi", "--reference", "terzaghi-incompressible"]
     };

@@ -78,7 +78,7 @@ mod tests {
         let all = correlations(&names);
         let of = |a: &str, b: &str| {
             let pair = all.iter().find(|one| one.situations == [a, b]);
-            pair.map(|one| (1e12 * one.value).round() * 1e-12)
+            pair.map(|one| (1e12 * one.value).round() / 1e12)
         };
         assert_eq!((of("rising", "twice"), of("rising", "falling")), (Some(1.0), Some(-1.0)));
         assert_eq!(of("rising", "mixed"), Some(0.8));
