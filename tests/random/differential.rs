@@ -238,10 +238,10 @@ fn summary(compared: &[Compared]) -> (String, usize) {
         let growth: Vec<Pair> = case.errors().collect();
         errors += growth.len();
         better += growth.iter().filter(|pair| pair.growth() < 1.0 / GROWTH).count();
-        if let Some(worst) = growth.into_iter().max_by(|a, b| a.growth().total_cmp(&b.growth())) {
-            if !(worst.growth() <= GROWTH) {
-                grown.push((worst.growth(), worst.told(), command(worst.cells)));
-            }
+        if let Some(worst) = growth.into_iter().max_by(|a, b| a.growth().total_cmp(&b.growth()))
+            && !(worst.growth() <= GROWTH)
+        {
+            grown.push((worst.growth(), worst.told(), command(worst.cells)));
         }
         let orders_of: Vec<Pair> = case.orders().collect();
         orders += orders_of.len();

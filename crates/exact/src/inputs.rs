@@ -1,7 +1,7 @@
 //! Which keys of a study file each problem reads: what it does not read changes nothing, and is refused.
 //!
 //! Each problem lists its own as `INPUTS`, of the sets below and of what is its alone; [`ReferenceKind::inputs`]
-//! (crate::reference::ReferenceKind::inputs) joins them.
+//! (`crate::reference::ReferenceKind::inputs`) joins them.
 
 use crate::parameters::ShelfParameters;
 

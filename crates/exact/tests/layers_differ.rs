@@ -5,7 +5,7 @@ use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind};
 use oedometer_soil::material::Material;
 
-/// Thickness, E, ν, n, K_w and k of the layers from the base up.
+/// Thickness, E, ν, n, `K_w` and k of the layers from the base up.
 const LAYERS: [[f64; 6]; 3] = [
     [0.7, 3e6, 0.31, 0.42, 5e7, 2e-6],
     [0.4, 8e5, 0.12, 0.55, 9e6, 7e-8],

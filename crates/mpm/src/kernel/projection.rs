@@ -149,7 +149,7 @@ mod tests {
     use crate::scene::problem::column_problem;
     use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 
-    /// `1/(2G)` of the seed soil, 1/Pa: E = 1 MPa, ν = 1/4, G = 400 kPa.
+    /// `1/(2G)` of the seed soil, 1/Pa: E = 1 `MPa`, ν = 1/4, G = 400 kPa.
     const PARAMETER: f64 = 1.0 / 8e5;
 
     fn layer(name: &str) -> Body<2> {

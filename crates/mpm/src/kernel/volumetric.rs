@@ -85,10 +85,10 @@ impl<const D: usize> Body<D> {
     /// Coupling modulus `Q = K_w/n`, Pa, of a site: one over its storage.
     #[inline]
     pub(crate) fn coupling_of(&self, place: usize, porosity: f64) -> f64 {
-        if !self.is_layered() {
-            self.material.water_bulk_modulus / porosity
-        } else {
+        if self.is_layered() {
             1.0 / self.storage_of(place, porosity)
+        } else {
+            self.material.water_bulk_modulus / porosity
         }
     }
 
