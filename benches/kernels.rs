@@ -275,7 +275,8 @@ fn print_moving_table() {
 
 fn print_moving_costs<const D: usize>(problem: Problem<D>, points_per_cell: usize, cells: usize) {
     let ([step, passes @ ..], cycle) = moving_cost(problem);
-    let shown = |numbers: &[f64]| numbers.iter().map(|cost| format!("{cost:>14.1}")).collect::<String>();
+    let shown =
+        |numbers: &[f64]| numbers.iter().map(|cost| format!("{cost:>14.1}")).collect::<Vec<_>>().concat();
     println!("{D:>3}D{points_per_cell:>10}{cells:>7}{step:>8.1}{}{:>8.0}", shown(&passes), step / cycle);
     let bounds = OPERATIONS[D - 1].map(|operations| operations / PER_CYCLE * cycle);
     let bound: f64 = bounds.iter().sum();

@@ -49,7 +49,7 @@
 //! | 15 | large strain in general | `crates/exact/src/large_strain/diffusion.rs:coefficients` |
 //! | 16 | Mandel's slab | `crates/exact/src/mandel/sums.rs:sum`, `crates/exact/src/mandel/sums.rs:ratios` |
 //! | 17 | chord mean of the conductivity | `crates/mpm/src/kernel/chord_mean.rs:take_chord_drag`, `crates/soil/src/conductivity.rs:flow_potential` |
-//! | 18 | rigid plate | `crates/mpm/src/kernel/loaded_body.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
+//! | 18 | rigid plate | `crates/mpm/src/actions/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
 //! | 19 | own weight, free water | `crates/mpm/src/kernel/weighing_body.rs:add_weight` |
 //! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |
 //! | 21 | domains of water points | `crates/mpm/src/integrate/double_point/water_points.rs:take_domains` |

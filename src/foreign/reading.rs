@@ -147,9 +147,12 @@ fn unfit(case: &Case, sample: Sample, run: &Run) -> Option<String> {
         return Some(absent.sentence(when));
     }
     run.states.iter().enumerate().find_map(|(place, state)| {
-        let is_table = run.cells.is_none();
-        let other =
-            state.sets(sample).filter(|_| is_table).find_map(|(sample, set)| other_mesh(case, sample, set));
+        // Where a mesh is shown its nodes may be more, and its centres lie inside.
+        let may_be_another = |(sample, set): &(Sample, &SampledState)| {
+            run.cells.is_none() || *sample == Sample::Centres && are_on_a_face(case, set)
+        };
+        let mut sets = state.sets(sample).filter(may_be_another);
+        let other = sets.find_map(|(sample, set)| other_mesh(case, sample, set));
         let why = other.or_else(|| state.sets(sample).find_map(|(_, set)| beyond_the_load(case, set)))?;
         Some(format!("at {}, {why}", when(place)))
     })
@@ -187,6 +190,13 @@ fn other_mesh(case: &Case, sample: Sample, state: &SampledState) -> Option<Strin
             sample.name()
         )
     })
+}
+
+/// Whether a place lies on the base or the surface.
+fn are_on_a_face(case: &Case, state: &SampledState) -> bool {
+    let height = case.column.height;
+    let is_on = |place: &f64| place.abs().min((place - height).abs()) <= SAME_PLACE * height;
+    state.initial_height.iter().any(is_on)
 }
 
 /// Whether the files show a number of cells that is not that of the case.
@@ -408,6 +418,7 @@ mod tests {
         };
         let lacking = "there is no `p` at any time; to leave it out, call `score --without pressure`, or write `p = \"\"` to \
                        [columns] of a mapping";
+        let other_mesh = "the mesh of the result has 5 cells over the height, and the case asks for 4";
         let several =
             "the files hold 2 results, of different meshes or names: let the study's `result` name one";
         for (mapping, names, told) in [
@@ -422,15 +433,11 @@ mod tests {
                 "at T_v = 0.2, a pressure is 2.000e2 Pa, more than 100 times the load of 1 Pa",
             ),
             (&arrays, &["four-1.vtk", "six-1.vtk"], several),
-            (&arrays, &["five-1.vtk"], &stand("nodes", 6, 5)),
+            (&arrays, &["five-1.vtk"], other_mesh),
             (&centres, &["four-1.vtk"], &stand("centres", 5, 4)),
             (&arrays, &["bare-1.vtk"], lacking),
             // Points may stand at any number of heights, and cells are seen all the same.
-            (
-                &points,
-                &["five-1.vtk"],
-                "the mesh of the result has 5 cells over the height, and the case asks for 4",
-            ),
+            (&points, &["five-1.vtk"], other_mesh),
         ] {
             assert_eq!(read_as(&results, mapping, names).err().as_deref(), Some(told), "{names:?}");
         }

@@ -63,8 +63,8 @@ impl CsvText {
             Some(_) => None,
             None => {
                 let mark = comment.unwrap_or('#');
-                let above = comments.iter().rev().map(|line| line.trim_start().trim_start_matches(mark));
-                let named = above.filter_map(|line| names_of(line, columns)).next();
+                let mut above = comments.iter().rev().map(|line| line.trim_start().trim_start_matches(mark));
+                let named = above.find_map(|line| names_of(line, columns));
                 Some(named.unwrap_or_else(|| (1..=columns).map(|number| number.to_string()).collect()))
             }
         };
@@ -72,7 +72,7 @@ impl CsvText {
         let has_decimal_comma = dialect.has_decimal_comma;
         if dialect.delimiter != ' ' && !drops_header {
             let delimiter = u8::try_from(dialect.delimiter).unwrap_or(b',');
-            return Ok(Self { delimiter, has_decimal_comma, names, is_ended, text });
+            return Ok(Self { text, delimiter, has_decimal_comma, names, is_ended });
         }
         // One line for each, so that messages name the lines of the file.
         let mut rewritten = String::with_capacity(lossy.len());
@@ -94,13 +94,28 @@ impl CsvText {
     }
 }
 
+/// The line, from 1, of a record that begins at a byte of a text or below the comments and blank lines there.
+pub fn line_of_record(text: &[u8], byte: u64, comment: Option<char>) -> u64 {
+    let (before, record) =
+        text.split_at(usize::try_from(byte).map_or(text.len(), |byte| byte.min(text.len())));
+    let above = before.iter().filter(|letter| **letter == b'\n').count();
+    let record = String::from_utf8_lossy(record);
+    let is_skipped = |line: &&str| {
+        line.trim().is_empty() || comment.is_some_and(|mark| line.trim_start().starts_with(mark))
+    };
+    (above + record.lines().take_while(is_skipped).count() + 1) as u64
+}
+
 /// Names in a line, if there are as many as columns, whatever separates them.
 fn names_of(line: &str, columns: usize) -> Option<Vec<String>> {
     let split = |separator: char| {
         let dialect = Dialect { delimiter: separator, has_decimal_comma: false };
         let names: Vec<String> =
             dialect.split(line).iter().map(|name| name.trim().trim_matches('"').to_owned()).collect();
-        (names.len() == columns && names.iter().all(|name| !name.is_empty())).then_some(names)
+        // A line with separators is not the name of a single column.
+        let is_split = columns > 1 || !line.contains(&SEPARATORS[..3]);
+        let is_whole = names.len() == columns && names.iter().all(|name| !name.is_empty());
+        (is_split && is_whole).then_some(names)
     };
     SEPARATORS.into_iter().find_map(split)
 }
@@ -239,7 +254,8 @@ mod tests {
                 number_of(field, table.has_decimal_comma).map_or("?".to_owned(), |number| number.to_string())
             })
             .collect();
-        let line = row.position().map_or(0, csv::Position::line);
+        let byte = row.position().map_or(0, csv::Position::byte);
+        let line = line_of_record(&table.text, byte, Some('#'));
         Ok(format!("{} = {} in line {line}", names.join(" "), numbers.join(" ")))
     }
 

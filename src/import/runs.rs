@@ -55,10 +55,14 @@ pub fn files_of(arguments: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, ImportError>
             return Ok(vec![typed.clone()]);
         }
         let refused = |why: &str| ImportError::content(typed, why);
-        // Brackets are letters of a name.
-        let escaped = pattern.replace('[', "[[]");
-        let found = glob::glob(&escaped).map_err(|error| refused(error.msg))?;
-        let mut files: Vec<PathBuf> = found.flatten().filter(|path| path.is_file()).collect();
+        let matches = |pattern: &str| -> Result<Vec<PathBuf>, glob::PatternError> {
+            Ok(glob::glob(pattern)?.flatten().filter(|path| path.is_file()).collect())
+        };
+        let mut files = matches(&pattern).unwrap_or_default();
+        if files.is_empty() {
+            // Brackets may be letters of a name.
+            files = matches(&pattern.replace('[', "[[]")).map_err(|error| refused(error.msg))?;
+        }
         if files.is_empty() {
             return Err(refused("no file matches this pattern"));
         }
@@ -177,12 +181,15 @@ fn runs_of_arrays(
     readings.into_iter().map(|reading| reading.done(mapping, body)).collect()
 }
 
+/// What is done with a state: its time, its frame and how many there are.
+type TakeState<'a> = dyn FnMut(Option<f64>, &Frame, usize) -> Result<(), ImportError> + 'a;
+
 /// Hands over the states of a frame, with their time where its arrays run over times, and how many there are.
 fn each_time(
     step: &Step,
     frame: &Frame,
     mapping: &Mapping,
-    take: &mut dyn FnMut(Option<f64>, &Frame, usize) -> Result<(), ImportError>,
+    take: &mut TakeState<'_>,
 ) -> Result<(), ImportError> {
     let refused = |why: String| ImportError::content(&step.file, why);
     let times = times_in(frame, mapping);

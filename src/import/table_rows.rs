@@ -1,6 +1,6 @@
 //! Reads text tables by their declared layout as rows in SI.
 
-use crate::import::csv_text::{CsvText, number_of};
+use crate::import::csv_text::{CsvText, line_of_record, number_of};
 use crate::import::expected::left_out;
 use crate::import::mapping::units::{SettlementSeries, VerticalSense};
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
@@ -23,6 +23,7 @@ struct Table<'a> {
     header: csv::StringRecord,
     reader: csv::Reader<Cursor<Vec<u8>>>,
     line: csv::StringRecord,
+    comment: Option<char>,
     has_decimal_comma: bool,
     is_ended: bool,
 }
@@ -37,14 +38,22 @@ impl<'a> Table<'a> {
             .trim(csv::Trim::All)
             .has_headers(names.is_none())
             .from_reader(Cursor::new(text));
-        let header = match names {
-            Some(names) => csv::StringRecord::from(names),
-            None => {
-                let header = reader.headers();
-                header.map_err(|error| ImportError::content(path, error.to_string()))?.clone()
-            }
+        let comment = layout.comment;
+        let header = if let Some(names) = names {
+            csv::StringRecord::from(names)
+        } else {
+            let header = reader.headers();
+            header.map_err(|error| ImportError::content(path, error.to_string()))?.clone()
         };
-        Ok(Self { path, header, reader, line: csv::StringRecord::new(), has_decimal_comma, is_ended })
+        Ok(Self {
+            path,
+            header,
+            reader,
+            line: csv::StringRecord::new(),
+            comment,
+            has_decimal_comma,
+            is_ended,
+        })
     }
 
     /// The place of the first of several names, separated by `|`, that is a column.
@@ -72,7 +81,9 @@ impl<'a> Table<'a> {
     }
 
     fn error_in_line(&self, reason: String) -> ImportError {
-        ImportError::line(self.path, self.line.position().map_or(0, csv::Position::line), reason)
+        let byte = self.line.position().map_or(0, csv::Position::byte);
+        let line = line_of_record(self.reader.get_ref().get_ref(), byte, self.comment);
+        ImportError::line(self.path, line, reason)
     }
 
     /// Goes to the next line; false at the end.

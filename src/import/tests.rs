@@ -154,7 +154,6 @@ fn a_settlement_curve_has_its_sign_and_unit_and_tells_what_it_lacks() {
         (" }\nunits = { length = 'cm' }", "t,s\n60,25\n", [Some(-0.25), None]),
         (" }\nunits = { length = 'cm', displacement = 'mm' }", "t,s\n60,250\n", [Some(-0.25), None]),
         (" }", "t,s\n61,0.25\n", [None, None]),
-        (" }", "t,s\n", [None, None]),
     ] {
         let run = run(more, curve).unwrap_or_else(|told| panic!("{more}: {told}"));
         let curves: Vec<Option<f64>> = run.states.iter().map(|state| state.surface_displacement).collect();
@@ -171,6 +170,8 @@ fn a_settlement_curve_has_its_sign_and_unit_and_tells_what_it_lacks() {
         at("curve.csv").display()
     );
     assert_eq!(run(" }", "t,w\n60,0.25\n").err(), Some(lacking));
+    let empty = run(" }", "t,s\n").err();
+    assert!(empty.is_some_and(|told| told.ends_with("curve.csv: there are no rows")));
 }
 
 #[test]

@@ -629,7 +629,16 @@ mod tests {
         let found = [study("other", 0.2, Some(0.2)), one, study("gone", 0.25, None)];
         let tables = comparison_tables(&found, ["A", "B"]);
         let titles: Vec<&str> = tables.iter().map(|table| table.title.as_str()).collect();
-        assert_eq!(titles, ["A → B", "inputs that differ", "what moved", "orders and classes that changed"]);
+        assert_eq!(
+            titles,
+            [
+                "A → B",
+                "cases that went and came",
+                "inputs that differ",
+                "what moved",
+                "orders and classes that changed"
+            ]
+        );
         let told: Vec<Vec<String>> = tables.iter().map(csv).collect();
         assert_eq!(
             told[0],
@@ -639,15 +648,16 @@ mod tests {
                 "other,same,same,2,0,0,0,,,"
             ]
         );
-        assert_eq!(told[1], ["timed,porosity,,0.4,3"]);
+        assert_eq!(told[1], ["gone,GIMP cells=8,"]);
+        assert_eq!(told[2], ["timed,porosity,,0.4,3"]);
         let value = "GIMP cells=8 | pressure points l2 terzaghi T_v=1";
         let moved = "\"1 value moved, in 1 case; largest relative change 2.50e-1\"";
         let gone = "\"1 value is no longer measured, in 1 case\"";
         assert_eq!(
-            told[2],
+            told[3],
             [format!("timed,{moved},{value},7.50e-1,1.00e0"), format!("gone,{gone},{value},2.50e-1,")]
         );
-        assert_eq!(told[3], ["timed,its series,2.0,asymptotic,,divergent"]);
+        assert_eq!(told[4], ["timed,its series,2.0,asymptotic,,divergent"]);
         assert_eq!(
             comparison_tables(&found[..1], ["A", "B"]).len(),
             1,

@@ -42,7 +42,7 @@ pub fn rounded_percent(share: f64) -> String {
 /// A size with two digits: `0.012`, `3.4`, `160`.
 pub fn short(value: f64) -> String {
     finite(value, |v| match v.abs() {
-        a if a == 0.0 => "0".to_owned(),
+        0.0 => "0".to_owned(),
         a if a < 0.000_995 => format!("{v:.1e}"),
         a if a < 0.00995 => format!("{v:.4}"),
         a if a < 0.0995 => format!("{v:.3}"),

@@ -626,7 +626,7 @@ mod tests {
                     let set = format!("{key}={value}");
                     // The same material as the log-linear one, in other words.
                     if set != "material.law=engineering"
-                        && given(kind, &[set.clone()]).is_some_and(|numbers| numbers == usual)
+                        && given(kind, std::slice::from_ref(&set)).is_some_and(|numbers| numbers == usual)
                     {
                         told.push(format!("{kind}: {set}"));
                     }

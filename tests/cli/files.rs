@@ -2,6 +2,7 @@
 //! (numpy on the values of the file), and files that are not read, by name.
 
 use crate::program::{Told, call};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -145,8 +146,12 @@ fn a_table_with_a_column_per_probe_is_the_same_turned_by_hand() {
     for line in text.lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
         for place in 0..11 {
-            long +=
-                &format!("{};{place};{}\n", fields[0].replace('.', ","), fields[1 + place].replace('.', ","));
+            let _ = writeln!(
+                long,
+                "{};{place};{}",
+                fields[0].replace('.', ","),
+                fields[1 + place].replace('.', ",")
+            );
         }
     }
     let folder = TempDir::new().expect("a folder");

@@ -239,14 +239,16 @@ fn summary(compared: &[Compared]) -> (String, usize) {
         errors += growth.len();
         better += growth.iter().filter(|pair| pair.growth() < 1.0 / GROWTH).count();
         if let Some(worst) = growth.into_iter().max_by(|a, b| a.growth().total_cmp(&b.growth()))
-            && !(worst.growth() <= GROWTH)
+            && (worst.growth().is_nan() || worst.growth() > GROWTH)
         {
             grown.push((worst.growth(), worst.told(), command(worst.cells)));
         }
         let orders_of: Vec<Pair> = case.orders().collect();
         orders += orders_of.len();
         let worst = orders_of.into_iter().max_by(|a, b| (a.then - a.now).total_cmp(&(b.then - b.now)));
-        if let Some(worst) = worst.filter(|pair| !(pair.then - pair.now <= LOST_ORDER)) {
+        if let Some(worst) =
+            worst.filter(|pair| (pair.then - pair.now).is_nan() || pair.then - pair.now > LOST_ORDER)
+        {
             lost.push((worst.then - worst.now, worst.told(), command(worst.cells)));
         }
         for [then, now] in case.answers.iter().filter(|[then, now]| then.is_ok() && now.is_ok()) {

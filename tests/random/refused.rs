@@ -3,6 +3,7 @@
 use crate::options::Options;
 use oedometer_mpm::method::Method;
 use std::collections::BTreeMap;
+use std::io::Write as _;
 
 /// Every so many products are asked: a number without a factor in common with any of the choices'.
 const EVERY: usize = 7;
@@ -65,9 +66,10 @@ fn refused_products_of_choices_are_few() {
     let mut reasons: Vec<_> = reasons.into_iter().collect();
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let share = f64::from(refused) / f64::from(asked);
-    println!("refused: {refused} of {asked} products of choices, {share:.3}");
+    let mut out = std::io::stdout();
+    let _ = writeln!(out, "refused: {refused} of {asked} products of choices, {share:.3}");
     for (reason, count) in reasons {
-        println!("{count:6} {reason}");
+        let _ = writeln!(out, "{count:6} {reason}");
     }
     assert!(share < MOST, "{share:.3} of the products of choices are refused");
 }

@@ -370,13 +370,12 @@ impl State<'_> {
         let above = y - layer.bottom;
         let below_face = if at + 1 == column.layers.len() { depth } else { layer.thickness - above };
         match &self.form {
-            Form::Start if depth <= 0.0 => 0.0,
+            Form::Start | Form::Transform(_) if depth <= 0.0 => 0.0,
             Form::Start => layer.undrained(),
             Form::Series { terms, seconds } => self.over_modes(*terms, *seconds, |mode, root| {
                 let (amplitude, phase) = mode.waves[at];
                 amplitude * elementary::cos(phase + root * layer.slowness() * above)
             }),
-            Form::Transform(_) if depth <= 0.0 => 0.0,
             Form::Transform(images) => {
                 layer.undrained()
                     + images.iter().map(|image| image.pressure(layer, at, [above, below_face])).sum::<f64>()

@@ -54,7 +54,10 @@ pub fn head(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     open(path)?.take(most as u64).read_to_end(&mut bytes)?;
     if bytes.starts_with(GZIP) {
         let mut unpacked = Vec::new();
-        MultiGzDecoder::new(open(path)?).take(most as u64).read_to_end(&mut unpacked).map_err(damaged)?;
+        MultiGzDecoder::new(open(path)?)
+            .take(most as u64)
+            .read_to_end(&mut unpacked)
+            .map_err(|error| damaged(&error))?;
         bytes = unpacked;
     }
     // A cut inside a pair is no damage here.
@@ -82,14 +85,14 @@ fn unpacked(packed: &[u8], most: u64) -> io::Result<Vec<u8>> {
     let (any, per_byte) = UNPACKED;
     let most = most.min(any + per_byte * packed.len() as u64);
     let mut bytes = Vec::new();
-    MultiGzDecoder::new(packed).take(most + 1).read_to_end(&mut bytes).map_err(damaged)?;
+    MultiGzDecoder::new(packed).take(most + 1).read_to_end(&mut bytes).map_err(|error| damaged(&error))?;
     if bytes.len() as u64 > most {
         return Err(refused(format!("it unpacks to more than {most} bytes: unpack it first")));
     }
     Ok(bytes)
 }
 
-fn damaged(error: io::Error) -> io::Error {
+fn damaged(error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("its gzip is damaged or cut: {error}"))
 }
 

@@ -312,7 +312,7 @@ fn single_state(step: &Step, wanted: Wanted) -> Result<Frame, ImportError> {
     if step.others.is_empty() {
         return state_of(&step.file, step.kind, wanted, 0, &mut None);
     }
-    let files = [&[step.file.clone()], &step.others[..]].concat();
+    let files = [std::slice::from_ref(&step.file), &step.others[..]].concat();
     parts_of(&step.named, files, true, wanted, 1, &mut None)
 }
 

@@ -279,7 +279,7 @@ mod tests {
     }
 
     /// Values of `p` and `y` at each time, or what is asked.
-    fn told(y: &[usize], p: &[usize], times: &[f64], p_use: Use) -> Result<Vec<[Vec<f64>; 2]>, String> {
+    fn told(y: &[usize], p: &[usize], times: &[f64], p_use: &Use) -> Result<Vec<[Vec<f64>; 2]>, String> {
         let frame = Frame { arrays: vec![array("y", y), array("p", p)], ..Frame::default() };
         let used = |array: &Array| Some(if array.name == "p" { p_use.clone() } else { Use::default() });
         let states = states_by_time(&frame, times, &used)?;
@@ -305,38 +305,38 @@ mod tests {
             (&[2, 3], &[2, 3], first(&[3.0, 4.0, 5.0], &[3.0, 4.0, 5.0])),
             (&[3], &[3, 2, 2], first(&[0.0, 1.0, 2.0], &[2.0, 3.0, 6.0, 7.0, 10.0, 11.0])),
         ] {
-            let found = told(y, p, &two, quantity()).expect("two states");
+            let found = told(y, p, &two, &quantity()).expect("two states");
             assert_eq!(found.len(), 2, "{p:?}");
             assert_eq!(found[1], at_second, "{y:?} {p:?}");
         }
         // A table: each row has its time.
-        let rows = told(&[4], &[4], &[1.0, 2.0, 1.0, 2.0], quantity()).expect("a table");
+        let rows = told(&[4], &[4], &[1.0, 2.0, 1.0, 2.0], &quantity()).expect("a table");
         assert_eq!(rows[0], first(&[0.0, 2.0], &[0.0, 2.0]));
         assert_eq!(rows[1], first(&[1.0, 3.0], &[1.0, 3.0]));
         let component = Use { has_component: true, ..quantity() };
-        let rows = told(&[4], &[4, 2], &[1.0, 2.0, 1.0, 2.0], component.clone()).expect("a table of vectors");
+        let rows = told(&[4], &[4, 2], &[1.0, 2.0, 1.0, 2.0], &component).expect("a table of vectors");
         assert_eq!(rows[1], first(&[1.0, 3.0], &[2.0, 3.0, 6.0, 7.0]));
         // Where both have it, the mapping must say.
         for (shape, usage) in [(&[2, 2][..], quantity()), (&[2, 2], component), (&[2, 2, 2], quantity())] {
-            let asked = told(&[2], shape, &two, usage);
+            let asked = told(&[2], shape, &two, &usage);
             assert!(
                 asked.as_ref().is_err_and(|why| why.contains("`p[time, node]` or `p[node, time]`")),
                 "{asked:?}"
             );
         }
         let said = |axes: &[Axis]| Use { axes: Some(axes.to_vec()), ..quantity() };
-        let by_time = told(&[2], &[2, 2], &two, said(&[Axis::Time, Axis::Place])).expect("said");
+        let by_time = told(&[2], &[2, 2], &two, &said(&[Axis::Time, Axis::Place])).expect("said");
         assert_eq!(by_time[1], first(&[0.0, 1.0], &[2.0, 3.0]));
-        let by_place = told(&[2], &[2, 2], &two, said(&[Axis::Place, Axis::Time])).expect("said");
+        let by_place = told(&[2], &[2, 2], &two, &said(&[Axis::Place, Axis::Time])).expect("said");
         assert_eq!(by_place[1], first(&[0.0, 1.0], &[1.0, 3.0]));
         // And where none has it, nothing is cut.
         for shape in [&[3][..], &[3, 4], &[1]] {
-            let none = told(&[3], shape, &two, quantity());
+            let none = told(&[3], shape, &two, &quantity());
             assert!(none.as_ref().is_err_and(|why| why.contains("there are 2 times")), "{none:?}");
         }
-        let wrong = told(&[3], &[3, 2], &two, said(&[Axis::Time, Axis::Place]));
+        let wrong = told(&[3], &[3, 2], &two, &said(&[Axis::Time, Axis::Place]));
         assert!(wrong.is_err_and(|why| why.contains("3 x 2")));
-        let single = told(&[3], &[1, 3], &[5.0], quantity()).expect("a single time");
+        let single = told(&[3], &[1, 3], &[5.0], &quantity()).expect("a single time");
         assert_eq!(single, [first(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0])]);
     }
 }

@@ -168,8 +168,8 @@ fn time_in(grid: Node) -> Result<Vec<f64>, String> {
     if !(0.0..=MOST_TIMES as f64).contains(&count) {
         return Err(format!("a slab of {count} times is invalid"));
     }
-    Ok((0_u32..)
-        .map(f64::from)
+    Ok((0..=MOST_TIMES)
+        .map(|place| place as f64)
         .take_while(|place| *place < count)
         .map(|place| start + step * place)
         .collect())

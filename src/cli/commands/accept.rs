@@ -232,7 +232,10 @@ mod tests {
         }
         assert_eq!(with_lost_orders("why", &[]), "why");
         let lost = change(behaviour("asymptotic", Some(2.0)), behaviour("asymptotic", Some(1.0)));
-        assert_eq!(with_lost_orders("why", &[lost.clone()]), "why (orders lost: s cells=… 2.00 → 1.00)");
+        assert_eq!(
+            with_lost_orders("why", std::slice::from_ref(&lost)),
+            "why (orders lost: s cells=… 2.00 → 1.00)"
+        );
         assert!(with_lost_orders("why", &vec![lost; 7]).ends_with("; and 2 more)"));
     }
 
@@ -252,7 +255,7 @@ mod tests {
             }
         }
         let studies = [study];
-        let found = tell_changes(&studies, &[now.clone()], &[Some(before)]).expect("compared");
+        let found = tell_changes(&studies, std::slice::from_ref(&now), &[Some(before)]).expect("compared");
         assert!(found[0].iter().any(|one| one.series.contains("pressure points l2")), "{found:?}");
         assert_eq!(tell_changes(&studies, &[now], &[None]).expect("compared"), [vec![]]);
     }

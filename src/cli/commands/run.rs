@@ -29,6 +29,7 @@ pub const DEFAULT_RESULTS: &str = "out";
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub struct Arguments {
     #[command(flatten)]
     studies: StudyArguments,

@@ -283,8 +283,19 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
         assert_eq!(format!("{}: {}", found.kind.name(), found.reason), told);
     }
     assert_eq!(of_process(&run(ended(), &[4], &[]), &solver), None);
-    // The errors of a run are repeated, and its output only where there are none.
-    let plain = run(ended(), &[], &[]);
+}
+
+#[test]
+fn errors_of_a_run_are_repeated_and_its_output_only_where_there_are_none() {
+    let plain = Finished {
+        ending: Ending::TimedOut,
+        seconds: 1.0,
+        cpu_seconds: None,
+        peak_memory: None,
+        output: "out\n".to_owned(),
+        errors: String::new(),
+        found: crate::foreign::started_processes::Found { seen: Vec::new(), lives_on: Vec::new() },
+    };
     assert_eq!(kept_words(&plain), ["out"]);
     let wrong = Finished { errors: "1\n2\n3\n4\n5\n".to_owned(), ..plain };
     assert_eq!(kept_words(&wrong), ["1", "2", "3", "4", "5"]);

@@ -77,8 +77,8 @@ fn between<'a>(lines: &'a [f64], gaps: &'a [f64]) -> impl Iterator<Item = Bare> 
         .map(|place| Bare { from: lines[place], to: lines[place + 1] })
 }
 
-/// Whether a gap is larger than its neighbours and than most around it. Of a pattern, like the centres of triangles at thirds
-/// of each row of cells, a third of the gaps around are as large.
+/// Whether a gap is larger than its neighbours and than most around it. In the pattern of the centres of triangles, at thirds
+/// of each row of cells, a third of the gaps around, and a gap itself, are twice as large as their neighbours.
 fn is_bare(gaps: &[f64], place: usize) -> bool {
     let next = place + 1..(place + 2).min(gaps.len());
     let neighbours = gaps[place.saturating_sub(1)..place].iter().chain(&gaps[next]);
@@ -88,7 +88,8 @@ fn is_bare(gaps: &[f64], place: usize) -> bool {
     let mut around: Vec<f64> = gaps[before].iter().chain(&gaps[after]).copied().collect();
     around.sort_by(f64::total_cmp);
     let as_large = around.iter().filter(|gap| **gap >= (1.0 - SAME_SPACING) * gaps[place]).count();
-    if 3 * as_large >= around.len() {
+    let is_third = 3 * (as_large + 1) > around.len() && gaps[place] <= (2.0 + SAME_SPACING) * largest;
+    if is_third || 3 * as_large >= around.len() {
         return false;
     }
     let Some(median) = around.get(around.len() / 2) else { return false };

@@ -388,6 +388,7 @@ mod tests {
         let notes = |scene: SceneKind, errors: &[ErrorRow], horizontal: &[f64]| {
             let states = vec![SampledState {
                 horizontal_displacement: horizontal.to_vec(),
+                initial_height: vec![0.5],
                 ..SampledState::default()
             }];
             let run = Run { states, ..Run::default() };

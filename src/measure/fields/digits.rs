@@ -11,7 +11,7 @@ const MOST: usize = 12;
 /// How near a number must lie to its rounded self, relative, after a change of units.
 const NEAR: f64 = 1e-13;
 
-/// Units in which single precision is looked for: a field may have been read in kPa, MPa or mm.
+/// Units in which single precision is looked for: a field may have been read in kilopascals or millimetres.
 const UNITS: [f64; 5] = [1.0, 1e3, 1e6, 1e-3, 1e-6];
 
 /// Half a unit in the last digit of the numbers of a field over the numbers, where all are written with few decimal
@@ -33,13 +33,19 @@ pub fn half_a_digit(values: &[f64]) -> f64 {
         different.iter().all(|value| is_near(*value, rounded(*value)))
     };
     let is_single = |unit: &f64| {
-        let rounded = |value: f64| f64::from((value / unit) as f32) * unit;
+        let rounded = |value: f64| single(value / unit) * unit;
         different.iter().all(|value| is_near(*value, rounded(*value)))
     };
     if let Some(digits) = (1..=MOST).find(|digits| has_digits(*digits)) {
         return 0.5 * powi(10.0, 1 - i32::try_from(digits).unwrap_or(0));
     }
     if UNITS.iter().any(is_single) { 0.5 * f64::from(f32::EPSILON) } else { 0.0 }
+}
+
+/// A value in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "to lose digits is what it is for")]
+fn single(value: f64) -> f64 {
+    f64::from(value as f32)
 }
 
 #[cfg(test)]
@@ -53,8 +59,8 @@ mod tests {
             |of: &dyn Fn(f64) -> f64| half_a_digit(&exact.iter().map(|value| of(*value)).collect::<Vec<_>>());
         let written = |value: f64| -> f64 { format!("{value:.5e}").parse().expect("a number") };
         assert_eq!(map(&|value| value), 0.0);
-        assert_eq!(map(&|value| f64::from(value as f32)), 0.5 * f64::from(f32::EPSILON));
-        assert_eq!(map(&|value| -1e3 * f64::from((value / 1e3) as f32)), 0.5 * f64::from(f32::EPSILON));
+        assert_eq!(map(&single), 0.5 * f64::from(f32::EPSILON));
+        assert_eq!(map(&|value| -1e3 * single(value / 1e3)), 0.5 * f64::from(f32::EPSILON));
         assert_eq!(map(&written), 0.5e-5);
         assert_eq!(map(&|value| 1e3 * written(value / 1e3)), 0.5e-5);
         // Three decimals of numbers up to 9.9e4 are eight digits.

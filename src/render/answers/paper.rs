@@ -215,7 +215,7 @@ mod tests {
             panic!("three")
         };
         assert!(
-            printed.contains("settlement +7.7 %, +6.8 %, +3.2 %, −2.7 %, −3.9 % and pressure 7 %, 11 %, 21 %, 36 %, 41 % at")
+            printed.contains("settlement +7.8 %, +7.7 %, +6.8 %, +3.2 %, −2.7 %, −3.9 % and pressure 3 %, 7 %, 11 %, 20 %, 36 %, 41 % at")
                 && printed.contains("final settlement −6.9 %."),
             "{printed}"
         );

@@ -130,7 +130,6 @@ impl Checker<'_> {
 
     /// The time factor that an expectation names, by itself or by a time; none, with a complaint, where it names
     /// neither, both, or a time that is several time factors.
-    #[expect(clippy::ref_option, reason = "as the file of a study has it")]
     pub(super) fn expected_time_factor(
         &mut self,
         [factor, time]: [&Typed<f64>; 2],
@@ -193,8 +192,11 @@ mod tests {
             error
                 .diagnostics
                 .iter()
-                .map(|one| format!("{}; {}\n", one.message, one.help.clone().unwrap_or_default()))
-                .collect()
+                .map(|complaint| {
+                    format!("{}; {}", complaint.message, complaint.help.clone().unwrap_or_default())
+                })
+                .collect::<Vec<_>>()
+                .join("\n")
         })
     }
 

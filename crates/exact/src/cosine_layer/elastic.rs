@@ -232,8 +232,10 @@ impl ElasticSolution {
         let terms = self.coefficients.iter().zip(sensitivities).enumerate();
         let rounded = terms.map(|(index, (&coefficient, sensitivity))| {
             let term = self.term(index, y);
-            let stress = term.vertical_slope * (2.0 * self.constants.shear);
-            let sizes = [term.pressure, self.strain(&term) * self.constants.lame, stress];
+            let Constants { lame, shear, wave_number, .. } = self.constants;
+            // The volume strain is a difference: near ν = ½ it has lost the digits of its parts.
+            let along = term.horizontal * (wave_number * lame);
+            let sizes = [term.pressure, along, term.vertical_slope * (lame + 2.0 * shear)];
             let size: f64 = sizes.into_iter().map(elementary::modulus).sum();
             size * (ROUND_OFF_OF_TERM * elementary::modulus(coefficient) + sensitivity)
         });

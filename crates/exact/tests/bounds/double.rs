@@ -133,10 +133,10 @@ impl Double {
             sum
         };
         let (sine, cosine) = (series(reduced, 1), series(ONE, 0));
-        match turns.rem_euclid(4.0) as u8 {
-            0 => [sine, cosine],
-            1 => [cosine, -sine],
-            2 => [-sine, -cosine],
+        match turns.rem_euclid(4.0) {
+            0.0 => [sine, cosine],
+            1.0 => [cosine, -sine],
+            2.0 => [-sine, -cosine],
             _ => [-cosine, sine],
         }
     }

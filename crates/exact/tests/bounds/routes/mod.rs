@@ -6,7 +6,7 @@ pub mod layer;
 pub mod waves;
 
 use crate::double::{Double, ONE, d};
-use oedometer_exact::ColumnParameters;
+use oedometer_exact::{ColumnParameters, ShelfParameters};
 
 /// A soil of Biot's equations.
 #[derive(Clone, Copy)]
@@ -42,7 +42,7 @@ impl Biot {
 
     /// Incompressible water and grains.
     pub fn incompressible(column: &ColumnParameters) -> Self {
-        let soil = Self::of(&ColumnParameters { shelf: Default::default(), ..*column });
+        let soil = Self::of(&ColumnParameters { shelf: ShelfParameters::default(), ..*column });
         Self { fixed: d(0.0), alpha: ONE, storage: ONE / soil.modulus, ..soil }
     }
 
