@@ -89,60 +89,21 @@ pub fn run_studies_thinned(
     let of_studies = studies.iter().zip(&runners).zip(selected);
     let mut begun: Vec<Begun<'_>> =
         of_studies.map(|((study, runner), cases)| begun(study, runner, cases, options)).collect();
-    let mut ladders: Vec<Ladder<'_>> = begun
-        .iter()
-        .enumerate()
-        .flat_map(|(study, begun)| begun.ladders(study, studies[study].study))
-        .collect();
-    // The longest first, so that the last ones to finish are short.
-    let work_of = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
-    let work_of_all =
-        |jobs: &mut dyn Iterator<Item = &Job<'_>>| jobs.map(|job| work_of(job)).fold(0, u64::saturating_add);
-    ladders.sort_by_cached_key(|ladder| Reverse(work_of_all(&mut ladder.jobs.iter())));
-    let jobs = || ladders.iter().flat_map(|ladder| &ladder.jobs);
+    let ladders = &longest_first(studies, &begun);
     let threads = options.jobs.clamp(1, ladders.len().max(1));
-    let longest = |job: &Job<'_>| LongestCase {
-        study: studies[job.study].study.name.clone(),
-        case: job.case.clone(),
-        case_seconds: studies[job.study].study.case_seconds,
-    };
-    tell(Progress::Planned {
-        cases: jobs().count(),
-        resumed: begun.iter().map(|begun| begun.report.resumed).sum(),
-        work: work_of_all(&mut jobs()),
-        jobs: threads,
-        longest: jobs().max_by_key(|job| work_of(job)).map(|job| Box::new(longest(job))),
-    });
+    let resumed = begun.iter().map(|begun| begun.report.resumed).sum();
+    tell(planned(studies, ladders, resumed, threads));
     let (next, stopped) = (&AtomicUsize::new(0), &AtomicBool::new(false));
-    let (ladders, runners) = (&ladders, &runners);
+    let climbing = &Climbing { studies, runners: &runners, alone: threads == 1, stopped, thin, tell };
     let (send, endings) = channel();
     std::thread::scope(|scope| {
         for _ in 0..threads {
             let send = send.clone();
             scope.spawn(move || {
                 while let Some(ladder) = ladders.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let mut refinement = ladder.begun.clone();
-                    for job in &ladder.jobs {
-                        let (runner, selected) = (&runners[job.study], &studies[job.study]);
-                        let store = selected.store.filter(|_| selected.is_kept);
-                        let is_over = stopped.load(Ordering::Relaxed) || stop::is_asked();
-                        let mut ending = if refinement.as_ref().is_some_and(|known| !known.wants(job.case)) {
-                            tell(Progress::Advanced(work_of_seconds(
-                                runner.study().estimated_seconds(job.case),
-                            )));
-                            Ending::Spared
-                        } else if is_over {
-                            Ending::Left
-                        } else {
-                            run_and_keep(runner, store, job.case, threads == 1, stopped, tell)
-                                .map_or(Ending::Left, Ending::Ended)
-                        };
-                        if let Ending::Ended(Ok(record)) = &mut ending {
-                            refinement.iter_mut().for_each(|known| known.add(record));
-                            thin(runner.study(), record);
-                        }
-                        let _ = send.send((*job, ending));
-                    }
+                    climbing.climb(ladder, |job, ending| {
+                        let _ = send.send((job, ending));
+                    });
                 }
             });
         }
@@ -158,17 +119,82 @@ pub fn run_studies_thinned(
             cases[job.place].1 = outcome.filter(|outcome| outcome.is_err() || !options.only_on_disk);
         }
     });
-    let report_of = |Begun { cases, mut report }: Begun<'_>| {
-        for outcome in cases.into_iter().filter_map(|(_, outcome)| outcome) {
-            match outcome {
-                Ok(_) if options.only_on_disk => {}
-                Ok(record) => report.records.push(*record),
-                Err(error) => report.errors.push(*error),
-            }
-        }
-        report
+    begun.into_iter().map(|begun| begun.into_report(options)).collect()
+}
+
+/// Work of jobs by the estimates of their studies, ns.
+fn work_of<'a>(studies: &[Selected<'_>], jobs: impl Iterator<Item = &'a Job<'a>>) -> u64 {
+    let work = |job: &Job<'_>| work_of_seconds(studies[job.study].study.estimated_seconds(job.case));
+    jobs.map(work).fold(0, u64::saturating_add)
+}
+
+/// What is left to run, the longest first, so that the last ones to finish are short.
+fn longest_first<'a>(studies: &[Selected<'_>], begun: &[Begun<'a>]) -> Vec<Ladder<'a>> {
+    let of_study = |(study, begun): (usize, &Begun<'a>)| begun.ladders(study, studies[study].study);
+    let mut ladders: Vec<Ladder<'a>> = begun.iter().enumerate().flat_map(of_study).collect();
+    ladders.sort_by_cached_key(|ladder| Reverse(work_of(studies, ladder.jobs.iter())));
+    ladders
+}
+
+/// What a run says of itself before it begins.
+fn planned(studies: &[Selected<'_>], ladders: &[Ladder<'_>], resumed: usize, threads: usize) -> Progress {
+    let jobs = || ladders.iter().flat_map(|ladder| &ladder.jobs);
+    let longest = |job: &Job<'_>| LongestCase {
+        study: studies[job.study].study.name.clone(),
+        case: job.case.clone(),
+        case_seconds: studies[job.study].study.case_seconds,
     };
-    begun.into_iter().map(report_of).collect()
+    Progress::Planned {
+        cases: jobs().count(),
+        resumed,
+        work: work_of(studies, jobs()),
+        jobs: threads,
+        longest: jobs()
+            .max_by_key(|job| work_of(studies, std::iter::once(*job)))
+            .map(|job| Box::new(longest(job))),
+    }
+}
+
+/// What every thread knows that runs ladders.
+struct Climbing<'a> {
+    studies: &'a [Selected<'a>],
+    runners: &'a [CaseRunner<'a>],
+    /// Whether a case has the machine for itself.
+    alone: bool,
+    stopped: &'a AtomicBool,
+    thin: &'a (dyn Fn(&Study, &mut Record) + Sync),
+    tell: &'a (dyn Fn(Progress) + Sync),
+}
+
+impl Climbing<'_> {
+    /// Runs the cases of a ladder until no finer mesh is wanted.
+    fn climb<'a>(&self, ladder: &Ladder<'a>, end: impl Fn(Job<'a>, Ending)) {
+        let mut refinement = ladder.begun.clone();
+        for job in &ladder.jobs {
+            let is_wanted = refinement.as_ref().is_none_or(|known| known.wants(job.case));
+            let mut ending = if is_wanted { self.run(*job) } else { self.spare(*job) };
+            if let Ending::Ended(Ok(record)) = &mut ending {
+                refinement.iter_mut().for_each(|known| known.add(record));
+                (self.thin)(self.studies[job.study].study, record);
+            }
+            end(*job, ending);
+        }
+    }
+
+    fn run(&self, job: Job<'_>) -> Ending {
+        if self.stopped.load(Ordering::Relaxed) || stop::is_asked() {
+            return Ending::Left;
+        }
+        let selected = &self.studies[job.study];
+        let store = selected.store.filter(|_| selected.is_kept);
+        run_and_keep(&self.runners[job.study], store, job.case, self.alone, self.stopped, self.tell)
+            .map_or(Ending::Left, Ending::Ended)
+    }
+
+    fn spare(&self, job: Job<'_>) -> Ending {
+        (self.tell)(Progress::Advanced(work_of(self.studies, std::iter::once(&job))));
+        Ending::Spared
+    }
 }
 
 /// The cases of each study that are to be run: its tier, or a share of all of them together.
@@ -239,6 +265,19 @@ impl<'a> Begun<'a> {
             Ladder { jobs, begun: Some(begun) }
         };
         ladders(&cases).into_iter().map(ladder).filter(|ladder| !ladder.jobs.is_empty()).collect()
+    }
+
+    /// The report of a study whose cases have ended.
+    fn into_report(self, options: &RunOptions) -> RunReport {
+        let mut report = self.report;
+        for outcome in self.cases.into_iter().filter_map(|(_, outcome)| outcome) {
+            match outcome {
+                Ok(_) if options.only_on_disk => {}
+                Ok(record) => report.records.push(*record),
+                Err(error) => report.errors.push(*error),
+            }
+        }
+        report
     }
 }
 

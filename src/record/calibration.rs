@@ -6,6 +6,7 @@ use crate::case::work_estimate::StepKind;
 use crate::record::{Record, Status};
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::sync::LazyLock;
 
 /// The committed calibration, which `oedometer report race --calibrate FILE` makes.
@@ -26,7 +27,10 @@ pub struct Rate {
     pub runs: usize,
 }
 
-static RATES: LazyLock<BTreeMap<(String, String, usize), (f64, f64)>> = LazyLock::new(|| {
+/// Set-up, s, and factor by method, kind of step and dimensions.
+type Rates = BTreeMap<(String, String, usize), (f64, f64)>;
+
+static RATES: LazyLock<Rates> = LazyLock::new(|| {
     let line = |line: &str| {
         let fields: Vec<&str> = line.split(',').collect();
         let [method, kind, dimensions, setup, factor, ..] = fields[..] else { return None };
@@ -111,7 +115,7 @@ fn rate_of(samples: &[(f64, f64)]) -> Rate {
 pub fn calibration_csv(rates: &BTreeMap<WorkKind, Rate>) -> String {
     let mut out = "method,kind,dimensions,setup_seconds,factor,scatter,runs\n".to_owned();
     for ((method, kind, dimensions), Rate { setup, factor, scatter, runs }) in rates {
-        out += &format!("{method},{kind},{dimensions},{setup:.3e},{factor:.3},{scatter:.3},{runs}\n");
+        let _ = writeln!(out, "{method},{kind},{dimensions},{setup:.3e},{factor:.3},{scatter:.3},{runs}");
     }
     out
 }

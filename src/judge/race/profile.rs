@@ -3,6 +3,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// Costs up to this multiple of the best are as good: what the calibration scatters.
 pub const TIE: f64 = 1.1;
@@ -127,7 +128,8 @@ impl CostTable {
         Profile { contender: self.contenders[contender].clone(), steps }
     }
 
-    /// The contenders by their score, the best first; of equals the one that comes first.
+    /// The contenders by their score, the best first; of equals the one that arrives more often, then the one that comes
+    /// first. Shares are sums of weights: equal to round-off is equal.
     pub fn ranked(&self) -> Vec<Choice> {
         let choice = |profile: Profile| Choice {
             reached: profile.steps.last().map_or(0.0, |(_, share)| *share),
@@ -135,7 +137,8 @@ impl CostTable {
             method: profile.contender,
         };
         let mut all: Vec<Choice> = self.profiles().into_iter().map(choice).collect();
-        all.sort_by(|a, b| b.score().total_cmp(&a.score()));
+        let rank = |choice: &Choice| [choice.score(), choice.reached].map(|share| (1e9 * share).round());
+        all.sort_by(|a, b| rank(b).partial_cmp(&rank(a)).unwrap_or(Ordering::Equal));
         all
     }
 
@@ -218,6 +221,9 @@ mod tests {
         let half = table(&[("p", [NEVER; 3]), ("q", [1.0, 2.0, 2.1])]);
         assert_eq!(half.best(), Some(Choice { method: "a".to_owned(), reached: 0.5, within_two: 0.5 }));
         assert_eq!(half.profiles()[1].share(2.0), 0.5);
+        // Of equal scores the one that arrives more often: b 1 and 0, a twice 0.5.
+        let tied = table(&[("p", [1.0, 5.0, NEVER]), ("q", [NEVER, 5.0, 1.0])]);
+        assert_eq!(tied.best(), Some(Choice { method: "b".to_owned(), reached: 1.0, within_two: 0.0 }));
         assert_eq!(half.profiles()[2].share(2.0), 0.0);
     }
 }

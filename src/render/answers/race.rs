@@ -385,7 +385,7 @@ fn matrix(
         let mut row = vec![Cell::Link { words: situation.title.clone(), target: page_of(&situation.study) }];
         row.extend(situation.entries.iter().map(|entry| {
             let (shade, words, value) = show(situation, entry);
-            let reason = entry.reason.as_ref().map_or("arrives", |reason| reason.words());
+            let reason = entry.reason.as_ref().map_or("arrives", Reason::words);
             let detail = if entry.detail.is_empty() { String::new() } else { format!(", {}", entry.detail) };
             let title = format!("{}: {reason}{detail}", entry.contender);
             Cell::Shaded { shade, words, value, title, target: target.clone() }
