@@ -174,7 +174,9 @@ impl Climbing<'_> {
             let is_wanted = refinement.as_ref().is_none_or(|known| known.wants(job.case));
             let mut ending = if is_wanted { self.run(*job) } else { self.spare(*job) };
             if let Ending::Ended(Ok(record)) = &mut ending {
-                refinement.iter_mut().for_each(|known| known.add(record));
+                if let Some(known) = &mut refinement {
+                    known.add(record);
+                }
                 (self.thin)(self.studies[job.study].study, record);
             }
             end(*job, ending);

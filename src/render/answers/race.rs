@@ -373,10 +373,10 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
     }
 }
 
-fn matrix(
-    situations: &[Situation],
-    show: &dyn Fn(&Situation, &Entry) -> (Shade, String, Option<f64>),
-) -> Table {
+/// A cell of the matrix: its shade, its words, and its number where there is one.
+type Shown = (Shade, String, Option<f64>);
+
+fn matrix(situations: &[Situation], show: &dyn Fn(&Situation, &Entry) -> Shown) -> Table {
     let names = situations.first().map_or(&[][..], |one| &one.entries);
     let mut heads = columns("situation");
     heads.extend(names.iter().map(|entry| TableColumn::number(entry.contender.as_str())));
@@ -395,7 +395,7 @@ fn matrix(
     Table::of("", heads, rows)
 }
 
-fn cost_cell(situation: &Situation, entry: &Entry) -> (Shade, String, Option<f64>) {
+fn cost_cell(situation: &Situation, entry: &Entry) -> Shown {
     let least = situation.entries.iter().filter_map(|one| one.costs[1]).min_by(f64::total_cmp);
     match (entry.costs[1], least) {
         (Some(cost), Some(least)) => (Shade::of_ratio(cost / least / 1.1), number::seconds(cost), Some(cost)),
@@ -404,7 +404,7 @@ fn cost_cell(situation: &Situation, entry: &Entry) -> (Shade, String, Option<f64
     }
 }
 
-fn error_cell(situation: &Situation, entry: &Entry) -> (Shade, String, Option<f64>) {
+fn error_cell(situation: &Situation, entry: &Entry) -> Shown {
     let least = situation.entries.iter().filter_map(Entry::largest_error).min_by(f64::total_cmp);
     match (entry.largest_error(), least) {
         (Some(error), Some(least)) => {
