@@ -460,7 +460,8 @@ fn commands_of_scripts(text: &str) -> Vec<Vec<String>> {
         let line = line.split(" #").next().unwrap_or_default().replace(" && ", "\n");
         let of =
             |one: &str| Some(one.split_once("oedometer ")?.1.split_whitespace().map(str::to_owned).collect());
-        line.lines().filter(|one| !one.contains("cargo install")).filter_map(of).collect::<Vec<Vec<String>>>()
+        let is_cargos = |one: &str| one.contains("cargo install") || one.contains("cargo test");
+        line.lines().filter(|one| !is_cargos(one)).filter_map(of).collect::<Vec<Vec<String>>>()
     };
     lines.flat_map(command).collect()
 }
