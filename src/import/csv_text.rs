@@ -98,12 +98,12 @@ impl CsvText {
 pub fn line_of_record(text: &[u8], byte: u64, comment: Option<char>) -> u64 {
     let (before, record) =
         text.split_at(usize::try_from(byte).map_or(text.len(), |byte| byte.min(text.len())));
-    let above = before.iter().filter(|letter| **letter == b'\n').count();
+    let above = before.split(|letter| *letter == b'\n').count();
     let record = String::from_utf8_lossy(record);
     let is_skipped = |line: &&str| {
         line.trim().is_empty() || comment.is_some_and(|mark| line.trim_start().starts_with(mark))
     };
-    (above + record.lines().take_while(is_skipped).count() + 1) as u64
+    (above + record.lines().take_while(is_skipped).count()) as u64
 }
 
 /// Names in a line, if there are as many as columns, whatever separates them.
