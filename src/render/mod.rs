@@ -6,6 +6,7 @@ mod chart;
 pub mod checks;
 pub mod escape;
 pub(crate) mod history_tables;
+pub(crate) mod marked_text;
 mod number;
 pub mod page;
 pub mod report;

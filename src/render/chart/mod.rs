@@ -43,6 +43,9 @@ pub struct Chart {
     pub size: Size,
 }
 
+/// Values along an axis closer than this, relative, are one.
+const SAME_PLACE: f64 = 1e-6;
+
 /// Where the names of series stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Naming {
@@ -78,6 +81,21 @@ impl Chart {
     pub fn with(mut self, series: Series) -> Self {
         self.series.push(series);
         self
+    }
+
+    /// Whether it shows more than a sentence would: a field, or three values that do not all stand above each other.
+    pub fn is_telling(&self) -> bool {
+        let has_results = self.series.iter().any(|series| series.style != Style::Theory);
+        let shown = self.series.iter().filter(|series| !has_results || series.style != Style::Theory);
+        let points = shown.flat_map(|series| &series.points);
+        let drawn = points
+            .filter(|(x, y)| drawable(*x, self.x.scale).is_ok() && drawable(*y, self.y.scale).is_ok())
+            .map(|(x, _)| *x);
+        let [least, most] = drawn
+            .clone()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)]);
+        self.field.is_some()
+            || (drawn.count() >= 3 && most - least > SAME_PLACE * least.abs().max(most.abs()))
     }
 
     /// The data as CSV with all digits: one row per point of a series, and one per cell of a field, at its middle.

@@ -4,7 +4,6 @@
 //! Running text is lightly marked: `` `code` ``, `**strong**`, `*stressed*`, `[words](target)`; a
 //! blank line ends a paragraph. Symbols such as `T_v` get their subscripts by themselves.
 
-pub(crate) mod marked_text;
 mod writers;
 
 pub use writers::{render_html, render_markdown};
@@ -34,6 +33,19 @@ pub struct Page {
     pub filter: Option<String>,
     /// Name of its files. If set, the page links to its tables and figures as files.
     pub files: Option<String>,
+}
+
+impl Page {
+    /// The page without figures that show no more than a sentence would, and without sections that have nothing else.
+    #[must_use]
+    pub fn without_idle_figures(mut self) -> Self {
+        for section in &mut self.sections {
+            let blocks = std::mem::take(&mut section.blocks);
+            section.blocks = blocks.into_iter().filter_map(Block::without_idle_figures).collect();
+        }
+        self.sections.retain(|section| !section.blocks.is_empty());
+        self
+    }
 }
 
 /// A highlighted sentence, lightly marked.
@@ -85,6 +97,34 @@ pub enum Block {
         /// The hidden blocks.
         blocks: Vec<Block>,
     },
+}
+
+impl Block {
+    /// The block without figures that show no more than a sentence would; none where nothing is left.
+    fn without_idle_figures(self) -> Option<Self> {
+        let all = |blocks: Vec<Self>| -> Vec<Self> {
+            blocks.into_iter().filter_map(Self::without_idle_figures).collect()
+        };
+        match self {
+            Self::Figure(figure) => figure.chart.is_telling().then_some(Self::Figure(figure)),
+            Self::Figures(mut figures) => {
+                figures.retain(|figure| figure.chart.is_telling());
+                (!figures.is_empty()).then_some(Self::Figures(figures))
+            }
+            Self::Switch(mut choices) => {
+                for (_, blocks) in &mut choices {
+                    *blocks = all(std::mem::take(blocks));
+                }
+                choices.retain(|(_, blocks)| !blocks.is_empty());
+                (!choices.is_empty()).then_some(Self::Switch(choices))
+            }
+            Self::Details { summary, blocks } => {
+                let blocks = all(blocks);
+                (!blocks.is_empty()).then_some(Self::Details { summary, blocks })
+            }
+            other => Some(other),
+        }
+    }
 }
 
 /// A figure on a page.

@@ -1,7 +1,7 @@
 //! Writers of pages: one self-contained HTML file, and GitHub's Markdown with the figures beside it. The frame around the
 //! sections of HTML is in `page.html` and `page.css`.
 
-use crate::render::page::marked_text::{paragraphs, to_html, to_markdown};
+use crate::render::marked_text::{paragraphs, to_html, to_markdown};
 use crate::render::page::{Block, Figure, Page, Section, check, shown_rows, table_file};
 use crate::render::table::{Mood, Table};
 use crate::render::{RenderError, escape};

@@ -21,9 +21,22 @@ pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
         return Vec::new();
     }
     let mut blocks = vec![Block::Heading("Which method is cheapest where".to_owned())];
-    let mut figures = vec![results.figure("cheapest method", winners(&soils), CAPTION)];
+    let cheapest = winners(&soils);
+    let mut figures = Vec::new();
+    match cheapest.series.as_slice() {
+        // A map of one colour is a sentence.
+        [only] => blocks.push(Block::Paragraph(format!(
+            "Cheapest to {} % on each of {} soils: `{}`.",
+            100.0 * TOLERANCE,
+            soils.len(),
+            only.name
+        ))),
+        _ => figures.push(results.figure("cheapest method", cheapest, CAPTION)),
+    }
     figures.extend(broken(&soils).map(|chart| results.figure("where runs break", chart, CAPTION_OF_BROKEN)));
-    blocks.push(Block::Figures(figures));
+    if !figures.is_empty() {
+        blocks.push(Block::Figures(figures));
+    }
     blocks.push(Block::Table(methods_table(&soils)));
     blocks
 }
@@ -61,24 +74,34 @@ fn winners(soils: &[MappedSoil]) -> Chart {
     map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
 }
 
-/// Soils where runs of an integrator failed, beside those where none did; `None` if no run failed at all.
+/// The integrator of a method and integrator.
+fn integrator_of(name: &str) -> &str {
+    name.rsplit_once(' ').map_or(name, |(_, integrator)| integrator)
+}
+
+/// Soils where runs of an integrator failed, beside those where one was not tried and those where none failed; `None` if no
+/// run failed at all.
 fn broken(soils: &[MappedSoil]) -> Option<Chart> {
     if soils.iter().all(|soil| soil.broken.is_empty()) {
         return None;
     }
-    let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
+    let integrators = |names: &[String]| -> BTreeSet<String> {
+        names.iter().map(|name| integrator_of(name).to_owned()).collect()
+    };
+    let of_study: BTreeSet<String> = soils.iter().flat_map(|soil| integrators(&soil.tried)).collect();
+    let mut names: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for soil in soils {
-        if soil.broken.is_empty() {
-            names.entry(NONE_FAILED).or_default().push(place(soil));
+        let (tried, broken) = (integrators(&soil.tried), integrators(&soil.broken));
+        let untried = of_study.difference(&tried).map(|integrator| format!("{integrator}: not tried"));
+        let mut states: Vec<String> = broken.into_iter().chain(untried).collect();
+        if states.is_empty() {
+            states.push(NONE_FAILED.to_owned());
         }
-        for name in &soil.broken {
-            let integrator = name.rsplit_once(' ').map_or(name.as_str(), |(_, integrator)| integrator);
-            let places = names.entry(integrator).or_default();
-            if places.last() != Some(&place(soil)) {
-                places.push(place(soil));
-            }
+        for state in states {
+            names.entry(state).or_default().push(place(soil));
         }
     }
+    let names = names.iter().map(|(name, places)| (name.as_str(), places.clone())).collect();
     Some(map_of("Where runs break".to_owned(), names))
 }
 
@@ -208,7 +231,7 @@ mod tests {
                 &["B explicit", "C explicit"],
             ),
             soil(places[2], vec![a, way("B explicit", 20, 14.0)], &["C explicit"]),
-            soil(places[3], Vec::new(), &["A implicit"]),
+            MappedSoil { tried: names(&["A implicit"]), ..soil(places[3], Vec::new(), &["A implicit"]) },
         ];
         let series = |chart: &Chart| {
             chart.series.iter().map(|one| (one.name.clone(), one.points.clone())).collect::<Vec<_>>()
@@ -221,7 +244,12 @@ mod tests {
         let chart = broken(&soils).expect("some broke");
         assert_eq!(
             series(&chart),
-            [at("explicit", &[1, 2]), at("implicit", &[3]), at("no run failed", &[0])]
+            [
+                at("explicit", &[1, 2]),
+                at("explicit: not tried", &[3]),
+                at("implicit", &[3]),
+                at("no run failed", &[0])
+            ]
         );
         assert_eq!(broken(&soils[..1]), None);
         let table = methods_table(&soils);
@@ -229,8 +257,8 @@ mod tests {
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         // Medians of 1, 3, 1 and of 4, 1, 7 times the cheapest; of 8, 10, 8 and of 16, 4, 20 cells.
         assert_eq!(shown[0], ["A implicit", "4", "3", "2", "1", "8", "1"]);
-        assert_eq!(shown[1], ["B explicit", "4", "3", "1", "4", "16", "1"]);
-        assert_eq!(shown[2], ["C explicit", "4", "0", "0", "–", "–", "2"]);
+        assert_eq!(shown[1], ["B explicit", "3", "3", "1", "4", "16", "1"]);
+        assert_eq!(shown[2], ["C explicit", "3", "0", "0", "–", "–", "2"]);
         assert_eq!(table.notes, ["of 4 soils"]);
     }
 }

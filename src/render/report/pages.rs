@@ -1,19 +1,22 @@
 //! The page of one study: its question, expectations, figures, tables and checks; and the page that lists all studies.
 
+use crate::case::Task;
 use crate::case::quantity::Norm;
 use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::labels::{capitalised, grouped};
+use crate::render::report::labels::grouped;
 use crate::render::report::{
     StudyResults, checks, cost, layer, maps, race, refinement, setting, theory_lines,
 };
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::{runs, uncertainties};
+use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_exact::exact_error::ExactError;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -24,7 +27,7 @@ pub fn index_page(results: &[StudyResults<'_>]) -> Page {
     let mut sections: Vec<Section> = groups
         .iter()
         .map(|(name, studies)| Section {
-            heading: capitalised(name),
+            heading: (*name).to_owned(),
             id: slug(name),
             mood: Some(Mood::of(studies.iter().all(|one| one.passes()))),
             blocks: vec![Block::Table(studies_table(studies))],
@@ -34,9 +37,9 @@ pub fn index_page(results: &[StudyResults<'_>]) -> Page {
     Page {
         title: "All studies".to_owned(),
         lead: format!(
-            "{} in {}. [The answers](../index.html).",
+            "{} of {}. [The answers](../index.html).",
             count_of(results.len(), "study", "studies"),
-            count_of(groups.len(), "group", "groups")
+            count_of(groups.len(), "question", "questions")
         ),
         sections,
         footer: footer(results),
@@ -46,16 +49,40 @@ pub fn index_page(results: &[StudyResults<'_>]) -> Page {
     }
 }
 
-/// Studies by the first word of their names where several share it; the others together, last.
-fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(&'b str, Vec<&'b StudyResults<'a>>)> {
-    let first_word = |one: &'b StudyResults<'_>| one.study.name.split('-').next().unwrap_or_default();
-    let mut groups = grouped(results.iter().map(|one| {
-        let word = first_word(one);
-        let is_shared = results.iter().filter(|other| first_word(other) == word).count() > 1;
-        (if is_shared { word } else { "other" }, one)
-    }));
-    groups.sort_by_key(|(name, _)| *name == "other");
+/// Studies by what they ask, in the order of a reader's questions.
+fn groups<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<(&'static str, Vec<&'b StudyResults<'a>>)> {
+    let mut groups = grouped(results.iter().map(|one| (question(one.study), one)));
+    groups.sort_by_key(|(asked, _)| QUESTIONS.iter().position(|question| question == asked));
     groups
+}
+
+/// What studies ask, in the order in which they are listed.
+const QUESTIONS: [&str; 9] = [
+    "Which method reaches 1 % at the least cost?",
+    "How fast does the error fall at small strain?",
+    "How fast does the error fall at large strain?",
+    "Do points that move through the mesh converge?",
+    "Do layers, slabs and footings in the plane lock?",
+    "Do layered and yielding soils converge?",
+    "Do waves keep their speed and height?",
+    "Does a body under its own weight stay at rest?",
+    "Which steps are stable?",
+];
+
+/// The question of a study, by its task and scene.
+fn question(study: &Study) -> &'static str {
+    let is_stability = study.planned.iter().any(|planned| planned.case.task == Task::Stability);
+    QUESTIONS[match study.scene {
+        _ if study.is_race => 0,
+        _ if is_stability => 8,
+        SceneKind::Terzaghi | SceneKind::SingleMode | SceneKind::SealedElement => 1,
+        SceneKind::XieLeo => 2,
+        SceneKind::ManufacturedBox | SceneKind::ManufacturedShear | SceneKind::ManufacturedVortex => 3,
+        SceneKind::CosineLayer | SceneKind::Mandel | SceneKind::Footing => 4,
+        SceneKind::Layered | SceneKind::YieldFront => 5,
+        SceneKind::DynamicColumn | SceneKind::DynamicSingleMode | SceneKind::StandingWave => 6,
+        SceneKind::AtRest => 7,
+    }]
 }
 
 /// One row per study: how many of its expectations are met, and what runs it.
@@ -136,7 +163,7 @@ const MOST_OPEN: usize = 4;
 /// When a reference refuses a case.
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
-    let mut blocks = expectations(results);
+    let mut blocks: Vec<Block> = unmet(results).map(Block::Table).into_iter().collect();
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
@@ -162,7 +189,9 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
         blocks.extend(cost::wall_time_blocks(results));
         blocks.push(checks::worst_checks(results));
     }
-    Ok(Page {
+    blocks.push(Block::Heading("Expectations".to_owned()));
+    blocks.extend(expectations(results));
+    let page = Page {
         title: study.title.clone(),
         lead: format!(
             "{}\n\n{}[All studies](index.html). Run it again: `{}`.",
@@ -174,7 +203,8 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
         sections: sections(blocks),
         files: Some(slug(&study.name)),
         ..Page::default()
-    })
+    };
+    Ok(page.without_idle_figures())
 }
 
 /// Whether everything is as expected, and the reasons if not.
@@ -203,13 +233,15 @@ fn failing<'b>(results: &'b StudyResults<'_>) -> Vec<&'b Judgement> {
     results.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect()
 }
 
-/// The unmet expectations, and every expectation behind a click.
+/// The expectations that are not met; none where all are.
+fn unmet(results: &StudyResults<'_>) -> Option<Table> {
+    let failing = failing(results);
+    (!failing.is_empty()).then(|| judgements_table("Expectations that are not met", &failing))
+}
+
+/// The expectations that a study could have, and every one that it has behind a click.
 fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     let mut blocks = Vec::new();
-    let failing = failing(results);
-    if !failing.is_empty() {
-        blocks.push(Block::Table(judgements_table("Expectations that are not met", &failing)));
-    }
     let proposed = proposals(results.study, &results.paths);
     if !proposed.is_empty() {
         blocks.push(Block::Paragraph(PROPOSED.to_owned()));
@@ -230,9 +262,9 @@ fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     blocks
 }
 
-/// A section from every heading on; the blocks before the first are about the expectations.
+/// A section from every heading on; the blocks before the first are what is not as expected.
 fn sections(blocks: Vec<Block>) -> Vec<Section> {
-    let mut sections = vec![Section::new("Expectations", "expectations", Vec::new())];
+    let mut sections = vec![Section::new("Not as expected", "unmet", Vec::new())];
     for block in blocks {
         if let Block::Heading(heading) = block {
             let id = format!("{}-{}", slug(&heading), sections.len());
@@ -250,7 +282,6 @@ mod tests {
     use super::*;
     use crate::campaign::runner::solved;
     use crate::case::Tier;
-    use crate::study::check::Study;
 
     #[test]
     fn a_study_is_marked_by_what_is_met_and_by_what_is_wrong_with_its_records() {
@@ -279,10 +310,11 @@ mod tests {
     }
 
     #[test]
-    fn studies_stand_by_their_first_word_and_those_alone_last_and_norms_and_references_once() {
+    fn studies_stand_by_what_they_ask_and_norms_and_references_once() {
         let text = |name: &str| {
+            let scene = if name.starts_with("mesh") { "layered" } else { "terzaghi" };
             format!(
-                "title = '{name}'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                "title = '{name}'\nscene = '{scene}'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
                  integrator = ['implicit']\ncells = [2]\n"
             )
         };
@@ -307,16 +339,16 @@ mod tests {
             )
         };
         let is = |heading: &str, studies: &str| (heading.to_owned(), studies.to_owned());
-        let groups: Vec<_> = page.sections[..3].iter().map(told).collect();
-        assert_eq!(groups, [is("Race", "race-a race-b"), is("Mesh", "mesh-a mesh-b"), is("Other", "zeta")]);
-        assert_eq!(page.lead, "5 studies in 3 groups. [The answers](../index.html).");
-        assert_eq!(index_page(&results[..1]).lead, "1 study in 1 group. [The answers](../index.html).");
+        let groups: Vec<_> = page.sections[..2].iter().map(told).collect();
+        assert_eq!(groups, [is(QUESTIONS[1], "zeta race-a race-b"), is(QUESTIONS[5], "mesh-a mesh-b")]);
+        assert_eq!(page.lead, "5 studies of 2 questions. [The answers](../index.html).");
+        assert_eq!(index_page(&results[..1]).lead, "1 study of 1 question. [The answers](../index.html).");
         assert!(
             page.footer.starts_with("oedometer 0.0.1, sources "),
             "that of the first record: {}",
             page.footer
         );
-        let Block::Table(references) = &page.sections[3].blocks[1] else { panic!("norms, then references") };
+        let Block::Table(references) = &page.sections[2].blocks[1] else { panic!("norms, then references") };
         assert_eq!(references.rows, [[Cell::Code("terzaghi".to_owned()), Cell::Count(9), Cell::Error(1e-8)]]);
     }
 }

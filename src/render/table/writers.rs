@@ -4,7 +4,7 @@ use crate::case::method_words::method_words;
 use crate::render::escape::{
     csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
 };
-use crate::render::page::marked_text::html_code;
+use crate::render::marked_text::{html_code, html_with_code, markdown_with_code};
 use crate::render::table::{Align, Cell, Table, marked};
 use crate::render::{RenderError, number};
 use std::fmt::Write as _;
@@ -74,7 +74,7 @@ impl Table {
         }
         for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
-            let _ = writeln!(out, "\n{mark}{}", markdown(note));
+            let _ = writeln!(out, "\n{mark}{}", markdown_with_code(note));
         }
         Ok(out)
     }
@@ -122,7 +122,7 @@ impl Table {
         out.push_str("</tbody>\n</table>\n</div>\n");
         for (mark, note) in self.lines_below() {
             let mark = mark.map(|mark| format!("<sup>{mark}</sup> ")).unwrap_or_default();
-            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html(note));
+            let _ = writeln!(out, "<p class=\"small\">{mark}{}</p>", html_with_code(note));
         }
         Ok(out)
     }
@@ -219,7 +219,7 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
         (Cell::Link { words, target }, _) => link(words, target),
         (_, (text, Some(mark))) => format!("{text} <sup>{mark}</sup>"),
         // Only words are escaped: a number may start with a minus.
-        (Cell::Text(_) | Cell::Shaded { .. }, (text, None)) => markdown(&text),
+        (Cell::Text(_) | Cell::Shaded { .. }, (text, None)) => markdown_with_code(&text),
         (_, (text, None)) => text,
     }
 }
@@ -227,7 +227,7 @@ fn in_markdown(cell: &Cell, footnotes: &[&str]) -> String {
 fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
     match (cell, marked(cell, footnotes)) {
         (Cell::Code(name), _) => html_code(name),
-        (Cell::Text(text), _) => html(text),
+        (Cell::Text(text), _) => html_with_code(text),
         (Cell::Link { words, target }, _) => {
             format!("<a href=\"{}\">{}</a>", plain_html(target), html(words))
         }

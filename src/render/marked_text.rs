@@ -67,6 +67,28 @@ pub(crate) fn to_markdown(text: &str) -> String {
     write(text, &MARKDOWN)
 }
 
+/// Text of a table as HTML: names between back quotes are its only marks.
+pub(crate) fn html_with_code(text: &str) -> String {
+    with_code(text, html, html_code)
+}
+
+/// Text of a table as Markdown; the bars of a table are escaped even within back quotes.
+pub(crate) fn markdown_with_code(text: &str) -> String {
+    with_code(text, markdown, |code| format!("`{}`", code.replace('|', "\\|")))
+}
+
+fn with_code(text: &str, plain: fn(&str) -> String, code: fn(&str) -> String) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('`') {
+        let Some((name, after)) = after.split_once('`').filter(|(name, _)| !name.is_empty()) else { break };
+        out += &plain(before);
+        out += &code(name);
+        rest = after;
+    }
+    out + &plain(rest)
+}
+
 /// The text in a format. A mark without its partner is text.
 fn write(text: &str, format: &Format) -> String {
     let mut out = String::new();
@@ -118,6 +140,20 @@ fn marked<'t>(text: &'t str, before: Option<char>, format: &Format) -> Option<(S
 
 #[cfg(test)]
 mod tests {
+    use super::{html_with_code, markdown_with_code};
+
+    #[test]
+    fn names_between_back_quotes_are_the_only_marks_of_a_tables_text() {
+        for (text, in_html, in_markdown) in [
+            ("all with `cells=4`, *a*", "all with <code>cells=4</code>, *a*", "all with `cells=4`, \\*a\\*"),
+            ("`a|b`", "<code>a|b</code>", "`a\\|b`"),
+            ("`<b>` & `", "<code>&lt;b&gt;</code> &amp; `", "`<b>` & \\`"),
+            ("``", "``", "\\`\\`"),
+        ] {
+            assert_eq!([html_with_code(text), markdown_with_code(text)], [in_html, in_markdown], "{text}");
+        }
+    }
+
     use super::*;
 
     #[test]
