@@ -1,9 +1,10 @@
-//! `oedometer schema`: JSON Schemas of study files, records and mappings.
+//! `oedometer schema`: JSON Schemas of study files, records, mappings, cases and findings.
 
 use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
+use crate::judge::findings::Findings;
 use crate::record::Record;
 use crate::study::file::StudyFile;
 use crate::study::reading::{each_part, plain_schema_of, schema_of as schema_of_toml};
@@ -34,6 +35,8 @@ pub enum Document {
     Mapping,
     /// The file that tells an attached solver its case
     Case,
+    /// What is found about a study: `findings.json` beside its page
+    Findings,
 }
 
 /// The JSON Schema of a document.
@@ -42,6 +45,7 @@ pub fn schema_of(document: Document) -> Value {
         Document::Study => (schema_of_toml::<StudyFile>(), "oedometer study"),
         Document::Record => (plain_schema_of::<Record>(), "oedometer record"),
         Document::Case => (plain_schema_of::<CaseFile>(), "oedometer case"),
+        Document::Findings => (plain_schema_of::<Findings>(), "oedometer findings"),
         Document::Mapping => (schema_of_toml::<Mapping>(), "oedometer mapping"),
     };
     schema["title"] = title.into();
