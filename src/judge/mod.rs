@@ -6,6 +6,7 @@
 pub mod case_verdicts;
 pub mod comparison;
 pub mod explanation;
+pub mod findings;
 pub mod levels;
 pub mod path_context;
 pub mod paths;

@@ -73,6 +73,7 @@ impl Path<'_> {
         let finest = self.records[self.records.len() - 1];
         model_limiter(finest, measure)
             .into_iter()
+            .chain(strain_limiter(finest, measure))
             .chain(self.mesh_limiter(measure))
             .chain(self.held_limiters(measure))
             .collect()
@@ -89,7 +90,16 @@ impl Path<'_> {
         }
         let moves = case.configuration().moves_points();
         let points = moves.then(|| Limiter::new(LimiterKind::PointsPerCell, "the points per cell"));
-        step_limiter(case).into_iter().chain(points).collect()
+        let step = step_limiter(case).filter(|_| !self.has_no_floor_of_step(measure));
+        step.into_iter().chain(points).collect()
+    }
+
+    /// Whether a smaller step on the finest mesh leaves the error as it is.
+    fn has_no_floor_of_step(&self, measure: &Measure) -> bool {
+        let finest = self.records[self.records.len() - 1];
+        let error = |record: &Record| measure.error(record).map(|row| row.value.abs());
+        let both = error(finest).zip(self.smaller_step.and_then(error));
+        both.is_some_and(|(finest, smaller)| (finest - smaller).abs() <= UNMOVED * finest)
     }
 
     /// Along any other axis the mesh limits the error.
@@ -171,6 +181,20 @@ fn step_limiter(case: &Case) -> Option<Limiter> {
         TimeStepRule::Tolerance(_) => ("`tolerance`", None),
     };
     Some(Limiter { order, ..Limiter::new(LimiterKind::Step, name) })
+}
+
+/// Change of an error, relative, by which a smaller step has not moved it.
+const UNMOVED: f64 = 0.1;
+
+/// The floor that finite strain puts under errors against a theory of small strain. Settlements of linear soil that is
+/// measured on its present length differ by about half of `m_vl q`.
+fn strain_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
+    let case = &finest.case;
+    let is_theory = measure.reference != NEXT_FINER && measure.reference != NO_REFERENCE;
+    let is_finite = !case.scene.is_large_strain() && case.configuration().deforms() && !case.is_attached();
+    let magnitude = Some(0.5 * finest.groups.finite_strain).filter(|_| is_theory && is_finite)?;
+    let name = "finite strain against a theory of small strain";
+    Some(Limiter { magnitude: Some(magnitude), ..Limiter::new(LimiterKind::Model, name) })
 }
 
 /// The floor that a reference of other equations puts under an error: its own distance from the

@@ -3,7 +3,7 @@
 use crate::case::{Norm, Quantity, Sample, step_label};
 use crate::judge::explanation::place_of_attached;
 use crate::measure::fields::relative_error;
-use crate::record::Record;
+use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{
     Classification, ErrorSeries, SeriesDemand, SeriesLevel, SlopeFit, Undefined, classify, finest_order,
@@ -30,6 +30,9 @@ pub struct Path<'a> {
     pub axis: Axis,
     /// Records from coarse to fine.
     pub records: Vec<&'a Record>,
+    /// Of a path over meshes, the run on its finest mesh with the smallest step, where one is smaller than that of the
+    /// path.
+    pub smaller_step: Option<&'a Record>,
 }
 
 /// A series of errors with its orders and class.
@@ -72,12 +75,35 @@ impl<'a> StudyPaths<'a> {
 /// Paths of the records along an axis: every group of at least two levels.
 pub fn paths<'a>(records: impl IntoIterator<Item = &'a Record>, axis: Axis) -> Vec<Path<'a>> {
     // By a number for what cases share, so that thousands of cases are not compared pairwise.
-    let groups = grouped(records, |record| axis.what_is_shared(&record.case));
+    let records: Vec<&Record> = records.into_iter().collect();
+    let groups = grouped(records.iter().copied(), |record| axis.what_is_shared(&record.case));
     let path = |(_, mut records): (u64, Vec<&'a Record>)| {
         records.sort_by(|a, b| level_size(b, axis).total_cmp(&level_size(a, axis)));
-        Path { axis, records }
+        Path { axis, records, smaller_step: None }
     };
-    groups.into_iter().filter(|(_, records)| records.len() > 1).map(path).collect()
+    let mut paths: Vec<Path<'a>> =
+        groups.into_iter().filter(|(_, records)| records.len() > 1).map(path).collect();
+    if axis == Axis::Cells && !paths.is_empty() {
+        add_smaller_steps(&mut paths, &records);
+    }
+    paths
+}
+
+/// A step smaller than this share of another shows what the other one leaves.
+const SMALLER: f64 = 0.75;
+
+/// Adds to each path the run that differs from its finest one in a smaller step alone.
+fn add_smaller_steps<'a>(paths: &mut [Path<'a>], records: &[&'a Record]) {
+    let ended = records.iter().copied().filter(|record| record.status == Status::Ok);
+    let by_step: HashMap<u64, Vec<&Record>> =
+        grouped(ended, |record| Axis::TimeStep.what_is_shared(&record.case)).into_iter().collect();
+    for path in paths {
+        let finest = path.records[path.records.len() - 1];
+        let alike = by_step.get(&Axis::TimeStep.what_is_shared(&finest.case)).into_iter().flatten();
+        let smaller =
+            alike.copied().filter(|record| record.step_sizes.target < SMALLER * finest.step_sizes.target);
+        path.smaller_step = smaller.min_by(|a, b| a.step_sizes.target.total_cmp(&b.step_sizes.target));
+    }
 }
 
 /// Groups things by a key, groups and things in their order of appearance.
@@ -362,7 +388,7 @@ mod tests {
         for (place, (axis, change, parts)) in table.into_iter().enumerate() {
             let mut record = record.clone();
             change(&mut record.case);
-            let path = Path { axis, records: vec![&record] };
+            let path = Path { axis, records: vec![&record], smaller_step: None };
             assert_eq!(path.parts(), parts, "row {place}");
             assert_eq!(path.label(), parts.join(", "));
         }

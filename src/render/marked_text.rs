@@ -147,7 +147,7 @@ mod tests {
         for (text, in_html, in_markdown) in [
             ("all with `cells=4`, *a*", "all with <code>cells=4</code>, *a*", "all with `cells=4`, \\*a\\*"),
             ("`a|b`", "<code>a|b</code>", "`a\\|b`"),
-            ("`<b>` & `", "<code>&lt;b&gt;</code> &amp; `", "`<b>` & \\`"),
+            ("`<b>` & `", "<code>&lt;b&gt;</code> &amp; `", "`<b>` &amp; \\`"),
             ("``", "``", "\\`\\`"),
         ] {
             assert_eq!([html_with_code(text), markdown_with_code(text)], [in_html, in_markdown], "{text}");

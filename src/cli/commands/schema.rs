@@ -1,9 +1,10 @@
-//! `oedometer schema`: JSON Schemas of study files, records and mappings.
+//! `oedometer schema`: JSON Schemas of study files, records, mappings, cases and findings.
 
 use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
+use crate::judge::findings::Findings;
 use crate::judge::race::RaceFindings;
 use crate::record::Record;
 use crate::study::file::StudyFile;
@@ -35,8 +36,10 @@ pub enum Document {
     Mapping,
     /// The file that tells an attached solver its case
     Case,
-    /// What a report has found of the race
+    /// What a report has found of the race: `findings.json` beside the front page
     Findings,
+    /// What is found about a study: `findings.json` beside its page
+    StudyFindings,
 }
 
 /// The JSON Schema of a document.
@@ -46,6 +49,7 @@ pub fn schema_of(document: Document) -> Value {
         Document::Record => (plain_schema_of::<Record>(), "oedometer record"),
         Document::Case => (plain_schema_of::<CaseFile>(), "oedometer case"),
         Document::Findings => (plain_schema_of::<RaceFindings>(), "oedometer findings"),
+        Document::StudyFindings => (plain_schema_of::<Findings>(), "oedometer study findings"),
         Document::Mapping => (schema_of_toml::<Mapping>(), "oedometer mapping"),
     };
     schema["title"] = title.into();

@@ -6,7 +6,7 @@ use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
-use oedometer_soil::material::Material;
+use oedometer_mpm::run::results::outcome::Failure;
 
 /// The methods of records, each once, in their order.
 fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Solver> {
@@ -15,7 +15,7 @@ fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Solver> 
 }
 
 /// Fewest values of a sweep.
-const LEAST_VALUES: usize = 3;
+const LEAST_VALUES: usize = 2;
 
 /// What makes a soil hard to compress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,13 +38,19 @@ impl SweptStiffness {
         }
     }
 
-    /// Whether a case differs from the seed's soil in this stiffness alone.
-    fn is_alone_in(self, case: &Case) -> bool {
-        let seed = Material::default();
+    /// The other stiffness, which must not vary with this one.
+    fn other(self, case: &Case) -> f64 {
         match self {
-            Self::Water => case.material.poissons_ratio == seed.poissons_ratio,
-            Self::Skeleton => case.material.water_bulk_modulus == seed.water_bulk_modulus,
+            Self::Water => case.material.poissons_ratio,
+            Self::Skeleton => case.material.water_bulk_modulus,
         }
+    }
+
+    /// The other stiffness of most records, the first of equally frequent ones.
+    fn usual_other<'a>(self, records: impl Iterator<Item = &'a Record>) -> Option<f64> {
+        let groups = grouped(records, |record| self.other(&record.case).to_bits());
+        let most = groups.iter().map(|(_, records)| records.len()).max()?;
+        groups.into_iter().find(|(_, records)| records.len() == most).map(|(bits, _)| f64::from_bits(bits))
     }
 }
 
@@ -73,6 +79,33 @@ pub struct SweepRow {
     pub time_factor: f64,
     /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
     pub found: Vec<[Option<f64>; Showing::ALL.len()]>,
+    /// How the run at each value failed, where it did: such a run has no result that could be lost.
+    pub failed: Vec<Option<String>>,
+}
+
+/// A method keeps its result where displacement and pressure are off by less than this.
+pub const KEPT: f64 = 0.1;
+
+impl SweepRow {
+    /// Errors of displacement and pressure at a value of the sweep.
+    pub fn errors(&self, place: usize) -> [Option<f64>; 2] {
+        let [displacement, pressure, _] = self.found[place];
+        [displacement, pressure]
+    }
+
+    /// The first value of the sweep at which the result of a run that ended is lost; nothing where it is kept at all of
+    /// them.
+    pub fn lost_from(&self) -> Option<usize> {
+        let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
+        let is_lost =
+            |place: &usize| self.failed[*place].is_none() && !self.errors(*place).into_iter().all(is_kept);
+        (0..self.found.len()).find(is_lost)
+    }
+
+    /// The first value of the sweep at which the run failed, and how.
+    pub fn failed_from(&self) -> Option<(usize, &str)> {
+        self.failed.iter().enumerate().find_map(|(place, failed)| Some((place, failed.as_deref()?)))
+    }
 }
 
 /// Every method over one stiffness.
@@ -91,8 +124,8 @@ pub struct StiffnessSweep {
 }
 
 impl StiffnessSweep {
-    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none beyond
-    /// the start. Step sizes may differ: a stiffer skeleton consolidates faster.
+    /// The sweep of a study's records over a stiffness on one mesh; `None` where the study has none. Step sizes may
+    /// differ: a stiffer skeleton consolidates faster.
     ///
     /// # Errors
     /// When a reference refuses a case.
@@ -101,14 +134,10 @@ impl StiffnessSweep {
         records: &[Record],
         stiffness: SweptStiffness,
     ) -> Result<Option<Self>, ExactError> {
-        let is_swept = |record: &&Record| {
-            let case = &record.case;
-            record.status == Status::Ok
-                && !case.is_explicit()
-                && case.time_factors.last().is_some_and(|last| *last > 0.0)
-                && stiffness.is_alone_in(case)
-        };
-        let swept = records.iter().filter(is_swept);
+        let implicit = || records.iter().filter(|record| !record.case.is_explicit());
+        let Some(usual) = stiffness.usual_other(implicit()) else { return Ok(None) };
+        let begun = || implicit().filter(|record| stiffness.other(&record.case) == usual);
+        let swept = begun().filter(|record| record.status == Status::Ok);
         // The mesh of the runs with the least compressible soil.
         let hardest = swept.clone().max_by(|a, b| {
             stiffness.of(&a.case).total_cmp(&stiffness.of(&b.case)).then(a.case.cells.cmp(&b.case.cells))
@@ -116,13 +145,17 @@ impl StiffnessSweep {
         let Some(hardest) = hardest else { return Ok(None) };
         let mesh = |record: &Record| (record.case.cells, record.case.points_per_cell);
         let alike: Vec<&Record> = swept.filter(|record| mesh(record) == mesh(hardest)).collect();
-        let mut values: Vec<f64> = alike.iter().map(|record| stiffness.of(&record.case)).collect();
+        let failed: Vec<&Record> = begun()
+            .filter(|record| record.status.failure().is_some() && mesh(record) == mesh(hardest))
+            .collect();
+        let both = || alike.iter().chain(&failed).copied();
+        let mut values: Vec<f64> = both().map(|record| stiffness.of(&record.case)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
         if values.len() < LEAST_VALUES {
             return Ok(None);
         }
-        let methods = methods_of(alike.iter().copied());
+        let methods = methods_of(both());
         let time_factors = hardest.case.time_factors.to_vec();
         let reference = study.references[0].name();
         let found = |method: Solver, time_factor: f64, value: f64| {
@@ -131,11 +164,18 @@ impl StiffnessSweep {
                 .find(|record| record.case.method == method && stiffness.of(&record.case) == value);
             record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
         };
+        let failure = |method: Solver, value: f64| {
+            let is_of =
+                |record: &&&Record| record.case.method == method && stiffness.of(&record.case) == value;
+            failed.iter().find(is_of)?.status.failure().map(Failure::name_with_step)
+        };
         let mut rows = Vec::new();
         for time_factor in time_factors.iter().copied() {
             for method in methods.iter().copied() {
                 let found = values.iter().map(|value| found(method, time_factor, *value));
-                rows.push(SweepRow { method, time_factor, found: found.collect::<Result<_, _>>()? });
+                let found = found.collect::<Result<_, _>>()?;
+                let failed = values.iter().map(|value| failure(method, *value)).collect();
+                rows.push(SweepRow { method, time_factor, found, failed });
             }
         }
         Ok(Some(Self { stiffness, cells: hardest.case.cells, values, time_factors, rows }))
@@ -161,7 +201,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::study::file::StudySource;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_mpm::run::results::outcome::FailureKind;
 
     #[test]
     fn a_sweep_is_of_the_finest_mesh_of_the_runs_with_the_least_compressible_soil() {
@@ -212,19 +252,31 @@ mod tests {
             };
             assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 2)), Some(8));
             assert_eq!(cells(&without(&|cells, place| cells > 4 && place == 2)), Some(4));
-            assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 0)), None, "two values");
+            assert_eq!(cells(&without(&|cells, place| cells == 16 && place == 0)), Some(16), "two values");
             let mut failed = records.clone();
             for record in failed.iter_mut().filter(|one| one.case.cells == 16 && place_of(one) == 2) {
                 let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
                 record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
             }
             assert_eq!(cells(&failed), Some(8), "{key}");
-            // A soil that differs in the other stiffness too belongs to no sweep.
-            for record in &mut records {
-                record.case.material.poissons_ratio += 0.01;
-                record.case.material.water_bulk_modulus *= 1.5;
+            // A failed run is told with its reason, and is no lost result.
+            let mut among = records.clone();
+            among[1].case.method =
+                Solver::Own(oedometer_mpm::method::Method::named("MPM").expect("a method"));
+            among[1].case.cells = 16;
+            among[1].status =
+                failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();
+            let found = sweep(&among).expect("values");
+            let row = found.at(0.1).find(|row| row.method.to_string() == "MPM").expect("a row");
+            assert_eq!(row.failed_from().map(|(_, how)| how), Some("unstable at step 1"), "{row:?}");
+            // A soil that differs in the other stiffness too is in no sweep.
+            for record in records.iter_mut().filter(|record| place_of(record) == 2) {
+                match stiffness {
+                    SweptStiffness::Skeleton => record.case.material.water_bulk_modulus *= 1.5,
+                    SweptStiffness::Water => record.case.material.poissons_ratio += 0.01,
+                }
             }
-            assert!(sweep(&records).is_none(), "{key}");
+            assert_eq!(sweep(&records).map(|found| found.values.len()), Some(2), "{key}");
         }
     }
 }

@@ -226,7 +226,7 @@ impl<'a> Runs<'a> {
         let error = |time: f64| first_error(finest, quantity, sample, reference, time);
         let times = finest.case.time_factors.iter().copied().filter(|time| error(*time).is_some());
         let time = times.max_by(|a, b| error(*a).unwrap_or(0.0).total_cmp(&error(*b).unwrap_or(0.0)))?;
-        let path = Path { axis: Axis::Cells, records: self.path.clone() };
+        let path = Path { axis: Axis::Cells, records: self.path.clone(), smaller_step: None };
         let measure = first_measure(quantity, sample, reference, time);
         Some(path.summary(&measure).classification)
     }

@@ -14,7 +14,7 @@ use crate::render::report::labels::{
 };
 use crate::render::report::{StudyResults, refinement};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::study::expectation::Axis;
+use crate::study::expectation::{Axis, Measure};
 use oedometer_convergence::{Class, Classification};
 use oedometer_soil::elementary;
 
@@ -94,14 +94,18 @@ impl<'a> Refined<'a> {
     }
 
     fn found(&self, path: &Path<'_>, (quantity, sample): Measured) -> Classification {
-        path.summary(&first_measure(quantity, sample, self.reference, self.time_factor)).classification
+        path.summary(&self.measure(path, (quantity, sample))).classification
     }
 
     /// A method's error on a mesh.
     fn error(&self, path: &Path<'_>, (quantity, sample): Measured, cells: usize) -> Option<f64> {
         let record = path.records.iter().find(|record| record.case.cells == cells)?;
-        let measure = first_measure(quantity, sample, self.reference, self.time_factor);
-        Some(measure.error(record)?.value.abs())
+        Some(self.measure(path, (quantity, sample)).error(record)?.value.abs())
+    }
+
+    /// The measure at the places that a solver has.
+    fn measure(&self, path: &Path<'_>, (quantity, sample): Measured) -> Measure {
+        path.own_measure(&first_measure(quantity, sample, self.reference, self.time_factor))
     }
 
     /// The finest mesh that all methods can have run.
@@ -195,7 +199,7 @@ fn better(refined: &Refined<'_>) -> Option<String> {
     let largest = |one: &(String, Path<'_>)| refined.largest_error(&one.1);
     let own = largest(refined.told());
     let least = refined.methods.iter().min_by(|a, b| largest(a).total_cmp(&largest(b)))?;
-    let instead = Some(largest(least)).filter(|instead| 2.0 * instead <= own)?;
+    let instead = Some(largest(least)).filter(|instead| own.is_finite() && 2.0 * instead <= own)?;
     let [instead, own] = [instead, own].map(number::percent);
     Some(format!(
         " Take `{}` instead: the largest of its errors on {} cells is {instead}, against {own}.",

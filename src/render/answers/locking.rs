@@ -1,6 +1,6 @@
 //! Which method locks, from which Poisson's ratio, and by how much? Answered where a study sweeps it in the plane.
 
-use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweepRow, SweptStiffness};
+use crate::judge::comparison::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow, SweptStiffness};
 use crate::measure::statistics::largest as largest_of;
 use crate::render::answers::{self, Answer, Question};
 use crate::render::number;
@@ -11,9 +11,6 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::{count_of, short, typed};
 
 const QUESTION: Question = Question { heading: "Who locks?", id: "locking" };
-
-/// A method keeps its result where displacement and pressure are off by less than this.
-const KEPT: f64 = 0.1;
 
 /// The study that sweeps Poisson's ratio with the most methods.
 ///
@@ -38,25 +35,14 @@ pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
     Ok(Some(QUESTION.told(&sentence, [one.study.name.as_str()], vec![Block::Table(table)])))
 }
 
-/// Errors of displacement and pressure at a value of the sweep.
-fn errors(row: &SweepRow, place: usize) -> [Option<f64>; 2] {
-    let [displacement, pressure, _] = row.found[place];
-    [displacement, pressure]
-}
-
-/// The first value of the sweep at which the result is lost; nothing where it is kept at all of them.
-fn lost_from(row: &SweepRow) -> Option<usize> {
-    let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
-    (0..row.found.len()).find(|place| !errors(row, *place).into_iter().all(is_kept))
-}
-
 fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
     let names = |of: &dyn Fn(&SweepRow) -> bool| {
         let named = rows.iter().filter(|row| of(row)).map(|row| format!("`{}`", row.method));
         named.collect::<Vec<_>>().join(", ")
     };
     let largest = sweep.values.last().copied().unwrap_or_default();
-    let kept = rows.iter().filter(|row| lost_from(row).is_none()).count();
+    let is_kept = |row: &SweepRow| row.lost_from().is_none() && row.failed_from().is_none();
+    let kept = rows.iter().filter(|row| is_kept(row)).count();
     let mut text = format!(
         "Of {} on {} cells, at T_v = {}, {kept} {} displacement and pressure within {} % up to ν = {}",
         count_of(rows.len(), "method", "methods"),
@@ -68,16 +54,21 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
     );
     if kept > 0 {
         text += ": ";
-        text += &names(&|row| lost_from(row).is_none());
+        text += &names(&is_kept);
     }
     for (place, value) in sweep.values.iter().enumerate() {
-        let of_place = |row: &SweepRow| lost_from(row) == Some(place);
+        let of_place = |row: &SweepRow| row.lost_from() == Some(place);
         let lost = names(&of_place);
         if !lost.is_empty() {
-            let errors = rows.iter().filter(|row| of_place(row)).flat_map(|row| errors(row, place)).flatten();
+            let errors = rows.iter().filter(|row| of_place(row)).flat_map(|row| row.errors(place)).flatten();
             let off = largest_of(errors)
                 .map_or(String::new(), |off| format!(" (off by up to {})", off_in_words(off)));
             text += &["; lost from ν = ", &typed(*value), " on", &off, ": ", &lost].concat();
+        }
+    }
+    for row in rows {
+        if let Some((place, how)) = row.failed_from() {
+            text += &format!("; failed at ν = {} ({how}): `{}`", typed(sweep.values[place]), row.method);
         }
     }
     text + "."
@@ -96,14 +87,17 @@ fn off_in_words(error: f64) -> String {
 fn table(sweep: &StiffnessSweep, rows: &[&SweepRow]) -> Table {
     let last = sweep.values.len() - 1;
     let mut rows = rows.to_vec();
-    rows.sort_by_key(|row| std::cmp::Reverse(lost_from(row).unwrap_or(usize::MAX)));
+    rows.sort_by_key(|row| std::cmp::Reverse(row.lost_from().unwrap_or(usize::MAX)));
     let cells = rows.into_iter().map(|row| {
-        let verdict = match lost_from(row) {
+        let verdict = match row.lost_from() {
+            None if row.failed_from().is_some() => {
+                let (place, how) = row.failed_from().unwrap_or_default();
+                Cell::Verdict(Mood::Fail, format!("failed at ν = {}: {how}", typed(sweep.values[place])))
+            }
             None => Cell::Verdict(Mood::Pass, "kept".to_owned()),
             Some(place) => Cell::Verdict(Mood::Fail, format!("lost from ν = {}", typed(sweep.values[place]))),
         };
-        let error =
-            |place: usize, which: usize| Cell::of(errors(row, place)[which], Cell::Error, "no result");
+        let error = |place: usize, which: usize| Cell::of(row.errors(place)[which], Cell::Error, "no result");
         vec![
             Cell::Code(row.method.to_string()),
             verdict,
@@ -141,6 +135,7 @@ mod tests {
             found: (0..3)
                 .map(|place| [0.0, 0.001, 0.002].map(|which| Some(first + 0.01 * f64::from(place) + which)))
                 .collect(),
+            failed: vec![None; 3],
         };
         let rows = [row("MPM", 0.01), row("GIMP", 0.04)];
         let sweep = StiffnessSweep {
@@ -179,11 +174,12 @@ mod tests {
             method: method(name),
             time_factor: 0.1,
             found: errors.map(|[displacement, pressure]| [displacement, pressure, Some(9.0)]).to_vec(),
+            failed: vec![None; 3],
         };
         let (kept, lost) = (Some(0.05), Some(0.2));
         let sound = [[kept; 2]; 3];
-        assert_eq!(lost_from(&row("MPM", sound)), None);
-        assert_eq!(lost_from(&row("MPM", [[Some(0.099), Some(0.0)]; 3])), None);
+        assert_eq!(row("MPM", sound).lost_from(), None);
+        assert_eq!(row("MPM", [[Some(0.099), Some(0.0)]; 3]).lost_from(), None);
         for bad in [
             [lost, kept],
             [kept, lost],
@@ -198,9 +194,9 @@ mod tests {
             for place in 0..3 {
                 let mut errors = sound;
                 errors[place] = bad;
-                assert_eq!(lost_from(&row("MPM", errors)), Some(place), "{errors:?}");
+                assert_eq!(row("MPM", errors).lost_from(), Some(place), "{errors:?}");
                 errors[2] = [lost; 2];
-                assert_eq!(lost_from(&row("MPM", errors)), Some(place), "{errors:?}");
+                assert_eq!(row("MPM", errors).lost_from(), Some(place), "{errors:?}");
             }
         }
         let rows = [

@@ -68,7 +68,8 @@ fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>
     let measure =
         |reference| path.own_measure(&first_measure(Quantity::Pressure, Sample::Points, reference, time));
     let is_ok = |record: &&Record| record.status == Status::Ok;
-    let stable = Path { axis: path.axis, records: path.records.iter().copied().filter(is_ok).collect() };
+    let records = path.records.iter().copied().filter(is_ok).collect();
+    let stable = Path { records, ..path.clone() };
     let (largest, smallest) = (*stable.records.first()?, *stable.records.last()?);
     let error = |record| measure(own).error(record).map(|row| row.value.abs());
     Some(Row {

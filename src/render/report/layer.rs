@@ -114,6 +114,10 @@ fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
     for stiffness in SweptStiffness::ALL {
         let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
         let Some(last) = sweep.time_factors.last().copied() else { continue };
+        // Two values are no line, and the start has a section of its own.
+        if sweep.values.len() < 3 || last <= 0.0 {
+            continue;
+        }
         blocks.push(Block::Heading(words_of(stiffness).0.to_owned()));
         blocks.push(Block::Paragraph(format!(
             "{} cells over the height, T_v = {last}. The line of a method that the stiffness does not affect is level. Methods \
@@ -321,6 +325,7 @@ mod tests {
             method: Solver::Own(Method::named("GIMP").expect("a method")),
             time_factor,
             found: vec![[Some(0.1 + off), Some(0.2 + off), Some(0.3 + off)], [None; 3]],
+            failed: vec![None; 2],
         };
         let sweep = |stiffness: SweptStiffness| StiffnessSweep {
             stiffness,

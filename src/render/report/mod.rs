@@ -13,6 +13,7 @@ pub(crate) mod theory_lines;
 
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
+use crate::judge::findings::Findings;
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::judge::verdict::{Judgement, judge_paths};
@@ -20,6 +21,7 @@ use crate::record::{Record, Status};
 use crate::render::chart::Chart;
 use crate::render::page::{Figure, slug};
 use crate::study::check::Study;
+use oedometer_exact::ExactError;
 
 /// A study with its records and the judgements on them.
 pub struct StudyResults<'a> {
@@ -103,6 +105,14 @@ impl<'a> StudyResults<'a> {
         } else {
             format!("oedometer run {}", self.file)
         }
+    }
+
+    /// Everything that is found about the study, as plain data.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn findings(&self) -> Result<Findings, ExactError> {
+        Findings::new(self.study, self.records, &self.paths, &self.judgements, Tier::Full)
     }
 
     /// Whether every expectation is met, by records that are sound.

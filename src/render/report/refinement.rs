@@ -414,7 +414,7 @@ mod tests {
             let records = times.map(|times| of(times, "cells = [2, 4]")).concat();
             let paths: Vec<Path<'_>> = records
                 .chunks(2)
-                .map(|own| Path { axis: Axis::Cells, records: own.iter().collect() })
+                .map(|own| Path { axis: Axis::Cells, records: own.iter().collect(), smaller_step: None })
                 .collect();
             shown_time(&paths)
         };
@@ -441,7 +441,8 @@ mod tests {
         ] {
             let records = of("[0.1]", sweep);
             let paths = StudyPaths::of(&records);
-            let shorter = Path { axis, records: paths.along(axis)[0].records[..2].to_vec() };
+            let shorter =
+                Path { axis, records: paths.along(axis)[0].records[..2].to_vec(), smaller_step: None };
             let both = [shorter, paths.along(axis)[0].clone()];
             let found: Vec<String> =
                 levels_of(&both, axis).iter().map(|(_, record)| level_name(record, axis)).collect();

@@ -15,6 +15,12 @@ use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::wording::short;
 use std::ops::Range;
 
+/// Young's moduli of soils, from soft peat to rock, Pa.
+const SOIL_MODULUS: [f64; 2] = [1e4, 1e11];
+
+/// Hydraulic conductivities of soils, from clay to coarse gravel, m/s.
+const SOIL_CONDUCTIVITY: [f64; 2] = [1e-14, 0.3];
+
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 /// Share of a wave's speed below which a projection is warned of.
@@ -355,7 +361,11 @@ impl Checker<'_> {
     /// Warns of a load under which a theory of small strain is off by more than a percent.
     pub(super) fn large_for_small_strain(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         let small = planned.iter().map(|planned| &planned.case).filter(|case| !case.scene.is_large_strain());
-        let strains = small.map(|case| case.column.load / case.material.oedometric_modulus());
+        // Of layers the softest strains most.
+        let strains = small.flat_map(|case| {
+            let load = case.column.load;
+            case.soils().iter().map(|(_, soil)| load / soil.oedometric_modulus()).collect::<Vec<_>>()
+        });
         let strain = strains.fold(0.0, f64::max);
         if strain <= LARGEST_SMALL_STRAIN {
             return;
@@ -370,6 +380,37 @@ impl Checker<'_> {
             "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
         );
         self.warn(&diagnostic);
+    }
+
+    /// Warns of a stiffness or a conductivity that no soil has: a number in another unit.
+    pub(super) fn unlike_any_soil(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+        // A manufactured motion has numbers of its own scale.
+        if planned.iter().any(|planned| planned.case.scene.is_manufactured()) {
+            return;
+        }
+        let soils = || planned.iter().flat_map(|planned| planned.case.soils());
+        type Number = fn(&oedometer_soil::material::Material) -> f64;
+        let ranges: [(&str, &str, [f64; 2], &str, Number); 2] = [
+            ("youngs_modulus", "Pa", SOIL_MODULUS, "kPa or MPa", |soil| soil.youngs_modulus),
+            ("hydraulic_conductivity", "m/s", SOIL_CONDUCTIVITY, "m/d or cm/s", |soil| {
+                soil.hydraulic_conductivity
+            }),
+        ];
+        for (key, unit, [least, most], other, of) in ranges {
+            let numbers = soils().map(|(_, soil)| of(&soil)).filter(|value| !(least..=most).contains(value));
+            let Some(odd) = numbers.reduce(f64::max) else { continue };
+            let place = file.material.inputs.span(key).unwrap_or_else(|| file.scene.span());
+            self.warn(&Diagnostic::at(
+                place,
+                format!(
+                    "`{key}` = {} {unit} is that of no soil: from {} to {} {unit}",
+                    short(odd),
+                    short(least),
+                    short(most)
+                ),
+                format!("write the unit if it is {other}, as in \"5 MPa\" or \"1e-9 m/s\""),
+            ));
+        }
     }
 
     /// Warns of a pressure projection that slows the waves that a scene is about.

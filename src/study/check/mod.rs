@@ -253,6 +253,7 @@ impl Checker<'_> {
         let mut planned = planner.into_cases();
         tell_apart(&mut planned);
         self.large_for_small_strain(&file, &planned);
+        self.unlike_any_soil(&file, &planned);
         self.projection_slows_waves(&file, &planned);
         let height = planned.first().map_or(base.column.height, |planned| planned.case.column.height);
         let is_common = planned.iter().all(|planned| planned.case.column.height == height);

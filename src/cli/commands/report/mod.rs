@@ -7,7 +7,7 @@ use crate::case::planned::Tier;
 use crate::cli::commands::check::refuse_unfinished;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::say;
+use crate::cli::output::{json_of, say};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
@@ -269,7 +269,8 @@ fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> Stri
 /// The pages of a study with their figures and tables.
 fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
     let name = slug(&one.study.name);
-    write_both(studies, &name, &name, &study_page(one)?)
+    write_both(studies, &name, &name, &study_page(one)?)?;
+    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&one.findings()?)?)
 }
 
 /// A page as HTML and Markdown, with its figures and tables as files.

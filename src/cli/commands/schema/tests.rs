@@ -122,11 +122,31 @@ fn undescribed(schema: &Value, at: &str, missing: &mut Vec<String>) {
 
 #[test]
 fn every_key_of_every_schema_has_a_description() {
-    for document in [Document::Study, Document::Record, Document::Mapping, Document::Case] {
+    for document in [
+        Document::Study,
+        Document::Record,
+        Document::Mapping,
+        Document::Case,
+        Document::Findings,
+        Document::StudyFindings,
+    ] {
         let mut missing = Vec::new();
         undescribed(&schema_of(document), "", &mut missing);
         assert!(missing.is_empty(), "{document:?}: {missing:?}");
     }
+}
+
+#[test]
+fn the_findings_of_a_study_keep_to_their_schema() {
+    let (study, mut records) = crate::campaign::runner::solved(
+        "s",
+        "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP']\n\
+         integrator = ['implicit']\ncells = [2, 4, 8]\nporosity = [0.3, 0.4]\n",
+    );
+    records[0].status = crate::campaign::runner::failed_at(1);
+    let results = crate::render::report::StudyResults::new(&study, &records, Tier::Full);
+    let found = serde_json::to_value(results.findings().expect("sound cases")).expect("plain data");
+    assert_eq!(breach(&schema_of(Document::StudyFindings), &found, "findings"), None);
 }
 
 #[test]

@@ -1,0 +1,333 @@
+//! Everything that is found about a study, as one value of plain data: numbers, units, names and choices of a fixed list,
+//! each once, and no sentence that a page would not find in the judge itself.
+//!
+//! `findings.json` is written beside the page of a study, and `oedometer schema findings` describes it. Lengths are in m,
+//! pressures in Pa, times in s; errors are relative.
+
+mod series;
+
+use crate::case::Tier;
+use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
+use crate::judge::paths::StudyPaths;
+use crate::judge::verdict::{Judgement, VerdictOutcome};
+use crate::record::{ErrorRow, Record};
+use crate::study::check::Study;
+use oedometer_convergence::Class;
+use oedometer_exact::ExactError;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+pub use series::SeriesFinding;
+
+/// Version of the layout; it rises when a field goes or changes its meaning.
+pub const SCHEMA: u32 = 1;
+
+/// Everything that is found about a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Findings {
+    /// Version of the layout.
+    pub schema: u32,
+    /// Name of the study.
+    pub study: String,
+    /// Name of its scene.
+    pub scene: String,
+    /// Names of its references, the scene's own first.
+    pub references: Vec<String>,
+    /// Cases of the study without a record.
+    pub left_out: usize,
+    /// Expectations, each with its verdict.
+    pub expectations: Vec<ExpectationFinding>,
+    /// Every run.
+    pub runs: Vec<RunFinding>,
+    /// Every error over every axis that the study refines, from two levels on.
+    pub series: Vec<SeriesFinding>,
+    /// The error of each method over what makes the soil hard to compress, where the study sweeps it.
+    pub stiffness: Vec<StiffnessFinding>,
+    /// For each quantity and bound the cheapest run within it.
+    pub within: Vec<WithinFinding>,
+}
+
+/// An expectation with its verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ExpectationFinding {
+    /// Line in the study's file.
+    pub line: usize,
+    /// What is judged: labels of runs, measure and time.
+    pub subject: String,
+    /// How the verdict came out.
+    pub outcome: VerdictOutcome,
+    /// Class of the series.
+    pub class: Class,
+    /// Order on the finest window, where the class allows one.
+    pub order: Option<f64>,
+    /// Every part that is judged.
+    pub checks: Vec<CheckFinding>,
+}
+
+/// A part of an expectation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CheckFinding {
+    /// `class`, `order`, `error`, `floor` or another part.
+    pub name: String,
+    /// Whether it is met.
+    pub pass: bool,
+    /// The number judged.
+    pub measured: Option<f64>,
+}
+
+/// A run and its errors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunFinding {
+    /// Hash of the case.
+    pub case: String,
+    /// Label of the case.
+    pub label: String,
+    /// Name of the method.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Points in a cell.
+    pub points_per_cell: usize,
+    /// Why and where it failed; no result of such a run is judged.
+    pub failure: Option<FailureFinding>,
+    /// Largest time step, s.
+    pub largest_step: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Shortest wall time over the repeats, s.
+    pub seconds: Option<f64>,
+    /// `m_vl q`, the final strain of small-strain theory, of the softest soil.
+    pub finite_strain: f64,
+    /// Every error.
+    pub errors: Vec<ErrorRow>,
+}
+
+/// How a run failed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FailureFinding {
+    /// The kind.
+    pub kind: FailureKind,
+    /// Step at which it was seen.
+    pub step: u64,
+    /// Time then, s.
+    pub time: f64,
+}
+
+/// A method over one stiffness at one time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StiffnessFinding {
+    /// `K_w/E` of the water or `nu` of the skeleton.
+    pub swept: String,
+    /// Method.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Time factor.
+    pub time_factor: f64,
+    /// Errors at each value, ascending.
+    pub values: Vec<StiffnessValue>,
+    /// The first value at which displacement or pressure is off by a tenth or more; a failed run is no such value.
+    pub lost_from: Option<f64>,
+}
+
+/// Errors at one value of a stiffness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StiffnessValue {
+    /// The value.
+    pub value: f64,
+    /// Relative L2 error of the nodal displacement.
+    pub displacement: Option<f64>,
+    /// Relative L2 error of the pressure at the points.
+    pub pressure: Option<f64>,
+    /// How the run failed, with its step.
+    pub failed: Option<String>,
+}
+
+/// The cheapest run with an error within a bound at all outputs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WithinFinding {
+    /// Quantity, places, norm, reference; its time factor is that of the largest error, its value that error.
+    pub error: ErrorRow,
+    /// The bound.
+    pub bound: f64,
+    /// Hash of the case.
+    pub case: String,
+    /// Point updates of the run, by which it is the cheapest; of equal ones that with the fewest cells.
+    pub point_updates: u64,
+    /// Largest step, s.
+    pub largest_step: f64,
+    /// Time of the output with the largest error, s.
+    pub seconds: f64,
+}
+
+/// Bounds for which the cheapest run is looked for.
+const BOUNDS: [f64; 3] = [0.05, 0.01, 0.001];
+
+impl Findings {
+    /// Everything about a study, from its records and verdicts.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn new(
+        study: &Study,
+        records: &[Record],
+        paths: &StudyPaths<'_>,
+        judgements: &[Judgement],
+        tier: Tier,
+    ) -> Result<Self, ExactError> {
+        let mut stiffness = Vec::new();
+        for swept in SweptStiffness::ALL {
+            stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
+        }
+        Ok(Self {
+            schema: SCHEMA,
+            study: study.name.clone(),
+            scene: study.scene.name().to_owned(),
+            references: study.references.iter().map(|kind| kind.name().to_owned()).collect(),
+            left_out: study.cases(tier).len().saturating_sub(records.len()),
+            expectations: judgements.iter().map(ExpectationFinding::new).collect(),
+            runs: records.iter().map(RunFinding::new).collect(),
+            series: series::all_series(study, paths),
+            stiffness,
+            within: within(records),
+        })
+    }
+}
+
+impl ExpectationFinding {
+    fn new(judgement: &Judgement) -> Self {
+        let verdict = &judgement.verdict;
+        let check = |check: &crate::judge::verdict::Check| CheckFinding {
+            name: check.name.clone(),
+            pass: check.pass,
+            measured: check.measured,
+        };
+        Self {
+            line: judgement.line,
+            subject: judgement.subject.clone(),
+            outcome: verdict.outcome,
+            class: verdict.classification.class,
+            order: verdict.classification.order,
+            checks: verdict.checks.iter().map(check).collect(),
+        }
+    }
+}
+
+impl RunFinding {
+    fn new(record: &Record) -> Self {
+        let failure = record.status.failure();
+        let seconds = record.wall.iter().map(|sample| sample.seconds).reduce(f64::min);
+        Self {
+            case: record.hash.clone(),
+            label: record.case.label(),
+            method: record.case.method.to_string(),
+            cells: record.case.cells,
+            points_per_cell: record.case.points_per_cell,
+            failure: failure.map(|failure| FailureFinding {
+                kind: failure.kind,
+                step: failure.step,
+                time: failure.time,
+            }),
+            largest_step: record.step_sizes.largest,
+            steps: record.counters.steps,
+            seconds,
+            finite_strain: record.groups.finite_strain,
+            errors: record.errors.iter().filter(|row| row.value.is_finite()).cloned().collect(),
+        }
+    }
+}
+
+fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
+    let swept = match sweep.stiffness {
+        SweptStiffness::Water => "K_w/E",
+        SweptStiffness::Skeleton => "nu",
+    };
+    let of_row = |row: &crate::judge::comparison::stiffness_sweep::SweepRow| {
+        let value = |(place, value): (usize, &f64)| {
+            let [displacement, pressure, _] = row.found[place];
+            StiffnessValue { value: *value, displacement, pressure, failed: row.failed[place].clone() }
+        };
+        StiffnessFinding {
+            swept: swept.to_owned(),
+            method: row.method.to_string(),
+            cells: sweep.cells,
+            time_factor: row.time_factor,
+            values: sweep.values.iter().enumerate().map(value).collect(),
+            lost_from: row.lost_from().map(|place| sweep.values[place]),
+        }
+    };
+    sweep.rows.iter().map(of_row).collect()
+}
+
+/// For each kind of error and bound the run with the fewest point updates whose largest error over its outputs is within.
+fn within(records: &[Record]) -> Vec<WithinFinding> {
+    let is_main = |row: &&ErrorRow| matches!(row.norm, crate::case::Norm::L2 | crate::case::Norm::Relative);
+    let sound = || records.iter().filter(|record| record.status.failure().is_none());
+    let rows = sound().flat_map(|record| {
+        record.errors.iter().filter(is_main).filter(|row| row.value.is_finite()).map(move |row| (record, row))
+    });
+    let kinds = crate::judge::paths::grouped(rows, |(_, row)| {
+        (row.quantity, row.sample, row.norm, row.reference.clone())
+    });
+    let mut found = Vec::new();
+    for (_, rows) in kinds {
+        let runs = crate::judge::paths::grouped(rows, |(record, _)| record.hash.clone());
+        let largest = |(_, rows): (String, Vec<(&Record, &ErrorRow)>)| {
+            // Every output must have the error.
+            let record = rows[0].0;
+            let is_whole = rows.len() == record.case.time_factors.len();
+            let largest = rows
+                .into_iter()
+                .map(|(_, row)| row)
+                .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+            is_whole.then(|| (record.clone(), largest.clone()))
+        };
+        let runs: Vec<(Record, ErrorRow)> = runs.into_iter().filter_map(largest).collect();
+        for bound in BOUNDS {
+            let cost = |record: &Record| (record.counters.point_updates, record.case.cells);
+            let cheapest = runs
+                .iter()
+                .filter(|(_, row)| row.value.abs() <= bound)
+                .min_by_key(|(record, _)| cost(record));
+            found.extend(cheapest.map(|(record, row)| WithinFinding {
+                error: row.clone(),
+                bound,
+                case: record.hash.clone(),
+                point_updates: record.counters.point_updates,
+                largest_step: record.step_sizes.largest,
+                seconds: row.time_factor * record.case.seconds_per_time_factor(),
+            }));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, solved};
+    use crate::judge::verdict::judge_paths;
+
+    /// Two meshes and one time, the least that answers anything: every error is in the findings once, a failed run is told
+    /// with its reason and is within no bound, and what is read is what was written.
+    #[test]
+    fn two_meshes_and_one_time_are_told_with_every_error_and_every_failure() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+            method = ['MPM', 'GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4, 8]\n";
+        let (study, mut records) = solved("s", text);
+        records[0].status = failed_at(3);
+        let paths = StudyPaths::of(&records);
+        let judgements = judge_paths(&study, &records, &paths, Tier::Full);
+        let found = Findings::new(&study, &records, &paths, &judgements, Tier::Full).expect("sound cases");
+        assert_eq!((found.runs.len(), found.left_out), (4, 0));
+        let failure = found.runs[0].failure.as_ref().expect("it failed");
+        assert_eq!((failure.kind.name(), failure.step), ("unstable", 3));
+        assert!(found.within.iter().all(|one| one.case != records[0].hash), "{:?}", found.within);
+        let bound = |bound: f64| found.within.iter().filter(|one| one.bound == bound).count();
+        assert!(bound(0.05) >= bound(0.01) && bound(0.05) > 0);
+        let two = |one: &&SeriesFinding| one.levels.len() == 2 && one.class == Class::NotEvaluable;
+        assert!(found.series.iter().filter(two).count() >= 8, "two levels have no class but errors");
+        let json = serde_json::to_string(&found).expect("plain data");
+        assert_eq!(serde_json::from_str::<Findings>(&json).expect("what was written"), found);
+    }
+}
