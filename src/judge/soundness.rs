@@ -6,11 +6,10 @@ use crate::judge::proposals;
 use crate::measure::record_checks;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
+use oedometer_exact::solution::ROUND_OFF;
 
 /// A reference must be more accurate than this share of the smallest error against it.
 const TAIL_SHARE: f64 = 0.1;
-/// A reference this accurate is exact in the numbers of a machine, and so are results as near to it.
-const ROUND_OFF: f64 = 1e-13;
 
 /// What is wrong with a record, as sentences; empty where it is sound.
 pub fn complaints(record: &Record) -> Vec<String> {
@@ -25,6 +24,7 @@ pub fn complaints(record: &Record) -> Vec<String> {
             .iter()
             .filter(|row| row.quantity == Quantity::Pressure && row.reference == reference.name);
         let smallest = pressures.map(|row| row.absolute).fold(f64::INFINITY, f64::min);
+        // No reference is better than its round-off, whatever a result at round-off asks.
         if reference.tail_bound > (TAIL_SHARE * smallest).max(ROUND_OFF) {
             found.push(format!(
                 "the reference {} is only accurate to {:.1e}, and the smallest error against it is {smallest:.1e}",
@@ -114,6 +114,18 @@ time_step = [{ growth = 0.05 }]
         // Of two references the poor one is named.
         let second = said(|record| record.references[1].tail_bound = 1.0);
         assert!(second.contains("the reference terzaghi-incompressible"), "{second}");
+    }
+
+    #[test]
+    fn a_reference_at_round_off_serves_results_at_round_off_and_no_worse_one_does() {
+        let told = |bound: f64| {
+            said(|record| {
+                record.references.iter_mut().for_each(|reference| reference.tail_bound = bound);
+                record.errors.iter_mut().for_each(|row| row.absolute = 0.0);
+            })
+        };
+        assert_eq!(told(ROUND_OFF), "");
+        assert!(told(1.1 * ROUND_OFF).contains("is only accurate to 1.1e-14"), "{}", told(1.1 * ROUND_OFF));
     }
 
     #[test]

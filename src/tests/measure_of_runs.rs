@@ -4,6 +4,7 @@ use crate::campaign::runner::records_of;
 use crate::case::Case;
 use crate::measure::other_measures::SPURIOUS_VELOCITY;
 use crate::measure::theory::{constant_recovery_error, known_reference, theory_isochrones};
+use crate::record::Record;
 use crate::record::csv::tidy;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -74,5 +75,22 @@ fn the_degree_of_consolidation_of_a_run_is_that_of_its_solution() {
         let exact = own.and_then(|own| own.degree_of_consolidation(time_factor)).expect("a degree");
         let found = record.history.last().expect("an end").degree_of_consolidation;
         assert!((found / exact - 1.0).abs() < 0.02, "{scene}: {found} for {exact}");
+    }
+}
+
+#[test]
+fn the_last_digits_of_a_soil_that_yields_do_not_decide_when_an_iteration_ends() {
+    let records = records_of(
+        "title = \"t\"\nscene = \"yield-front\"\noutput.time_factors = [2e-4]\n[[sweep]]\nmethod = [\"GIMP-SRI\"]\n\
+         integrator = [\"implicit\"]\nreload_modulus = [1.2e7, 12000000.000000002, 12000000.000000013]\ncells = [120]\n\
+         time_step = [{ growth = 0.02 }]\n",
+    );
+    let values = |record: &Record| record.errors.iter().map(|row| row.value).collect::<Vec<_>>();
+    let first = values(&records[0]);
+    assert_eq!(records.len(), 3);
+    for other in records[1..].iter().map(values) {
+        for (value, other) in first.iter().zip(&other) {
+            assert!((value / other - 1.0).abs() < 1e-9, "{value} and {other}");
+        }
     }
 }

@@ -65,7 +65,7 @@ pub struct NewtonStepper<const D: usize> {
     /// Error that a stage may leave in the scaled unknowns.
     tolerance: f64,
     /// Correction of the scaled unknowns by round-off, which a displacement sums over all cells: that of strains which are
-    /// differences of numbers near one, or of those of a body that keeps its shape and remembers nothing.
+    /// differences of numbers near one, or of those of a body that keeps its shape.
     round_off: f64,
     /// The same as measured where an iteration came to rest, and the duration of that stage, s.
     measured: [f64; 2],
@@ -101,7 +101,8 @@ impl<const D: usize> NewtonStepper<D> {
         let scales = trial.unknowns.scales;
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
         let strain = plan.pressure_scale / scales.pressure;
-        let is_linear = !trial.body.configuration.deforms() && !trial.body.has_history();
+        let keeps_shape = !trial.body.configuration.deforms();
+        let is_linear = keeps_shape && !trial.body.has_history();
         let zero = vec![0.0; trial.unknowns.count];
         Self {
             factors: Factors::of_shape(&tangent, plan.schedule.threads, plan.schedule.time_limit),
@@ -114,7 +115,7 @@ impl<const D: usize> NewtonStepper<D> {
             factored: None,
             contraction: SLOW,
             tolerance: TOLERANCE * strain,
-            round_off: f64::EPSILON * cells * cells * if is_linear { strain } else { 1.0 },
+            round_off: f64::EPSILON * cells * cells * if keeps_shape { strain } else { 1.0 },
             measured: [0.0; 2],
             difference: if is_linear { strain } else { DIFFERENCE },
             error_scales: ErrorScales::of(&scales, plan),
