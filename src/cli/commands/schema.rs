@@ -36,9 +36,9 @@ pub enum Document {
     Mapping,
     /// The file that tells an attached solver its case
     Case,
-    /// What a report has found of the race: `findings.json` beside the front page
+    /// What a report has found of the race: findings.json beside the front page
     Findings,
-    /// What is found about a study: `findings.json` beside its page
+    /// What is found about a study: NAME.findings.json beside its page
     StudyFindings,
 }
 
