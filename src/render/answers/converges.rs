@@ -177,7 +177,7 @@ fn sentence(refined: &Refined<'_>) -> String {
     let does = if found.iter().all(|(is_settled, _)| *is_settled) {
         format!("converges to {}", labels::solution(refined.reference))
     } else {
-        format!("does not have a settled order against {} everywhere", labels::solution(refined.reference))
+        format!("has no settled order against {} in some quantity", labels::solution(refined.reference))
     };
     let orders = found.map(|(_, words)| words).join(", ");
     let whose = if method == PAPERS { ", the paper's method," } else { "" };

@@ -95,7 +95,7 @@ fn names(rows: &[&Row<'_>]) -> String {
 }
 
 /// What is said where the steps are too few for an order.
-const NO_ORDER: &str = "none, of too few steps,";
+const NO_ORDER: &str = "too few steps for an order";
 
 /// The orders, the paths with the same one together; then where steps are unstable; then what the step leaves of the error.
 fn sentence(rows: &[Row<'_>], time: f64) -> String {
@@ -107,7 +107,7 @@ fn sentence(rows: &[Row<'_>], time: f64) -> String {
         Some(format!("`{}` ends {} from {step} on", row.label, row.unstable?.status.name()))
     });
     let unstable = unstable.collect::<Vec<_>>().join(", ");
-    let ends = if unstable.is_empty() { "Every step that was tried is stable".to_owned() } else { unstable };
+    let ends = if unstable.is_empty() { "All steps tried are stable".to_owned() } else { unstable };
     format!(
         "Order of the pressure in the step, from the differences between neighbouring steps at T_v = {time}: {orders}. {ends}.{}",
         left(rows).unwrap_or_default()
@@ -127,7 +127,7 @@ fn left(rows: &[Row<'_>]) -> Option<String> {
         number::percent(fine?),
         labels::step(most.smallest),
         if change(most)? > STEP_COUNTS {
-            "smaller steps pay"
+            "the step is too large for the mesh"
         } else {
             "the mesh, not the step, makes the error"
         }
@@ -145,7 +145,7 @@ fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
         let stable = || Cell::missing("every step that was tried is stable");
         vec![
             Cell::Code(row.label.clone()),
-            row.order.as_deref().unwrap_or(NO_ORDER.trim_end_matches(',')).into(),
+            row.order.as_deref().unwrap_or(NO_ORDER).into(),
             labels::step(row.largest).into(),
             error(0),
             labels::step(row.smallest).into(),
@@ -205,11 +205,11 @@ mod tests {
             rows
         };
         let start = "Order of the pressure in the step, from the differences between neighbouring steps at T_v = 0.1: 2.00 for \
-                     `a`, `c`, `d`, `e`, 1 more; none, of too few steps, for `b`. `b` ends unstable from Δt = 0.04 s on.";
+                     `a`, `c`, `d`, `e`, 1 more; too few steps for an order for `b`. `b` ends unstable from Δt = 0.04 s on.";
         for (b, left) in [
             (
                 [Some(0.3), Some(0.1)],
-                " `b` is off by 30.0 % with Δt = 0.04 s and by 10.0 % with Δt = 0.02 s: smaller steps pay.",
+                " `b` is off by 30.0 % with Δt = 0.04 s and by 10.0 % with Δt = 0.02 s: the step is too large for the mesh.",
             ),
             (
                 [Some(0.3), Some(0.274)],
@@ -225,7 +225,7 @@ mod tests {
         let unknown = [row("a", Some("1.00"), [None; 2]), row("c", Some("2.00"), [None; 2])];
         let told = sentence(&unknown, 0.1);
         assert!(
-            told.ends_with(": 1.00 for `a`; 2.00 for `c`. Every step that was tried is stable."),
+            told.ends_with(": 1.00 for `a`; 2.00 for `c`. All steps tried are stable."),
             "{told}"
         );
         let table = table(&of([Some(0.3), None]), "terzaghi", 0.1);
@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(cells[0], ["a", "2.00", "Δt = 0.04 s", "1.20e-1", "Δt = 0.02 s", "1.10e-1", "–"]);
         assert_eq!(
             cells[1],
-            ["b", "none, of too few steps", "Δt = 0.04 s", "3.00e-1", "Δt = 0.02 s", "–", "Δt = 0.04 s"]
+            ["b", "too few steps for an order", "Δt = 0.04 s", "3.00e-1", "Δt = 0.02 s", "–", "Δt = 0.04 s"]
         );
     }
 }

@@ -347,7 +347,7 @@ fn difference(one: &Difference) -> String {
 fn case_change(one: &CaseChange) -> String {
     let (mood, word) = judgement_of(one);
     let counts = format!(
-        "{word}: cost {} of golden, {}, {} fell, {} without a partner",
+        "{word}: {} times the golden cost, {}, {} fell, {} measured in only one of the two",
         number::number(one.cost_ratio),
         count_of(one.worse, "value grew", "values grew"),
         one.better,

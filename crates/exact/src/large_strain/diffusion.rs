@@ -84,7 +84,7 @@ impl Diffusion {
             Law::Linear => return [1.0 + self.porosity * self.compliance, 1.0, 1.0],
             Law::LogLinear | Law::Engineering => volume.recip(),
             Law::PorosityDependent => (volume * volume).recip(),
-            // Refused before: nothing follows from what is no number.
+            // Refused before; NaN fails every check that follows.
             Law::NeoHookean | Law::Preconsolidated | Law::VonMises => f64::NAN,
         };
         let pores = volume - (1.0 - self.porosity);

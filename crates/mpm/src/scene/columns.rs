@@ -159,7 +159,7 @@ pub(super) static STANDING_WAVE: SceneDefinition = SceneDefinition {
 
 /// A column at rest under its own weight: nothing acts that its start does not balance, and nothing may move.
 pub(super) static AT_REST: SceneDefinition = SceneDefinition {
-    summary: "column without load at rest under its own weight: any motion is the method's own",
+    summary: "column without load at rest under its own weight: whatever moves is an error of the method",
     references: &[ReferenceKind::AtRest],
     ..SceneDefinition::UNLOADED
 };

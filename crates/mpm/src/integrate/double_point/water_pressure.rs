@@ -14,7 +14,7 @@
 //! ```
 //!
 //! Forces of each point by its own shape functions are no adjoint of rates once points are off the middle of their
-//! cells: the wave operator is not symmetric, and waves grow at any step. Every point carries the slope `g` of the
+//! cells: the wave operator is not symmetric, and waves grow whatever the step. Every point carries the slope `g` of the
 //! pressure where it is, which takes the slope of the cells' rates, and tells what its line says in the middle `x_c` of
 //! what the soil fills of its cell. `p̄` then takes the cell's rate whatever `R` gives to single points, and however few
 //! they are. A uniform pressure presses as before: what of a cell the domains fill is counted where it lies.
