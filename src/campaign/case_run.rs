@@ -8,9 +8,10 @@ use crate::record::{Machine, Record, Status, WallSample};
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::integrate::critical_step::formula;
+use oedometer_mpm::integrate::integrator::StepBound;
 use oedometer_mpm::run::observed::Stopped;
 use oedometer_mpm::run::results::outcome::{FailureKind, Outcome};
-use oedometer_mpm::run::{Kernel, Schedule};
+use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_mpm::scene::problem::SceneProblem;
 use oedometer_mpm::time_limit::TimeLimit;
@@ -149,7 +150,12 @@ fn solved(
 ) -> Result<(Outcome, WallSample), ExactError> {
     let problem = problem_of(case)?;
     let Cores { threads, alone } = course.cores;
-    let schedule = schedule_of(case, course);
+    let mut schedule = schedule_of(case, course);
+    let is_bound = case.integrator.step_bound() == StepBound::AllWaves;
+    if is_bound && !matches!(case.time_step, TimeStepRule::Stable(_)) {
+        // The limit is a diagnosis of this program, and no work of the method: it is not timed.
+        schedule.critical_step = Some(problem.predicted_critical_step(&case.settings));
+    }
     let clock = clock_of(threads);
     let (start, worked) = (Instant::now(), clock());
     let outcome = problem.run(&schedule, observe);

@@ -261,7 +261,7 @@ impl<'a> Begun<'a> {
         let cases: Vec<&Case> = self.cases.iter().map(|(case, _)| *case).collect();
         let ladder = |places: Vec<usize>| {
             let known = places.iter().filter_map(|place| self.cases[*place].1.as_ref()?.as_ref().ok());
-            let mut begun = Refinement::default();
+            let mut begun = Refinement::of(study);
             known.for_each(|record| begun.add(record));
             let jobs = places.into_iter().filter(is_open).map(job).collect();
             Ladder { jobs, begun: Some(begun) }

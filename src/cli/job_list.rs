@@ -112,7 +112,7 @@ pub fn missing_of<'a>(study: &Study, cases: &[&'a Case], folder: &Path) -> Vec<&
         return missing;
     }
     let records: Vec<Record> = cases.iter().filter_map(|case| store.kept(case)).collect();
-    refinement::wanted(missing, &records)
+    refinement::wanted(study, missing, &records)
 }
 
 fn quoted_path(path: &Path) -> String {

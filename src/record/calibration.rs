@@ -55,6 +55,8 @@ fn work_kind(record: &Record) -> WorkKind {
         _ if record.counters.steps == 0 => "start",
         StepKind::Assembled => "assembled",
         StepKind::PointWise => "point-wise",
+        // Nothing moves, and soil that yields asks for iterations.
+        StepKind::Linear if record.counters.iterations > 0 => "iterated",
         StepKind::Linear => "linear",
         StepKind::Inertial => "inertial",
         StepKind::Newton => "newton",

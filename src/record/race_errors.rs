@@ -5,6 +5,10 @@ use crate::record::{Record, Status};
 
 /// Errors of a run that are judged: of pressure, effective stress, and settlement, displacement or load.
 pub const ERRORS: usize = 3;
+/// An error that shows the physics and no more.
+pub const ROUGH: f64 = 1e-1;
+/// The finishing line.
+pub const ARRIVED: f64 = 1e-2;
 /// An error below this is as good as any smaller one: nobody refines further.
 pub const NEGLIGIBLE: f64 = 1e-3;
 

@@ -123,7 +123,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
     let there = cases.len() - holes.len();
     if study.is_race {
         let records: Vec<Record> = cases.iter().filter_map(|case| target.kept(case)).collect();
-        holes = refinement::wanted(holes, &records);
+        holes = refinement::wanted(study, holes, &records);
     }
     if there > 0 {
         let table = write_table(study, &target, &[], Some(TableForm::Plain))?;

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Costs up to this multiple of the best are as good: what the calibration scatters.
-pub const TIE: f64 = 1.1;
+/// Costs up to this multiple of the best are as good: what measured seconds scatter about the calibration.
+pub const TIE: f64 = 1.25;
 /// Multiple of the best cost up to which a contender is nearly as good.
 pub const NEARLY: f64 = 2.0;
 /// Multiples of the best cost at which every profile has a value.

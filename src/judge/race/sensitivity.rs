@@ -2,11 +2,12 @@
 
 use crate::judge::race::finish::RaceQuantity;
 use crate::judge::race::profile::{Choice, CostTable};
+use crate::record::race_errors::ARRIVED;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Error that a contender must reach.
-pub const THRESHOLD: f64 = 1e-2;
+pub const THRESHOLD: f64 = ARRIVED;
 /// Other thresholds that are tried.
 pub const OTHER_THRESHOLDS: [f64; 3] = [5e-3, 2e-2, 3e-2];
 

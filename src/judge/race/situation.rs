@@ -1,7 +1,7 @@
 //! What the records of a situation of the race come to: per contender its meshes, its costs and why it does not arrive, and
 //! its measures on the finest mesh that all share.
 
-use crate::campaign::refinement::Refinement;
+use crate::campaign::refinement::{Refinement, finest_mesh};
 use crate::case::contender::{CONTENDERS, Contender};
 use crate::case::{Quantity, Sample, Task};
 use crate::judge::path_context;
@@ -10,7 +10,7 @@ use crate::judge::race::finish::{Level, RaceQuantity, Reason, cost_to, reason_of
 use crate::judge::race::sensitivity::THRESHOLD;
 use crate::measure::statistics::median;
 use crate::record::calibration::cost_of;
-use crate::record::race_errors::{NEGLIGIBLE, RunErrors, errors_of, largest_error};
+use crate::record::race_errors::{NEGLIGIBLE, ROUGH, RunErrors, errors_of, largest_error};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// Thresholds to which the race tells the cost.
-pub const THRESHOLDS: [f64; 3] = [0.1, THRESHOLD, NEGLIGIBLE];
+pub const THRESHOLDS: [f64; 3] = [ROUGH, THRESHOLD, NEGLIGIBLE];
 
 /// A situation: a study whose sweeps name the race.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -122,7 +122,7 @@ impl Situation {
             moves: study.scene.configuration() == Configuration::Updated,
             integrator: case.integrator.name().to_owned(),
             is_property: study.scene.is_at_rest() || case.task == Task::Stability,
-            budget: study.planned.iter().map(|planned| planned.case.cells).max()?,
+            budget: finest_mesh(study),
             common_cells,
             entries: runs
                 .iter()
@@ -197,7 +197,7 @@ impl<'a> Runs<'a> {
         let step = |record: &Record| record.step_sizes.target;
         runs.sort_by(|a, b| a.case.cells.cmp(&b.case.cells).then(step(b).total_cmp(&step(a))));
         let (mut path, mut two_steps) = (Vec::<&Record>::new(), None);
-        let mut refinement = Refinement::default();
+        let mut refinement = Refinement::of(study);
         for record in runs {
             match path.last() {
                 // Of several shorter steps the longest.

@@ -2,6 +2,7 @@
 
 use crate::case::contender::PAPERS;
 use crate::judge::race::finish::{RaceQuantity, Reason};
+use crate::judge::race::profile::TIE;
 use crate::judge::race::sensitivity::Change;
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question as RaceQuestion, RaceFindings};
@@ -398,7 +399,7 @@ fn matrix(situations: &[Situation], show: &dyn Fn(&Situation, &Entry) -> Shown) 
 fn cost_cell(situation: &Situation, entry: &Entry) -> Shown {
     let least = situation.entries.iter().filter_map(|one| one.costs[1]).min_by(f64::total_cmp);
     match (entry.costs[1], least) {
-        (Some(cost), Some(least)) => (Shade::of_ratio(cost / least / 1.1), number::seconds(cost), Some(cost)),
+        (Some(cost), Some(least)) => (Shade::of_ratio(cost / least / TIE), number::seconds(cost), Some(cost)),
         _ if entry.reason == Some(Reason::ByDefinition) => (Shade::Empty, "–".to_owned(), None),
         _ => (Shade::Failed, "✗".to_owned(), None),
     }

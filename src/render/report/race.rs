@@ -2,6 +2,7 @@
 //! all situations for programs.
 
 use crate::judge::race::finish::RaceQuantity;
+use crate::judge::race::sensitivity::{OTHER_THRESHOLDS, THRESHOLD};
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question, RaceFindings};
 use crate::render::chart::{Chart, ChartAxis, Series, Size};
@@ -114,7 +115,8 @@ fn table_of(situation: &Situation, ranked: &[&Entry]) -> Table {
 /// The columns of the race's table, for everybody who reads it by name.
 const HEADER: &str = "family|situation|contender|moves|cost_10_percent|cost_1_percent|cost_tenth_percent|reason|cells|\
                       error_pressure|error_stress|error_settlement|order|class|scatter|oscillation|locking|seconds_1_percent|\
-                      cost_pressure|cost_stress|cost_settlement";
+                      cost_pressure|cost_stress|cost_settlement|integrator|cost_half_percent|cost_2_percent|cost_3_percent|\
+                      cost_equal_cells";
 
 /// Every contender in every situation.
 pub fn whole_table(findings: &RaceFindings) -> Table {
@@ -142,9 +144,10 @@ fn row(situation: &Situation, entry: &Entry) -> Vec<Cell> {
     row.push(entry.class.as_deref().unwrap_or_default().into());
     row.extend([entry.scatter, entry.oscillation, entry.locking, entry.seconds].map(number));
     let alone = [RaceQuantity::Pressure, RaceQuantity::Stress, RaceQuantity::Settlement];
-    row.extend(
-        alone.map(|quantity| number(entry.cost_to(quantity, crate::judge::race::sensitivity::THRESHOLD))),
-    );
+    row.extend(alone.map(|quantity| number(entry.cost_to(quantity, THRESHOLD))));
+    row.push(situation.integrator.as_str().into());
+    row.extend(OTHER_THRESHOLDS.map(|threshold| number(entry.cost_to(RaceQuantity::All, threshold))));
+    row.push(number(entry.cost));
     row
 }
 

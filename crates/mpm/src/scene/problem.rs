@@ -2,7 +2,7 @@
 //! of dimensions into a type.
 
 use crate::actions::surface_load::LoadShape;
-use crate::integrate::critical_step::predicted::{predict_for_run, whole_growth};
+use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run, whole_growth};
 use crate::integrate::results::outcome::Outcome;
 use crate::kernel::ExplicitSettings;
 use crate::kernel::body::{DrivenPlate, Problem};
@@ -74,13 +74,22 @@ impl SceneProblem {
         }
     }
 
+    /// Its predicted critical step, s: that of the formula where no limit is known.
+    pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
+        self.predicted(settings).0
+    }
+
     /// Its predicted critical step, s, where a limit is known.
     pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
-        let (step, growing) = match self {
+        let (step, growing) = self.predicted(settings);
+        growing.is_none().then_some(step)
+    }
+
+    fn predicted(&self, settings: &ExplicitSettings) -> (f64, Option<GrowingMode>) {
+        match self {
             Self::Column(problem) => predict_for_run(problem, settings),
             Self::Plane(problem) => predict_for_run(problem, settings),
-        };
-        growing.is_none().then_some(step)
+        }
     }
 
     /// Growth per step of what grows fastest in a plane under explicit steps of a size, s, where its step is small enough

@@ -1,6 +1,7 @@
 //! The critical time step of a problem, predicted from its own operators.
 
 use crate::integrate::assembled::step::AssembledStep;
+use crate::integrate::critical_step::known::{Limit, key_of, known_or};
 use crate::integrate::critical_step::spectral_radius::{GROWTH_TOLERANCE, SLOW_GROWTH};
 use crate::integrate::critical_step::{formula, spectral_radius};
 use crate::kernel::ExplicitSettings;
@@ -112,12 +113,18 @@ pub fn predict<const D: usize>(
     };
     let assembled = AssembledStep::new(&Body::new(problem));
     let sharp = most_cells > FEW_CELLS;
-    let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
     let step = FAR_BELOW * safe;
-    let growing = found.is_none().then(|| GrowingMode {
-        step,
-        growth: spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN),
-    });
+    let search = || {
+        let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
+        let growth = || spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN);
+        Limit { step: found, growth: found.is_none().then(growth) }
+    };
+    let Limit { step: found, growth } = if D > 1 && assembled.unknowns() <= spectral_radius::MOST_SQUARED {
+        known_or(key_of(&assembled, settings, safe, sharp), search)
+    } else {
+        search()
+    };
+    let growing = growth.map(|growth| GrowingMode { step, growth });
     // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
     let is_slow = |mode: &GrowingMode| mode.growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
     let growing = growing.filter(|mode| !is_slow(mode));

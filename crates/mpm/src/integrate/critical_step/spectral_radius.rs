@@ -93,7 +93,7 @@ fn is_within(operator: &DMatrix<f64>, most: f64) -> bool {
 }
 
 /// Unknowns of the largest operator that is squared: a plane of eight by eight cells.
-const MOST_SQUARED: usize = 640;
+pub const MOST_SQUARED: usize = 640;
 /// Growth per step that counts as none in a plane, at the formula's step: a doubling takes 70 000 steps. Smaller steps are
 /// allowed the same growth per time, for growth of the spatial equations does not depend on the step.
 pub const SLOW_GROWTH: f64 = 1e-5;
