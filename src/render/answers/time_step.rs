@@ -224,10 +224,7 @@ mod tests {
         }
         let unknown = [row("a", Some("1.00"), [None; 2]), row("c", Some("2.00"), [None; 2])];
         let told = sentence(&unknown, 0.1);
-        assert!(
-            told.ends_with(": 1.00 for `a`; 2.00 for `c`. All steps tried are stable."),
-            "{told}"
-        );
+        assert!(told.ends_with(": 1.00 for `a`; 2.00 for `c`. All steps tried are stable."), "{told}");
         let table = table(&of([Some(0.3), None]), "terzaghi", 0.1);
         let cells: Vec<Vec<String>> =
             table.rows[..2].iter().map(|row| row.iter().map(Cell::show).collect()).collect();

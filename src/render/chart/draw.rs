@@ -76,7 +76,7 @@ impl Layout {
         let y_axis = |height: f64| PlacedAxis::new(&chart.y, y_ends, (top + height, top), true);
         let left = PAD + y_axis(tall).label_width() + BESIDE;
         let bar_axis = |height: f64| {
-            let reach = chart.drawn_field().filter(|(field, _)| field.has_bar)?.0.extent();
+            let reach = chart.drawn_field()?.0.extent();
             let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };

@@ -294,8 +294,6 @@ pub struct SlopeTriangle {
 pub struct ColourField {
     /// Quantity and unit, written at the colour bar.
     pub label: String,
-    /// Whether it has a colour bar; of several that share a reach one is enough.
-    pub has_bar: bool,
     /// Value of the last colour on both sides of zero, where several fields share it; the largest own value if
     /// `None`.
     pub reach: Option<f64>,

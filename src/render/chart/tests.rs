@@ -226,7 +226,6 @@ fn every_point_and_every_cell_has_a_row() {
     let (x_edges, y_edges) = (vec![0.0, 1.0, 2.0, 4.0], vec![0.0, 2.0, 6.0]);
     let field = ColourField {
         label: "p".to_owned(),
-        has_bar: true,
         reach: None,
         x_edges,
         y_edges,

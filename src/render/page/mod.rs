@@ -159,6 +159,15 @@ impl Figure {
         Ok(self.drawn.get_or_init(|| drawn))
     }
 
+    /// The chart as an SVG that stands alone: dark where the reader's screen is.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn standalone_svg(&self) -> Result<String, RenderError> {
+        let dark = "<style>@media (prefers-color-scheme: dark) { :root { filter: invert(.905) hue-rotate(180deg); } }</style>";
+        Ok(self.svg()?.replacen('>', &format!(">\n{dark}"), 1))
+    }
+
     /// Changes the chart.
     #[must_use]
     pub fn with_chart(mut self, change: impl FnOnce(&mut Chart)) -> Self {

@@ -104,24 +104,27 @@ pub fn survival(one: &StudyResults<'_>) -> Option<Table> {
     let mut columns = columns("case");
     columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
     // A row a setup, found by its name: there may be thousands.
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
+    let mut rows: Vec<([usize; 2], Vec<Cell>)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     for record in one.records {
         let setup = setup_of(record);
         let place = *places.entry(setup).or_insert_with_key(|setup| {
             let not_tried = methods.iter().map(|_| Cell::missing(NOT_TRIED));
-            rows.push(std::iter::once(setup.as_str().into()).chain(not_tried).collect());
+            let mesh = [record.case.cells, record.case.points_per_cell];
+            rows.push((mesh, std::iter::once(setup.as_str().into()).chain(not_tried).collect()));
             rows.len() - 1
         });
         let runner = runner_of(record);
         let column = methods.iter().position(|method| *method == runner).map(|column| column + 1);
         // Of several runs of a setup the first is shown.
-        if let Some(cell) = column.and_then(|column| rows[place].get_mut(column))
+        if let Some(cell) = column.and_then(|column| rows[place].1.get_mut(column))
             && matches!(cell, Cell::Missing(_))
         {
             *cell = end_of(record);
         }
     }
+    rows.sort_by_key(|(mesh, _)| *mesh);
+    let rows = rows.into_iter().map(|(_, row)| row);
     Some(Table::of("How each case ended", columns, rows).note(
         "a number is the relative L_2 error of the pressure at the points at the last output, ✗ where it is as large \
          as the answer; ✗ with the name of a failure and its step",

@@ -72,8 +72,7 @@ fn figure(
     time_factor: f64,
     oscillation: Option<f64>,
 ) -> Figure {
-    // All fields share their colours, which reach a little beyond the exact values, and one bar.
-    let is_exact = oscillation.is_none();
+    // All fields share their size and their colours, which reach a little beyond the exact values.
     let largest_of = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
     let reach = REACH * largest_of(&field.exact);
     let mut chart = Chart::new(
@@ -83,13 +82,12 @@ fn figure(
     );
     chart.field = Some(ColourField {
         label: "p/q (–)".to_owned(),
-        has_bar: is_exact,
         reach: Some(reach),
         x_edges: field.x_edges.clone(),
         y_edges: field.y_edges.clone(),
         values: values.to_vec(),
     });
-    chart.size = Size { width: if is_exact { 380.0 } else { 300.0 }, plot_height: 240.0, equal_units: true };
+    chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
     let largest = largest_of(values);
     let beyond = if largest > reach {
         format!(" Values reach {}, beyond the common scale.", number::number(largest))
@@ -309,10 +307,10 @@ mod tests {
         assert_eq!(drawn(&[2.5, -1.0], Some(1.0)).caption, "GIMP at T_v = 0.2: oscillation index 1.00.");
         let of = |figure: &Figure| {
             let field = figure.chart.field.as_ref().expect("a field");
-            (field.has_bar, field.reach, field.values.clone(), figure.chart.size.width)
+            (field.reach, field.values.clone(), figure.chart.size.width)
         };
-        assert_eq!(of(&beyond), (false, Some(2.5), field.computed.clone(), 300.0));
-        assert_eq!(of(&drawn(&field.exact, None)), (true, Some(2.5), field.exact.clone(), 380.0));
+        assert_eq!(of(&beyond), (Some(2.5), field.computed.clone(), 380.0));
+        assert_eq!(of(&drawn(&field.exact, None)), (Some(2.5), field.exact.clone(), 380.0));
     }
 
     #[test]

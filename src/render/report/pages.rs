@@ -167,7 +167,6 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
-        blocks.extend(checks::survival(results).map(Block::Table));
         blocks.extend(maps::cheapest_methods(results));
         blocks.extend(layer::load_settlement(results));
         blocks.extend(layer::blocks(results)?);
@@ -176,6 +175,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
             blocks.extend(refinement::blocks(results, axis));
         }
     }
+    blocks.extend(checks::survival(results).map(|table| Block::Details {
+        summary: "How each case ended".to_owned(),
+        blocks: vec![Block::Table(table)],
+    }));
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
     blocks.extend(checks::measures(results));
     blocks.extend(maps::critical_steps(results));

@@ -111,14 +111,21 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
     for (slot, theory) in theory_isochrones(&record.case, own)?.into_iter().enumerate() {
         let computed = computed_isochrone(record, theory.time_factor);
         let name = isochrone_name(results, &theory);
-        chart.series.push(Series::theory(own.name(), theory.line).slot(0));
+        chart.series.push(if results.study.scene.has_waves() {
+            // Lines of waves cross: each has the colour of its time.
+            let name = if slot == 0 { own.name() } else { "" };
+            Series::new(name, theory.line).style(Style::Line).slot(slot)
+        } else {
+            Series::theory(own.name(), theory.line).slot(0)
+        });
         chart.series.push(Series::new(name, computed).style(Style::Markers).slot(slot));
     }
     let caption = format!(
-        "Markers: {} of {} on {} cells. Lines: theory.",
+        "Markers: {} of {} on {} cells. Lines: theory{}.",
         if record.case.is_attached() { record.main_sample().name() } else { "material points" },
         record.case.method,
-        record.case.cells
+        record.case.cells,
+        if results.study.scene.has_waves() { ", in the colour of its time" } else { "" }
     );
     Ok(results.figure(&format!("isochrones-{}", record.case.method), chart, caption))
 }

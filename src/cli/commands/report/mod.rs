@@ -298,7 +298,7 @@ fn write_page(path: &Path, text: &str) -> anyhow::Result<()> {
 fn write_exports(folder: &Path, page: &Page) -> anyhow::Result<()> {
     let figures = folder.join("figures");
     for figure in all_figures(page) {
-        write_page(&figures.join(format!("{}.svg", figure.name)), figure.svg()?)?;
+        write_page(&figures.join(format!("{}.svg", figure.name)), &figure.standalone_svg()?)?;
         write_page(&figures.join(format!("{}.csv", figure.name)), &figure.chart.data_csv())?;
     }
     for (name, table) in tables(page) {

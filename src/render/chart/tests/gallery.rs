@@ -127,7 +127,6 @@ pub(super) fn pressure_field() -> Chart {
     values[30] = f64::NAN;
     chart.field = Some(ColourField {
         label: "p/q (–)".into(),
-        has_bar: true,
         reach: None,
         x_edges: edges.clone(),
         y_edges: edges,
@@ -170,14 +169,8 @@ fn column() -> Chart {
     let values = (0..20).map(|i| pressure(1.0 - (f64::from(i) + 0.5) / 20.0, 0.1) * 2e5).collect();
     let mut chart =
         Chart::new("Pressure in the column", ChartAxis::linear("x (m)"), ChartAxis::linear("y (m)"));
-    chart.field = Some(ColourField {
-        label: "p (Pa)".into(),
-        has_bar: true,
-        reach: None,
-        x_edges: vec![0.0, 0.1],
-        y_edges,
-        values,
-    });
+    chart.field =
+        Some(ColourField { label: "p (Pa)".into(), reach: None, x_edges: vec![0.0, 0.1], y_edges, values });
     chart.size = Size { width: 320.0, plot_height: 360.0, equal_units: true };
     chart
 }
