@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Counted cost, s, that a mesh may take of a contender that has not arrived.
 const MOST_WORK: f64 = 1.0;
 /// Counted cost, s, that a mesh may take of one that has: it shows that the error stays below 1 %, or reaches 0.1 %.
-const MORE_WORK: f64 = 0.3;
+const MORE_WORK: f64 = 0.1;
 /// By how much an order may rise on finer meshes before a contender is given up.
 const RISE: f64 = 1.0;
 
