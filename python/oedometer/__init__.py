@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from array import array
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, SupportsFloat, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, SupportsFloat, Tuple, Union
 
 from . import _native
+from .data import meaning as _meaning, written as _written
 
 try:
     import numpy as _numpy
@@ -31,6 +33,7 @@ __all__ = [
     "Table",
     "assert_below",
     "assert_converges",
+    "case",
     "convergence",
     "converges",
     "exact",
@@ -182,7 +185,9 @@ class Table(Dict[str, Any]):
         names = list(dict.fromkeys(name for row in rows for name in row))
         columns = {name: [row.get(name) for row in rows] for name in names}
         if _numpy is not None:
-            return cls({name: _numpy.array(column) for name, column in columns.items()})
+            # Lists of a row, as the errors of its meshes, stay lists.
+            nested = {name for name, column in columns.items() if any(isinstance(one, list) for one in column)}
+            return cls({name: column if name in nested else _numpy.array(column) for name, column in columns.items()})
         return cls(columns)
 
     def rows(self) -> List[Dict[str, Any]]:
@@ -215,6 +220,9 @@ class Score:
     """The scene's own reference."""
     name: str = ""
     """The files, where it was read from files."""
+    series: Table = field(default_factory=Table)
+    """Of results on several meshes a row a measure: ``time_factor``, ``quantity``, ``sample``, ``norm``, ``reference``, the
+    ``cells`` of the meshes with their ``errors``, ``order``, ``class`` and ``reason``."""
 
     def error(
         self,
@@ -240,9 +248,10 @@ class Score:
 
 def score(
     scene: str,
+    data: Any = None,
     *,
-    time: Numbers,
-    height: Numbers,
+    time: Optional[Numbers] = None,
+    height: Optional[Numbers] = None,
     pressure: Optional[Numbers] = None,
     effective_stress: Optional[Numbers] = None,
     displacement: Optional[Numbers] = None,
@@ -251,6 +260,7 @@ def score(
     distance: Optional[Numbers] = None,
     horizontal_displacement: Optional[Numbers] = None,
     sample: str = "points",
+    mapping: Union[Mapping[str, Any], str, "os.PathLike[str]", None] = None,
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> Score:
@@ -260,8 +270,12 @@ def score(
     ----------
     scene : str
         The scene, like ``terzaghi``.
+    data : pandas.DataFrame, xarray.Dataset, meshio.Mesh or sequence of (time, meshio.Mesh), optional
+        The result as a whole, in place of the arrays below: its columns or arrays are read as those of a file, and
+        ``mapping`` says what they mean, as in :func:`score_files`.
     time, height : array_like
-        Times (s) ``[time]``, and *initial* heights over the base (m) ``[place]``.
+        Times (s) ``[time]``, and *initial* heights over the base (m) ``[place]``. Of ``mandel`` heights are the places
+        across, which may be left out.
     pressure, effective_stress : array_like, optional
         Pa, ``[time][place]``, or ``[place]`` of a single time; compression and tension positive.
     displacement, horizontal_displacement : array_like, optional
@@ -271,7 +285,8 @@ def score(
     volume : array_like, optional
         Weights ``[place]``; all alike where left out.
     distance : array_like, optional
-        m from the crest of the load ``[place]``, where places are in a plane.
+        m from the crest of the load ``[place]``, where places are in a plane; of ``mandel`` from the middle of the slab to
+        its drained side.
     sample : {"points", "centres", "nodes"}
         The kind of places.
     reference : str, optional
@@ -284,6 +299,17 @@ def score(
     ValueError
         Where shapes do not fit, a number is not finite, or the scene refuses.
     """
+    if data is not None:
+        found = score_files(scene, data, mapping=mapping, reference=reference, **material)
+        if len(found) != 1:
+            raise ValueError(f"the data hold {len(found)} results: score them by `score_files`")
+        return found[0]
+    if mapping is not None:
+        raise ValueError("`mapping` says what `data` mean: arrays are in SI already")
+    if height is None and distance is not None:
+        height = [0.0] * (len(_doubles(distance)[0]) // 8)
+    if time is None or height is None:
+        raise ValueError("give `time` and `height`, or the result as a whole as `data`")
     lists = (
         time,
         height,
@@ -299,13 +325,39 @@ def score(
     return _score(json.loads(_native.score(scene, data, sample, reference, _inputs(material))))
 
 
+def case(
+    scene: str, cells: int, time_factor: Optional[Numbers] = None, **material: Union[float, str]
+) -> Dict[str, Any]:
+    """What a solver has to solve, as the ``case.json`` of attached solvers: geometry, load, soil, times in s, a time step.
+
+    Parameters
+    ----------
+    scene : str
+        The scene, like ``terzaghi``.
+    cells : int
+        Cells over the height.
+    time_factor : array_like, optional
+        Outputs as time factors; those of the scene where left out.
+    **material
+        As in :func:`exact`.
+
+    Examples
+    --------
+    >>> case("terzaghi", 10, [0.1, 0.2], load=1000.0)["column"]["load"]
+    1000.0
+    """
+    times = b"" if time_factor is None else _doubles(time_factor)[0]
+    return json.loads(_native.case(scene, cells, times, _inputs(material)))
+
+
 def score_files(
     scene: str,
-    files: Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]],
+    files: Any,
     *,
     preset: Optional[str] = None,
-    mapping: Union[str, "os.PathLike[str]", None] = None,
+    mapping: Union[Mapping[str, Any], str, "os.PathLike[str]", None] = None,
     time_step: Optional[float] = None,
+    cells: Optional[Sequence[int]] = None,
     reference: Optional[str] = None,
     **material: Union[float, str],
 ) -> List[Score]:
@@ -315,14 +367,19 @@ def score_files(
     ----------
     scene : str
         The scene, like ``terzaghi``.
-    files : path or sequence of paths
-        CSV, VTU, PVD, legacy VTK, NPZ, HDF5 or XDMF; patterns with ``*`` and ``?`` are expanded.
+    files : path, pandas.DataFrame, xarray.Dataset, meshio.Mesh, or sequence of these
+        CSV, VTU, PVD, legacy VTK, NPZ, HDF5 or XDMF; patterns with ``*`` and ``?`` are expanded. A frame counts as the CSV
+        that it would be, a mesh as its VTU; meshes at several times are pairs ``(time in s, mesh)``.
     preset : str, optional
         The program that wrote them, like ``ogs``: what its arrays mean.
-    mapping : path, optional
-        A mapping file, which overrides the preset key by key.
+    mapping : dict or path, optional
+        A mapping as a dictionary of its tables, or its file, which overrides the preset key by key:
+        ``{"columns": {"p": "pore"}, "units": {"stress": "kPa"}}``.
     time_step : float, optional
         Seconds from one numbered step to the next, where file names have the number of the step.
+    cells : sequence of int, optional
+        Cells over the height of each result, where the files do not show them: each table is then a result of its own, and
+        ``series`` of each score has orders and classes over the meshes.
     reference, **material
         As in :func:`score`.
 
@@ -331,11 +388,14 @@ def score_files(
     ValueError
         Where a file cannot be read or does not fit, with its name.
     """
-    named = [files] if isinstance(files, (str, os.PathLike)) else list(files)
-    meaning = (preset, None if mapping is None else os.fspath(mapping), time_step)
-    paths = [os.fspath(name) for name in named]
-    found = json.loads(_native.score_files(scene, paths, meaning, reference, _inputs(material)))
-    return [_score(one, name) for name, one in found]
+    inputs = _inputs(material)
+    counts = [int(count) for count in cells] if cells is not None else []
+    with tempfile.TemporaryDirectory() as folder:
+        paths, times = _written(files, folder)
+        given = (*_meaning(preset, mapping, times), time_step, counts)
+        found = json.loads(_native.score_files(scene, paths, given, reference, inputs))
+        # Data that came in no file have no name but their place.
+        return [_score(one, name.replace(folder + os.sep, "")) for name, one in found]
 
 
 def _score(found: Dict[str, Any], name: str = "") -> Score:
@@ -346,6 +406,7 @@ def _score(found: Dict[str, Any], name: str = "") -> Score:
         worst=Table._of(found["worst"]),
         warnings=[f"{one['name']}: {one['sentence']}" for one in found["warnings"]],
         diagnosis=found["diagnosis"],
+        series=Table._of(found.get("series", [])),
         reference=found["errors"][0]["reference"] if found["errors"] else "",
     )
 

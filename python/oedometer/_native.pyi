@@ -1,6 +1,6 @@
 from typing import List, Optional, Sequence, Tuple
 
-__all__ = ["__version__", "convergence", "exact", "main", "score", "score_files", "verdict"]
+__all__ = ["__version__", "case", "convergence", "exact", "main", "score", "score_files", "verdict"]
 __version__: str
 
 def exact(
@@ -16,10 +16,11 @@ def score(
 def score_files(
     scene: str,
     files: Sequence[str],
-    meaning: Tuple[Optional[str], Optional[str], Optional[float]],
+    meaning: Tuple[Optional[str], Optional[str], Optional[str], Optional[float], Sequence[int]],
     reference: Optional[str],
     inputs: Sequence[Tuple[str, str]],
 ) -> str: ...
+def case(scene: str, cells: int, time_factors: bytes, inputs: Sequence[Tuple[str, str]]) -> str: ...
 def convergence(sizes: bytes, errors: bytes, formal_order: Optional[float]) -> str: ...
 def verdict(
     sizes: bytes,

@@ -9,7 +9,7 @@ import functools
 import inspect
 from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
 
-from . import Numbers, Score, _doubles, _native, score
+from . import Numbers, Score, _doubles, _native, case, score
 
 __all__ = ["assert_below", "assert_converges", "converges"]
 
@@ -85,7 +85,7 @@ def assert_below(
     if not judged:
         wrong.append(f"there is no error of {quantity or 'any quantity'} against {reference}")
     if wrong or result.warnings:
-        raise AssertionError("\n".join([*wrong, *result.warnings, *result.diagnosis]))
+        raise AssertionError("\n".join([*result.diagnosis, *wrong, *result.warnings]))
 
 
 def converges(
@@ -106,7 +106,8 @@ def converges(
     """Make a test of a function that solves a scene on a number of cells.
 
     The function takes ``cells``, and any fixtures of pytest, and returns the keyword arguments of :func:`score` as a
-    dictionary. The test solves on each mesh, scores, and demands a whole result and the order, as
+    dictionary. Where it takes ``case`` too, that is the case of these cells as :func:`oedometer.case` has it: geometry, load,
+    soil and times in s. The test solves on each mesh, scores, and demands a whole result and the order, as
     :func:`assert_converges`. Sizes are in heights of the column.
 
     Parameters
@@ -138,10 +139,12 @@ def converges(
             errors = []
             when = time_factor
             for level in cells:
+                if "case" in wanted.parameters:
+                    fixtures["case"] = case(scene, level, time_factor, **material)
                 given = solve(*args, cells=level, **fixtures)
                 found = score(scene, sample=sample, reference=reference, **material, **given)
                 if found.warnings:
-                    raise AssertionError("\n".join([f"{level} cells:", *found.warnings, *found.diagnosis]))
+                    raise AssertionError("\n".join([f"{level} cells:", *found.diagnosis, *found.warnings]))
                 when = found.errors.rows()[0]["time_factor"] if when is None else when
                 errors.append(found.error(quantity, when))
             shown.append(f"{solve.__name__}: {scene}, {quantity}: " + ", ".join(
@@ -151,7 +154,7 @@ def converges(
             sizes = [1.0 / level for level in cells]
             assert_converges(sizes, errors, order, minus=minus, plus=plus, at=bound, kind=kind)
 
-        kept = [one for name, one in wanted.parameters.items() if name != "cells"]
+        kept = [one for name, one in wanted.parameters.items() if name not in ("cells", "case")]
         test.__signature__ = wanted.replace(parameters=kept)  # type: ignore[attr-defined]
         return test
 

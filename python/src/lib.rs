@@ -120,6 +120,9 @@ fn score(
     json(&call(py, || api::score::score(scene, &samples, sample, reference, &assignments))?)
 }
 
+/// Preset, mapping file, text of a mapping, time step and cells of files.
+type Given = (Option<String>, Option<PathBuf>, Option<String>, Option<f64>, Vec<usize>);
+
 /// Names and scores of files as JSON, one per mesh.
 #[pyfunction]
 #[expect(clippy::needless_pass_by_value, reason = "Python hands over owned lists")]
@@ -127,14 +130,28 @@ fn score_files(
     py: Python<'_>,
     scene: &str,
     files: Vec<PathBuf>,
-    meaning: (Option<String>, Option<PathBuf>, Option<f64>),
+    meaning: Given,
     reference: Option<&str>,
     inputs: Vec<(String, String)>,
 ) -> PyResult<String> {
     let assignments = assignments(scene, inputs)?;
-    let (preset, mapping, time_step) = meaning;
-    let meaning = Meaning { preset, mapping, time_step };
+    let (preset, mapping, mapping_text, time_step, cells) = meaning;
+    let meaning = Meaning { preset, mapping, mapping_text, time_step, cells };
     json(&call(py, || api::score::score_files(scene, &files, &meaning, reference, &assignments))?)
+}
+
+/// The case file of a scene as JSON.
+#[pyfunction]
+fn case(
+    py: Python<'_>,
+    scene: &str,
+    cells: usize,
+    time_factors: &[u8],
+    inputs: Vec<(String, String)>,
+) -> PyResult<String> {
+    let assignments = assignments(scene, inputs)?;
+    let time_factors = doubles(time_factors);
+    call(py, || api::score::case_file(scene, cells, &time_factors, &assignments))
 }
 
 /// Class and orders of errors as JSON.
@@ -172,6 +189,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(exact, module)?)?;
     module.add_function(wrap_pyfunction!(score, module)?)?;
     module.add_function(wrap_pyfunction!(score_files, module)?)?;
+    module.add_function(wrap_pyfunction!(case, module)?)?;
     module.add_function(wrap_pyfunction!(convergence, module)?)?;
     module.add_function(wrap_pyfunction!(verdict, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)

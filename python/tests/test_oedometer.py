@@ -263,3 +263,109 @@ def test_the_examples_of_the_manual_run(monkeypatch, capsys):
 def test_the_example_runs(capsys):
     runpy.run_path(str(Path(__file__).parent.parent / "examples" / "own_solver.py"))
     assert "asymptotic" in capsys.readouterr().out
+
+
+def column(cells, error):
+    """A column at cell centres with an error, as rows of a table in kPa: t, height, pore, settled."""
+    depths = (numpy.arange(cells) + 0.5) / cells
+    exact = oedometer.exact("terzaghi", [0.1, 0.2], depths, load=2e3)
+    return {
+        "t": numpy.repeat(exact.time, cells),
+        "height": numpy.tile(1 - depths, 2),
+        "pore": (1 + error) * exact.pressure.ravel() / 1e3,
+        "moved": exact.displacement.ravel(),
+    }
+
+
+TOLD = {
+    "columns": {"t": "t", "y": "height", "p": "pore", "u_y": "moved"},
+    "units": {"time": "s", "length": "m", "stress": "kPa"},
+    "sign": {"y": "up", "p": "compression-positive", "u_y": "up"},
+    "sample": "centres",
+}
+
+
+def test_frames_and_datasets_are_read_as_the_table_that_they_are(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(column(20, 0.01))
+    of = dict(mapping=TOLD, reference="terzaghi", load=2e3)
+    score = oedometer.score("terzaghi", frame, **of)
+    assert score.error("pressure", 0.2) == pytest.approx(0.01) and not score.warnings and not score.diagnosis
+    # An index with names is part of the data, and a duration is in seconds.
+    named = frame.assign(t=pandas.to_timedelta(frame["t"], unit="s")).set_index(["t", "height"])
+    assert oedometer.score("terzaghi", named, **of).error("pressure", 0.2) == pytest.approx(0.01, rel=1e-6)
+    file = tmp_path / "r.csv"
+    frame.to_csv(file, index=False)
+    (same,) = oedometer.score_files("terzaghi", file, **of)
+    assert same.errors.rows() == score.errors.rows() and same.name == str(file)
+    xarray = pytest.importorskip("xarray")
+    dataset = xarray.Dataset.from_dataframe(frame.set_index(["t", "height"]))
+    found = oedometer.score("terzaghi", dataset, **of)
+    assert found.error("pressure", 0.2) == pytest.approx(score.error("pressure", 0.2), rel=1e-12)
+    for wrong, words in [(3.0, "is no result"), (frame.drop(columns="pore"), "no column `pore`")]:
+        with pytest.raises(ValueError, match=words):
+            oedometer.score("terzaghi", wrong, **of)
+    with pytest.raises(ValueError, match="give `time` and `height`"):
+        oedometer.score("terzaghi", pressure=[1.0])
+
+
+def test_meshes_are_read_at_their_times():
+    meshio = pytest.importorskip("meshio")
+    heights = numpy.linspace(0, 1, 11)
+    exact = oedometer.exact("terzaghi", [0.1, 0.2], 1 - heights)
+    points = numpy.array([[x, y, 0.0] for y in heights for x in (0.0, 0.1)])
+    quads = numpy.array([[2 * j, 2 * j + 1, 2 * j + 3, 2 * j + 2] for j in range(10)])
+
+    def mesh(at):
+        pressure = numpy.repeat(exact.pressure[at], 2)
+        moved = numpy.column_stack([0 * pressure, numpy.repeat(exact.displacement[at], 2), 0 * pressure])
+        return meshio.Mesh(points, [("quad", quads)], point_data={"pressure": pressure, "displacement": moved})
+
+    score = oedometer.score("terzaghi", [(exact.time[at], mesh(at)) for at in (0, 1)], reference="terzaghi")
+    assert sorted(set(numpy.round(score.errors["time_factor"], 9))) == [0.1, 0.2]
+    assert max(abs(score.errors["value"])) < 1e-6 and not score.diagnosis
+
+
+def test_meshes_have_orders_and_classes_and_a_wrong_permeability_its_name():
+    pandas = pytest.importorskip("pandas")
+    levels = [10, 20, 40]
+    frames = [pandas.DataFrame(column(cells, 3.0 / cells**2)) for cells in levels]
+    scores = oedometer.score_files("terzaghi", frames, mapping=TOLD, cells=levels, reference="terzaghi", load=2e3)
+    (pressure, *_) = [
+        row for row in scores[0].series.rows() if (row["quantity"], row["norm"]) == ("pressure", "l2")
+    ]
+    assert pressure["cells"] == levels and pressure["class"] == "asymptotic" and abs(pressure["order"] - 2) < 0.01
+    with pytest.raises(ValueError, match="`cells` has 2 numbers for 3 results"):
+        oedometer.score_files("terzaghi", frames, mapping=TOLD, cells=[10, 20], load=2e3)
+    fast = oedometer.exact("terzaghi", [0.15, 0.3], 1 - numpy.linspace(0, 1, 21))
+    late = oedometer.score(
+        "terzaghi", time=fast.time / 1.5, height=numpy.linspace(0, 1, 21), pressure=fast.pressure,
+        displacement=fast.displacement, sample="nodes", reference="terzaghi",
+    )
+    assert len(late.diagnosis) == 1 and "1.5 × the time" in late.diagnosis[0] and "E_oed" not in late.diagnosis[0]
+    with pytest.raises(AssertionError, match="^each of your p"):
+        oedometer.assert_below(0.01, late)
+
+
+def test_a_slab_has_x_along_the_drained_direction():
+    x = numpy.linspace(0, 1, 11)
+    exact = oedometer.exact("mandel", [0.05, 0.2], x=x, load=50.0)
+    score = oedometer.score("mandel", time=exact.time, distance=x, pressure=exact.pressure, load=50.0, sample="nodes")
+    assert max(abs(score.errors["value"])) < 1e-9
+    with pytest.raises(ValueError, match="from the middle of the slab"):
+        oedometer.score("mandel", time=exact.time, height=x, pressure=exact.pressure)
+
+
+def test_a_test_gets_the_case_that_it_solves():
+    found = oedometer.case("terzaghi", 10, [0.1, 0.2], load=1000.0)
+    assert found["cells"] == 10 and found["column"]["load"] == 1000.0
+    assert numpy.allclose(found["times"], oedometer.exact("terzaghi", [0.1, 0.2], 0.5).time)
+
+    @oedometer.converges("terzaghi", cells=[10, 20, 40], order=2.0, sample="centres", reference="terzaghi", load=1000.0)
+    def test_solver(cells, case):
+        assert case["cells"] == cells
+        depths = (numpy.arange(cells) + 0.5) / cells
+        exact = oedometer.exact("terzaghi", case["time_factors"], depths, load=case["column"]["load"])
+        return {"time": case["times"], "height": 1 - depths, "pressure": exact.pressure * (1 + 0.3 / cells**2)}
+
+    test_solver()

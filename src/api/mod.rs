@@ -9,7 +9,7 @@ pub mod score;
 
 use crate::case::keys::Key;
 use crate::import::SampledState;
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, are_tables, files_of, runs_of};
 use crate::study::file::StudySource;
@@ -69,6 +69,10 @@ pub struct Meaning {
     pub preset: Option<String>,
     /// A mapping file, which overrides the preset key by key.
     pub mapping: Option<PathBuf>,
+    /// The text of a mapping in place of a file.
+    pub mapping_text: Option<String>,
+    /// Cells over the height of each result, in the order of the files; each table is then a result of its own.
+    pub cells: Vec<usize>,
     /// Seconds from one numbered step to the next, where file names have the number of the step.
     pub time_step: Option<f64>,
 }
@@ -85,8 +89,8 @@ pub fn read(
     height: f64,
 ) -> Result<Vec<Vec<SampledState>>, String> {
     let body = SolvedBody { height, length: None, seconds_per_time_factor: 1.0 };
-    let meaning = Meaning { preset: Some(preset.to_owned()), mapping: None, time_step };
-    let (_, runs) = runs_with(files, &meaning, body, false)?;
+    let meaning = Meaning { preset: Some(preset.to_owned()), time_step, ..Meaning::default() };
+    let (_, runs) = runs_with(files, &meaning, body, Axes::Column)?;
     Ok(runs.into_iter().map(|run| run.states).collect())
 }
 
@@ -95,7 +99,7 @@ pub(crate) fn runs_with(
     files: &[PathBuf],
     meaning: &Meaning,
     body: SolvedBody,
-    is_plane: bool,
+    axes: Axes,
 ) -> Result<(Mapping, Vec<Run>), String> {
     let told = |error: &dyn std::fmt::Display| error.to_string();
     let given = files_of(files).map_err(|error| told(&error))?;
@@ -105,18 +109,35 @@ pub(crate) fn runs_with(
         let text = text.map_err(|error| format!("cannot read the mapping {}: {error}", path.display()))?;
         Ok::<_, String>(StudySource { name: path.display().to_string(), text })
     });
-    let own = own.transpose()?;
+    let typed = meaning.mapping_text.clone().map(|text| StudySource { name: "the mapping".to_owned(), text });
+    let own = own.transpose()?.or(typed);
     let default = (own.is_none() && !is_tables).then_some("meshio");
     let named = meaning.preset.as_deref().filter(|_| !is_tables).or(default);
     let preset = named.map(|name| Preset::from_str(name, false)).transpose()?;
-    let mut mapping = Mapping::resolve(preset, own.as_ref(), is_plane).map_err(|error| told(&error))?;
+    let mut mapping = Mapping::resolve(preset, own.as_ref(), axes).map_err(|error| told(&error))?;
     if let Some(step) = meaning.time_step {
         if !(step.is_finite() && step > 0.0) {
             return Err(format!("a time step of {step} is invalid: give seconds above 0"));
         }
         mapping.time.step = Some(step);
     }
-    let runs = runs_of(&given, &mapping, body).map_err(|error| told(&error))?;
+    let each = if meaning.cells.is_empty() || !is_tables { given.len().max(1) } else { 1 };
+    let runs: Result<Vec<Vec<Run>>, _> =
+        given.chunks(each).map(|some| runs_of(some, &mapping, body)).collect();
+    let mut runs = runs.map_err(|error| told(&error))?.concat();
+    if !meaning.cells.is_empty() && meaning.cells.len() != runs.len() {
+        return Err(format!(
+            "`cells` has {} numbers for {} results: give one per result",
+            meaning.cells.len(),
+            runs.len()
+        ));
+    }
+    for (run, cells) in runs.iter_mut().zip(&meaning.cells) {
+        if *cells == 0 {
+            return Err("a result has 0 cells: give whole numbers from 1 up".to_owned());
+        }
+        run.cells = Some(*cells);
+    }
     if mapping.is_sample_open
         && let Some(sample) = runs.iter().find_map(|run| run.sample)
     {
@@ -230,8 +251,10 @@ mod tests {
                 preset: preset.map(str::to_owned),
                 mapping: mapping.cloned(),
                 time_step: Some(0.5),
+                ..Meaning::default()
             };
-            let (found, _) = runs_with(std::slice::from_ref(file), &meaning, body, false).expect("a state");
+            let (found, _) =
+                runs_with(std::slice::from_ref(file), &meaning, body, Axes::Column).expect("a state");
             assert_eq!(found.declared_by, wanted);
         }
         // What the files show of their places goes over what a preset takes for granted, and not over a mapping's word.
@@ -248,12 +271,15 @@ mod tests {
                 preset: Some("meshio".to_owned()),
                 mapping: Some(mapping.clone()),
                 time_step: Some(0.08175),
+                ..Meaning::default()
             };
-            let (found, _) = runs_with(std::slice::from_ref(&nodes), &meaning, body, false).expect("a state");
+            let (found, _) =
+                runs_with(std::slice::from_ref(&nodes), &meaning, body, Axes::Column).expect("a state");
             assert_eq!(found.sample.name(), sample);
         }
         let none = Meaning { mapping: Some(folder.path().join("none.toml")), ..Meaning::default() };
-        let told = runs_with(std::slice::from_ref(&table), &none, body, false).expect_err("no mapping");
+        let told =
+            runs_with(std::slice::from_ref(&table), &none, body, Axes::Column).expect_err("no mapping");
         let start = format!("cannot read the mapping {}: ", folder.path().join("none.toml").display());
         assert!(told.starts_with(&start), "{told}");
     }

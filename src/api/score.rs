@@ -3,12 +3,13 @@
 use crate::api::{Meaning, runs_with};
 use crate::case::Case;
 use crate::case::quantity::Sample;
-use crate::import::mapping::Mapping;
+use crate::foreign::case_file::CaseFile;
+use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::runs::Run;
 use crate::import::{SampledState, states_of};
 use crate::judge::score::Score;
-use crate::judge::score::results::Results;
+use crate::judge::score::results::{Comparison, Results};
 use crate::study::overrides::{Asked, Assignments, Outputs};
 use oedometer_formats::ImportError;
 use std::path::{Path, PathBuf};
@@ -18,9 +19,10 @@ use std::path::{Path, PathBuf};
 pub struct Samples<'a> {
     /// Times, s.
     pub time: &'a [f64],
-    /// Initial heights over the base, m: one per place.
+    /// Initial heights over the base, m: one per place; of a slab the places across.
     pub height: &'a [f64],
-    /// Distances from the crest of a layer's load, m: one per place; empty for a column.
+    /// Distances from the crest of a layer's load, m, or from the middle of a slab to its drained side: one per place;
+    /// empty for a column.
     pub distance: &'a [f64],
     /// Volumes or weights: one per place, or empty.
     pub volume: &'a [f64],
@@ -55,14 +57,16 @@ pub fn score(
         let names = Sample::ALL.map(Sample::name).join(", ");
         format!("unknown kind of places `{sample}`: expected {names}")
     })?;
-    let mut mapping =
-        Mapping::convention(case.scene.has_plane_fields()).map_err(|error| error.to_string())?;
+    let mut mapping = Mapping::convention(Axes::of(case.scene)).map_err(|error| error.to_string())?;
     mapping.sample = kind;
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
-    if case.scene.has_plane_fields() && samples.distance.is_empty() {
-        return Err(format!(
-            "the fields of `{scene}` depend on it: give `distance`, m from the crest of the load"
-        ));
+    let axes = Axes::of(case.scene);
+    if axes != Axes::Column && samples.distance.is_empty() {
+        let from = match axes {
+            Axes::Slab => "middle of the slab to its drained side",
+            _ => "crest of the load",
+        };
+        return Err(format!("the fields of `{scene}` depend on it: give `distance`, m from the {from}"));
     }
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
     let comparison = asked.comparison(&mapping);
@@ -83,10 +87,36 @@ pub fn score_files(
 ) -> Result<Vec<(String, Score)>, String> {
     let asked = asked(scene, reference, assignments)?;
     let case = asked.case();
-    let (mapping, runs) = runs_with(files, meaning, SolvedBody::of(case), case.scene.has_plane_fields())?;
-    let comparison = asked.comparison(&mapping);
-    let results = Results::of(runs, &comparison).map_err(|error| error.to_string())?;
+    let (mapping, runs) = runs_with(files, meaning, SolvedBody::of(case), Axes::of(case.scene))?;
+    let comparison = Comparison { are_cells_found: meaning.cells.is_empty(), ..asked.comparison(&mapping) };
+    let mut results = Results::of(runs, &comparison).map_err(|error| error.to_string())?;
+    if let Some((series, cells)) = results.series() {
+        results.keep_series(&series, &cells);
+    }
     Ok(results.all.into_iter().map(|one| (one.name(), one.score)).collect())
+}
+
+/// The case file of a scene, as attached solvers get it: what a solver that is tested in Python has to solve.
+///
+/// # Errors
+/// When the scene refuses its inputs.
+pub fn case_file(
+    scene: &str,
+    cells: usize,
+    time_factors: &[f64],
+    assignments: &[String],
+) -> Result<String, String> {
+    let mut case = asked(scene, None, assignments)?.case().clone();
+    if cells == 0 || time_factors.iter().any(|time| !(*time >= 0.0 && time.is_finite())) {
+        return Err("give cells from 1 up and time factors from 0 up".to_owned());
+    }
+    case.cells = cells;
+    if !time_factors.is_empty() {
+        let mut times = time_factors.to_vec();
+        times.sort_by(f64::total_cmp);
+        case.time_factors = times.into();
+    }
+    CaseFile::of(&case).text().map_err(|error| error.to_string())
 }
 
 /// What a result is compared with.
@@ -104,6 +134,18 @@ impl Samples<'_> {
     fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
         self.check()?;
         let body = SolvedBody::of(case);
+        let mut turned = *self;
+        if mapping.is_turned {
+            // The fields of a slab vary along x; what is across lies in the place of a layer's distance.
+            (turned.height, turned.distance) = (self.distance, self.height);
+            (turned.displacement, turned.horizontal_displacement) =
+                (self.horizontal_displacement, self.displacement);
+        }
+        turned.rows(body, mapping)
+    }
+
+    /// The lists in the directions of a column, as states.
+    fn rows(&self, body: SolvedBody, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
         let mut rows = Vec::with_capacity(self.time.len() * self.height.len());
         for (at, time) in self.time.iter().enumerate() {
             for (place, height) in self.height.iter().enumerate() {
@@ -392,6 +434,11 @@ mod tests {
         );
         assert!(alone[0] != alone[1] && alone[1] != alone[2], "each has its own");
         assert!(alone.iter().flatten().all(|row| row.reference == "terzaghi"));
+        // Meshes in one order or another make the same series; their cells are found or given.
+        let rows =
+            |score: &Score| score.series.iter().map(|row| (row.cells.clone(), row.class)).collect::<Vec<_>>();
+        assert!(found.iter().all(|(_, score)| rows(score) == rows(&found[0].1) && !score.series.is_empty()));
+        assert_eq!(found[0].1.series[0].cells, [10, 20, 40]);
         let told = of(&[foreign.join("none.pvd")], None).expect_err("no file");
         assert!(told.contains("none.pvd"), "{told}");
         let samples = Samples { time: &[1.0], height: &[0.5], pressure: &[1.0], ..Samples::default() };

@@ -6,6 +6,7 @@ use crate::campaign::stop;
 use crate::case::work_estimate::estimated_work;
 use crate::case::{Case, Task};
 use crate::foreign::attachment::{Attachment, Standing, Wish};
+use crate::import::mapping::Axes;
 use crate::record::{Record, RecordStore, Status, WallSample};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
@@ -27,8 +28,8 @@ pub struct CaseRunner<'a> {
 impl<'a> CaseRunner<'a> {
     /// The runner of a study's cases.
     pub fn of(study: &'a Study) -> Self {
-        let is_plane = study.scene.has_plane_fields();
-        let attachments = study.solvers.iter().map(|solver| Attachment::new(solver, is_plane)).collect();
+        let axes = Axes::of(study.scene);
+        let attachments = study.solvers.iter().map(|solver| Attachment::new(solver, axes)).collect();
         Self { study, attachments }
     }
 

@@ -9,7 +9,7 @@ use crate::foreign::reading::{ReadResult, Unread, mapping_of, read};
 use crate::foreign::staging::{Filling, Staged, words_of};
 use crate::foreign::{ending, process};
 use crate::import::SampledState;
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{Axes, Mapping};
 use crate::measure::record::record_of_attached;
 use crate::record::{AttachedRun, Machine, Record, Status, WallSample};
 use crate::study::solver::ExternalSolver;
@@ -75,9 +75,9 @@ pub enum Standing {
 type Left = Result<(Vec<SampledState>, ReadResult), Failure>;
 
 impl<'a> Attachment<'a> {
-    /// A solver of a study about a column, or about a plane.
-    pub fn new(solver: &'a ExternalSolver, is_plane: bool) -> Self {
-        let mapping = mapping_of(solver, is_plane).map_err(|error| error.to_string());
+    /// A solver of a study about a body with its axes.
+    pub fn new(solver: &'a ExternalSolver, axes: Axes) -> Self {
+        let mapping = mapping_of(solver, axes).map_err(|error| error.to_string());
         Self {
             solver,
             mapping,

@@ -154,9 +154,9 @@ impl CaseFile {
 /// What a solver has to know of the sides of a body, and whoever writes its result of the axes.
 fn axes_of(case: &Case) -> &'static str {
     if case.scene.has_plates() {
-        "y counts from the middle of the slab, where nothing flows or moves along y, to its drained side, which is free; x \
-         from the middle between the plates to the plate, which is rigid, smooth and impermeable and presses across with \
-         the mean stress `load`; cells count along y; the settlement is the plate's"
+        "x counts from the middle of the slab, where nothing flows or moves along x, to its drained side, which is free, at \
+         `height`; y from the middle between the plates to the plate, at `width`, which is rigid, smooth and impermeable and \
+         presses across with the mean stress `load`; cells count along x; the settlement is the plate's"
     } else if case.scene.is_a_layer() {
         "y counts upward from the base, impermeable, held along y and where it is rough along x, to the drained surface; x \
          from under the crest of the load, load · cos(π x/width), to its trough; at both ends nothing flows or moves along x"

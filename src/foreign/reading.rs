@@ -1,7 +1,7 @@
 //! Reads the result files of a solver as states, and reports how they were read.
 
 use crate::case::{Case, Sample};
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, files_of, runs_of};
 use crate::import::{SampledState, not_ended};
@@ -71,7 +71,7 @@ pub enum MappingError {
 ///
 /// # Errors
 /// When the mapping file cannot be read or is wrong.
-pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, MappingError> {
+pub fn mapping_of(solver: &ExternalSolver, axes: Axes) -> Result<Mapping, MappingError> {
     let own = solver.mapping.as_ref().map(|name| {
         let path = solver.folder.join(name);
         match input_file::read_text(&path) {
@@ -80,10 +80,10 @@ pub fn mapping_of(solver: &ExternalSolver, is_plane: bool) -> Result<Mapping, Ma
         }
     });
     let own = own.transpose()?;
-    let mut mapping = Mapping::resolve(solver.preset, own.as_ref(), is_plane)?;
+    let mut mapping = Mapping::resolve(solver.preset, own.as_ref(), axes)?;
     // A gate assumes nothing that is not declared.
     if let (Some(taken), Some(source)) =
-        (mapping.taken_for_granted(is_plane).filter(|_| solver.is_given()), own)
+        (mapping.taken_for_granted(axes == Axes::Layer).filter(|_| solver.is_given()), own)
     {
         return Err(MappingError::Undeclared { name: source.name, taken });
     }
@@ -311,7 +311,7 @@ mod tests {
         for (of_study, taken) in [(None, Some(3.0)), (Some(2.0), Some(2.0))] {
             let mut solver = crate::foreign::attachment::tests::solver(folder.path(), &["true"]);
             (solver.time_step, solver.mapping) = (of_study, Some("m.toml".to_owned()));
-            assert_eq!(mapping_of(&solver, false).expect("a mapping").time.step, taken);
+            assert_eq!(mapping_of(&solver, Axes::Column).expect("a mapping").time.step, taken);
         }
     }
 
@@ -384,10 +384,10 @@ mod tests {
     fn mappings() -> [Mapping; 4] {
         use clap::ValueEnum;
         let meshio = crate::study::solver::Preset::from_str("meshio", false).expect("a preset");
-        let arrays = Mapping::resolve(Some(meshio), None, false).expect("a preset");
+        let arrays = Mapping::resolve(Some(meshio), None, Axes::Column).expect("a preset");
         let said = |sample| Mapping { sample, is_sample_open: false, ..arrays.clone() };
         let [points, centres] = [Sample::Points, Sample::Centres].map(said);
-        [Mapping::convention(false).expect("a constant"), arrays, points, centres]
+        [Mapping::convention(Axes::Column).expect("a constant"), arrays, points, centres]
     }
 
     /// The kind of places, the number of states and the digest of results, or why there are none.
@@ -476,12 +476,16 @@ mod tests {
         )
         .expect("written");
         let mut solver = crate::foreign::attachment::tests::solver(folder.path(), &["true"]);
-        assert_eq!(mapping_of(&solver, false).ok(), Mapping::convention(false).ok(), "without a mapping");
+        assert_eq!(
+            mapping_of(&solver, Axes::Column).ok(),
+            Mapping::convention(Axes::Column).ok(),
+            "without a mapping"
+        );
         solver.mapping = Some("m.toml".to_owned());
-        assert!(mapping_of(&solver, false).is_ok());
+        assert!(mapping_of(&solver, Axes::Column).is_ok());
         solver.files = vec!["a.csv".to_owned()];
         let path = folder.path().join("m.toml").display().to_string();
-        let told = mapping_of(&solver, false).expect_err("undeclared").to_string();
+        let told = mapping_of(&solver, Axes::Column).expect_err("undeclared").to_string();
         assert_eq!(
             told,
             format!(
@@ -489,7 +493,7 @@ mod tests {
             )
         );
         solver.mapping = Some("none.toml".to_owned());
-        let told = mapping_of(&solver, false).expect_err("no file").to_string();
+        let told = mapping_of(&solver, Axes::Column).expect_err("no file").to_string();
         let start = format!("cannot read the mapping {}: ", folder.path().join("none.toml").display());
         assert!(told.starts_with(&start), "{told}");
     }

@@ -118,6 +118,7 @@ pub fn left_out(column: Column, quantity: Quantity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::mapping::Axes;
     use crate::study::file::StudySource;
     use crate::study::solver::Preset;
     use clap::ValueEnum;
@@ -166,13 +167,13 @@ mod tests {
         let of = |text: &str| {
             let own = StudySource { name: "map.toml".to_owned(), text: text.to_owned() };
             let ogs = Preset::from_str("ogs", false).expect("a preset");
-            let mapping = Mapping::resolve(Some(ogs), Some(&own), false).expect("a mapping");
+            let mapping = Mapping::resolve(Some(ogs), Some(&own), Axes::Column).expect("a mapping");
             Expected::promised(&mapping).columns.iter().map(|column| column.name()).collect::<Vec<_>>()
         };
         assert_eq!(of(""), ["p", "u_y"]);
         assert_eq!(of("[columns]\np = \"\"\n"), ["u_y"]);
         assert_eq!(of("[columns]\nu_y = \"\"\n"), ["p"]);
-        assert_eq!(Expected::promised(&Mapping::convention(false).expect("a constant")).columns, []);
+        assert_eq!(Expected::promised(&Mapping::convention(Axes::Column).expect("a constant")).columns, []);
     }
 
     #[test]

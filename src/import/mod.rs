@@ -16,5 +16,6 @@ mod table_rows;
 #[cfg(test)]
 mod tests;
 
+pub use expected::Absent;
 pub use samples::{SampledState, states_of};
 pub use table_rows::not_ended;

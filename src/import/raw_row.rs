@@ -125,11 +125,19 @@ impl RawRow {
         let y = (self.y - mapping.origin.y) * length;
         let height = before(if is_down { body.height - y } else { y }, displacement);
         if !is_inside(height, body.height) {
-            return Err(refused(format!(
-                "the initial height {height} m is outside the column of {} m: look at the unit and the sign of `y`, \
-                 and at whether places are initial or current",
-                body.height
-            )));
+            let height_of_body = body.height;
+            return Err(refused(if mapping.is_turned {
+                format!(
+                    "the initial distance {height} m from the middle is outside the slab, whose drained side lies at \
+                     {height_of_body} m: look at the unit, the sign and the origin of `x`, whether places are initial or \
+                     current, and whether the axes are exchanged: x runs along the drained direction"
+                )
+            } else {
+                format!(
+                    "the initial height {height} m is outside the column of {height_of_body} m: look at the unit and the \
+                     sign of `y`, and at whether places are initial or current"
+                )
+            }));
         }
         let height = height.clamp(0.0, body.height);
         let distance = self.x.map(|x| {
@@ -151,7 +159,9 @@ impl RawRow {
             StressKind::Total => vertical.zip(pore).map(|(total, pore)| total + pore),
         };
         let at_rest = mapping.hydrostatic.map_or(0.0, |water| {
-            water.unit_weight * (water.surface.unwrap_or(body.height) - height).max(0.0)
+            // Water at rest presses by the depth at which a place now lies; its table stays.
+            let present = height + displacement.unwrap_or(0.0);
+            water.unit_weight * (water.surface.unwrap_or(body.height) - present).max(0.0)
         });
         let volume = self.volume.unwrap_or(1.0);
         for (number, what) in [(self.time, "the time"), (volume, "the volume")] {

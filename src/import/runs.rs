@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 const MOST_DOUBTS: usize = 4;
 
 /// The states of one mesh.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Run {
     /// What the user gave.
     pub files: Vec<PathBuf>,
@@ -503,7 +503,7 @@ mod tests {
 
     #[test]
     fn a_start_is_left_out_only_where_no_place_has_a_pressure() {
-        let mapping = Mapping::convention(false).expect("the convention");
+        let mapping = Mapping::convention(crate::import::mapping::Axes::Column).expect("the convention");
         for (at_start, states) in [([0.0, 0.0], 1), ([1.0, 0.0], 2), ([0.0, 1.0], 2), ([1.0, 1.0], 2)] {
             let mut reading = reading();
             for (time, pressures) in [(0.0, at_start), (1.0, [0.5, 0.0])] {

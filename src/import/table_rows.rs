@@ -148,7 +148,9 @@ impl Places {
             return Err(table.error("a table has no cells: take `corners` out of [rows]".to_owned()));
         }
         let find = |column: Column, name: &String| {
-            if mapping.optional.iter().any(|optional| optional == column.name()) {
+            // A row without a height is none, whoever declared its column.
+            let is_optional = mapping.optional.iter().any(|optional| optional == column.name());
+            if is_optional && column != Column::Y {
                 return Ok(table.place_of(name));
             }
             let what = match (column, column.quantity()) {
@@ -157,12 +159,12 @@ impl Places {
                      m, to a column `x`, or name another one with --mapping"
                         .to_owned()
                 }
-                (Column::Y, _) => {
+                (Column::Y, _) if !mapping.is_turned => {
                     " (the heights of the rows; a settlement curve alone is named by [settlement], with `p` and `u_y` empty in \
                      [columns])"
                         .to_owned()
                 }
-                (_, Some(quantity)) => format!(" (to leave it out, {})", left_out(column, quantity)),
+                (_, Some(quantity)) => format!(" (to leave it out, {})", left_out(mapping.shown(column), quantity)),
                 _ => String::new(),
             };
             table.find(name, &what).map(Some)

@@ -2,7 +2,7 @@
 
 use super::SampledState;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
-use crate::import::mapping::{Mapping, TableLayout};
+use crate::import::mapping::{Axes, Mapping, TableLayout};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::runs_of;
 use crate::study::file::StudySource;
@@ -254,7 +254,7 @@ fn patterns_stand_for_files_by_folder_and_number_and_a_name_with_a_star_for_itse
     assert_eq!(are_tables(&[vec![at("a/s.csv"), at("a/x.vtk")]]).ok(), Some(false));
     assert!(are_tables(&[vec![at("none.csv")]]).is_err());
     // Tables do not stand among arrays, wherever they are given.
-    let mapping = Mapping::convention(false).expect("a constant");
+    let mapping = Mapping::convention(Axes::Column).expect("a constant");
     let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
     let told =
         runs_of(&[vec![at("a/s.csv")], vec![at("a/x.vtk")]], &mapping, body).expect_err("both").to_string();

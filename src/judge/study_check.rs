@@ -11,6 +11,7 @@ use crate::golden::compare::{
 use crate::golden::inputs::{CaseInputs, InputChange};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::import::SampledState;
+use crate::import::mapping::Axes;
 use crate::judge::explanation::place_of_attached;
 use crate::judge::paths::StudyPaths;
 use crate::judge::proposals::proposals;
@@ -67,6 +68,8 @@ pub struct StudyCheck {
     pub taken_over: Vec<TakenOver>,
     /// Warnings, which fail nothing.
     pub warnings: Vec<String>,
+    /// What seems to be wrong with the results of attached solvers; it stands before all else.
+    pub diagnoses: Vec<String>,
 }
 
 /// How a check came out.
@@ -126,11 +129,8 @@ impl StudyCheck {
             judgements: judge_study(study, records, tier),
             expected: study.expectations.len() + study.case_expectations.len(),
             held_back: absent.held_back(study),
-            warnings: (slow.into_iter())
-                .chain(absent.warnings())
-                .chain(differing_repeats(records))
-                .chain(diagnoses(study, records))
-                .collect(),
+            warnings: (slow.into_iter()).chain(absent.warnings()).chain(differing_repeats(records)).collect(),
+            diagnoses: diagnoses(study, records),
             ..Self::of_values(&study.name, &values, golden).with_places(records)
         }
     }
@@ -196,6 +196,7 @@ impl StudyCheck {
             held_back: 0,
             taken_over: Vec::new(),
             warnings: Vec::new(),
+            diagnoses: Vec::new(),
         }
     }
 
@@ -265,8 +266,7 @@ pub fn diagnoses(study: &Study, records: &[Record]) -> Vec<String> {
 fn of_record(study: &Study, record: &Record) -> Vec<String> {
     let case = &record.case;
     let reference = record.references.first().and_then(|used| used.name.parse::<ReferenceKind>().ok());
-    let mapping =
-        study.solver_of(case).and_then(|solver| mapping_of(solver, study.scene.has_plane_fields()).ok());
+    let mapping = study.solver_of(case).and_then(|solver| mapping_of(solver, Axes::of(study.scene)).ok());
     let (Some(reference), Some(mapping)) = (reference, mapping) else { return Vec::new() };
     let states: Vec<SampledState> =
         record.snapshots.iter().map(|snapshot| state_of(snapshot, record)).collect();

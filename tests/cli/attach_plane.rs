@@ -9,7 +9,7 @@ use tempfile::TempDir;
 /// The exact pressures of the slab, a hundredth too large.
 const SLAB: &str = r#"
 "$2" exact mandel --time-factor 0.1 --x 0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1 2>/dev/null |
-    awk -F, 'BEGIN { print "t,y,p" } NR > 1 { printf "8.175,%s,%.17g\n", $2, 1.01 * $3 }' > "$1/result.csv"
+    awk -F, 'BEGIN { print "t,x,p" } NR > 1 { printf "8.175,%s,%.17g\n", $2, 1.01 * $3 }' > "$1/result.csv"
 "#;
 
 /// Nodes of a square of ten cells each way, up to a distance from the crest; the surface under the crest goes down by
@@ -54,7 +54,7 @@ fn errors(at: &Path) -> Vec<(String, f64)> {
 fn a_slab_counts_from_its_middle_and_its_settlement_is_no_samples() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
-    write(at, "mandel", &format!("\"{PROGRAM}\""), "t y p", SLAB);
+    write(at, "mandel", &format!("\"{PROGRAM}\""), "t x p", SLAB);
     let told = call(at, &["run", "s.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
     let found = errors(at);
@@ -63,8 +63,8 @@ fn a_slab_counts_from_its_middle_and_its_settlement_is_no_samples() {
         "{found:?}"
     );
     // A displacement along the slab is none of its plate.
-    let moved = SLAB.replace("t,y,p", "t,y,p,u_y").replace("%.17g\\n\"", "%.17g,0\\n\"");
-    write(at, "mandel", &format!("\"{PROGRAM}\""), "t y p u_y", &moved);
+    let moved = SLAB.replace("t,x,p", "t,x,p,u_x").replace("%.17g\\n\"", "%.17g,0\\n\"");
+    write(at, "mandel", &format!("\"{PROGRAM}\""), "t x p u_x", &moved);
     assert_eq!(call(at, &["run", "s.toml"]).code, 0);
     assert!(errors(at).iter().all(|(name, _)| name != "settlement"), "{:?}", errors(at));
     let plan = call(at, &["plan", "s.toml", "--format", "json"]);

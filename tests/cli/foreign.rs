@@ -276,12 +276,20 @@ fn what_cannot_be_scored_is_answered_with_what_can() {
 fn a_slab_and_a_column_in_the_plane_are_scored_without_a_grid_that_fits_them() {
     let folder = TempDir::new().expect("a folder");
     let exact = call(folder.path(), &["exact", "mandel", "--time-factor", "0.1", "--x", "0,0.5,1"]);
-    let mut text = "t,y,p,u_y\n".to_owned();
+    let mut text = "t,x,y,p,u_x\n".to_owned();
+    let mut turned = text.clone();
     for row in exact.out.lines().skip(1) {
         let entries: Vec<&str> = row.split(',').collect();
-        // From the middle of the slab to its drained side.
-        writeln!(text, "8.175,{},{},0", entries[1], entries[2]).expect("a line");
+        // From the middle of the slab to its drained side; as many across.
+        for across in [0.0, 0.5, 1.0] {
+            writeln!(text, "8.175,{},{across},{},0", entries[1], entries[2]).expect("a line");
+            writeln!(turned, "8.175,{across},{},{},0", entries[1], entries[2]).expect("a line");
+        }
     }
+    fs::write(folder.path().join("turned.csv"), turned).expect("a file");
+    let told =
+        call(folder.path(), &["score", "turned.csv", "--scene", "mandel", "--without", "displacement"]);
+    assert!(told.err.contains("are the axes exchanged?"), "{}", told.err);
     fs::write(folder.path().join("slab.csv"), text).expect("a file");
     let told = call(folder.path(), &["score", "slab.csv", "--scene", "mandel", "--format", "csv"]);
     let found = values(&told, ",pressure,points,l2,");

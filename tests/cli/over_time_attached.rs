@@ -44,8 +44,6 @@ fn repository() -> TempDir {
         git(at, &["add", "-A"]);
         git(at, &["commit", "-q", "--allow-empty", "-m", subject]);
     };
-    // Three outputs: enough to tell what a result looks like.
-    change("mine.toml", "time_factors = [0.1, 0.5]", "time_factors = [0.1, 0.2, 0.5]");
     git(at, &["init", "-q"]);
     fs::write(at.join(".gitignore"), "out\n__pycache__\n").expect("written");
     accept(at, "first values");

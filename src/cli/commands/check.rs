@@ -210,6 +210,7 @@ struct CheckJson<'a> {
     accuracy_and_cost: &'a [CaseChange],
     taken_over: &'a [TakenOver],
     warnings: &'a [String],
+    diagnoses: &'a [String],
 }
 
 fn print(
@@ -220,7 +221,10 @@ fn print(
     let text = match format {
         TableFormat::Table => {
             let text = |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref());
-            return print_coloured(&checks.iter().map(text).collect::<String>());
+            // What fails stands first.
+            let (sound, unsound): (Vec<_>, Vec<_>) =
+                checks.iter().partition(|check| check.end() == CheckEnd::Pass);
+            return print_coloured(&unsound.into_iter().chain(sound).map(text).collect::<String>());
         }
         TableFormat::Markdown => verdicts::markdown_of(checks, file_of)?,
         TableFormat::Csv => verdicts::all_judgements(checks).to_csv()?,
@@ -246,6 +250,7 @@ impl<'a> CheckJson<'a> {
             accuracy_and_cost: &check.changes,
             taken_over: &check.taken_over,
             warnings: &check.warnings,
+            diagnoses: &check.diagnoses,
         }
     }
 }
@@ -314,6 +319,7 @@ mod tests {
             "golden_values_that_agree": 17, "golden_problem": null, "proposed_expectations": ["proposed"],
             "inputs_that_differ": [{ "key": "porosity", "before": "before", "after": "after", "cases": 3 }],
             "groups": [], "differences": [], "accuracy_and_cost": [], "taken_over": [], "warnings": ["warned"],
+            "diagnoses": [],
         });
         assert_eq!(serde_json::to_value(CheckJson::of(&check)).expect("plain data"), wanted);
         let told = serde_json::to_value(CheckJson::of(&missing)).expect("plain data");

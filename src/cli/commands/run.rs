@@ -14,6 +14,7 @@ use crate::cli::study_files::{is_compressed, write_table};
 use crate::cli::trust::{self, TrustArguments};
 use crate::cli::{slurm, study_files};
 use crate::foreign::reading::mapping_of;
+use crate::import::mapping::Axes;
 use crate::judge::verdict::Absent;
 use crate::record::csv::TableForm;
 use crate::record::provenance::Provenance;
@@ -288,8 +289,7 @@ fn checked(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
     let of = |source: &StudySource| {
         let study = Study::check_for(source, Purpose::Solving)?;
         for solver in &study.solvers {
-            mapping_of(solver, study.scene.has_plane_fields())
-                .map_err(|error| Ended::usage(error.to_string()))?;
+            mapping_of(solver, Axes::of(study.scene)).map_err(|error| Ended::usage(error.to_string()))?;
         }
         Ok(study)
     };

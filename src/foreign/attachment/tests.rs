@@ -133,7 +133,8 @@ mod runs {
             alone: true,
             is_wanted: &|| true,
         };
-        let record = Attachment::new(&solver, false).run(&case(&solver), &wish).expect("a sound column");
+        let record =
+            Attachment::new(&solver, Axes::Column).run(&case(&solver), &wish).expect("a sound column");
         let kept = if record.status == Status::Ok { "solver" } else { "solver.failed" };
         let is_started = record.status.name() != "unreadable" || solver.mapping.is_none();
         assert!(folder.path().join(kept).join("case.json").is_file() || !is_started);
@@ -313,7 +314,7 @@ mod runs {
         ] {
             let mut solver = solver(folder.path(), &["true"]);
             solver.version = ["sh", "-c", script].map(str::to_owned).to_vec();
-            let found = Attachment::new(&solver, false).version(&|| true).clone();
+            let found = Attachment::new(&solver, Axes::Column).version(&|| true).clone();
             assert_eq!(found.map(|version| version.line), Ok(version.map(str::to_owned)), "{script}");
         }
         let wish = Wish { references: &[], place: None, alone: true, is_wanted: &|| true };
@@ -346,7 +347,7 @@ mod runs {
             let environment = vec![("NAME".to_owned(), "{cells} of {x}".to_owned())];
             let solver = ExternalSolver { environment, ..solver };
             let wish = Wish { references: &[], place: Some(&place), alone: false, is_wanted };
-            Attachment::new(&solver, false).run(&case(&solver), &wish).expect("a sound column")
+            Attachment::new(&solver, Axes::Column).run(&case(&solver), &wish).expect("a sound column")
         };
         let sound = run(&format!("echo $NAME; {ROWS} > result.csv"), &|| true);
         assert!(sound.status == Status::Ok && !sound.wall[0].alone);
@@ -418,7 +419,11 @@ mod runs {
         {
             let about = AttachedRun { program_digest: digest, ..AttachedRun::default() };
             let record = Record { attached: Some(about), ..record.clone() };
-            assert_eq!(Attachment::new(solver, false).standing(&record, may_start), wanted, "row {number}");
+            assert_eq!(
+                Attachment::new(solver, Axes::Column).standing(&record, may_start),
+                wanted,
+                "row {number}"
+            );
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::import::mapping::units::{
 };
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::file::StudySource;
+use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::words;
 use serde::Deserialize;
 
@@ -76,6 +77,35 @@ pub struct Mapping {
     /// Whether the files show the kind of the places.
     #[serde(skip)]
     pub is_sample_open: bool,
+    /// Whether `x` and `y` are those of a slab: what is written as `x` is then kept as `y`, the direction along which a
+    /// body's fields vary, and the other way round.
+    #[serde(skip)]
+    pub is_turned: bool,
+}
+
+/// In which directions the fields of a body vary, and so what its `x` and `y` are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// `y` upward from the base; `x` does not matter.
+    #[default]
+    Column,
+    /// `y` upward from the base, `x` from the crest of the load along the layer.
+    Layer,
+    /// `x` from the middle of a slab to its drained side, `y` from the middle between its plates across, as of Mandel.
+    Slab,
+}
+
+impl Axes {
+    /// Those of a scene.
+    pub fn of(scene: SceneKind) -> Self {
+        if scene.has_plates() {
+            Self::Slab
+        } else if scene.has_plane_fields() {
+            Self::Layer
+        } else {
+            Self::Column
+        }
+    }
 }
 
 /// Who declared a mapping.
@@ -134,9 +164,9 @@ fn points() -> Sample {
 pub struct ColumnNames {
     /// Time.
     pub t: Option<String>,
-    /// Distance along a layer.
+    /// Distance along a layer, or from the middle of a slab to its drained side.
     pub x: Option<String>,
-    /// Height or depth; `y` by default.
+    /// Height or depth, or the place across a slab; `y` by default.
     #[serde(default = "height_column")]
     pub y: String,
     /// Excess pore pressure; of a table with one column per height, `{ "p0" = 0.0, "p1" = 0.1 }`.
@@ -236,7 +266,8 @@ pub struct Units {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Signs {
-    /// `right` from the scene's `x = 0` (the crest of a layer's load), or `left` from its other end; `right` by default.
+    /// `right` from the scene's `x = 0` (the crest of a layer's load, the middle of a slab), or `left` from its other end;
+    /// `right` by default.
     pub x: Option<HorizontalSense>,
     /// `up` from the base, or `down` from the initial surface; `up` by default.
     pub y: VerticalSense,
@@ -308,6 +339,67 @@ impl Mapping {
         if faults.is_empty() { Ok(self) } else { Err(source.error(faults)) }
     }
 
+    /// The mapping of a body's files: that of a slab with `x` along the direction of the columns of others.
+    ///
+    /// # Errors
+    /// When no column holds the place on which the fields depend.
+    fn for_axes(self, axes: Axes, source: &StudySource) -> Result<Self, StudyError> {
+        match axes {
+            Axes::Column => Ok(self),
+            Axes::Layer => self.check_plane(source).map(|()| self),
+            Axes::Slab => self.turned(source),
+        }
+    }
+
+    /// The mapping of a slab, whose fields vary along `x`, kept as those of a column, which vary along `y`.
+    fn turned(mut self, source: &StudySource) -> Result<Self, StudyError> {
+        let Some(along) = self.columns.x.take() else {
+            return Err(source.complaint(
+                "the scene is a slab, whose fields vary along x, and no column `x` gives the place of a sample".to_owned(),
+                "add `x = \"x\"` to [columns], from the middle of the slab to its drained side; in a file that calls this \
+                 direction y the axes are exchanged: `x = \"y\"` and `u_x = \"u_y\"`"
+                    .to_owned(),
+            ));
+        };
+        if self.rows.x.is_some() {
+            return Err(source.complaint(
+                "the fields of a slab vary along `x`, and [rows] keeps one place of it".to_owned(),
+                "take `x` out of [rows]".to_owned(),
+            ));
+        }
+        self.columns.x = Some(std::mem::replace(&mut self.columns.y, along)).filter(|name| !name.is_empty());
+        std::mem::swap(&mut self.columns.u_x, &mut self.columns.u_y);
+        std::mem::swap(&mut self.origin.x, &mut self.origin.y);
+        let up = |sense: HorizontalSense| match sense {
+            HorizontalSense::Right => VerticalSense::Up,
+            HorizontalSense::Left => VerticalSense::Down,
+        };
+        let right = |sense: VerticalSense| match sense {
+            VerticalSense::Up => HorizontalSense::Right,
+            VerticalSense::Down => HorizontalSense::Left,
+        };
+        let sign = &mut self.sign;
+        (sign.x, sign.y) = (Some(right(sign.y)), sign.x.map_or(VerticalSense::Up, up));
+        (sign.u_x, sign.u_y) = (sign.u_y.map(right), sign.u_x.map(up));
+        // What lies across matters to the displacement across alone.
+        if self.columns.u_x.is_none() {
+            self.optional.push(Column::X.name().to_owned());
+        }
+        self.is_turned = true;
+        Ok(self)
+    }
+
+    /// A column by the name that the user gives it.
+    pub fn shown(&self, column: Column) -> Column {
+        match column {
+            Column::X if self.is_turned => Column::Y,
+            Column::Y if self.is_turned => Column::X,
+            Column::Up if self.is_turned => Column::Along,
+            Column::Along if self.is_turned => Column::Up,
+            other => other,
+        }
+    }
+
     /// Checks that a column holds the place along a layer, on which the layer's fields depend.
     fn check_plane(&self, source: &StudySource) -> Result<(), StudyError> {
         if self.columns.x.is_some() {
@@ -336,7 +428,15 @@ impl Mapping {
                 columns.effective_stress.is_some() && sign.effective_stress.is_none(),
                 "the sign of `effective_stress`, taken as compression-positive",
             ),
-            (columns.u_y.is_some() && sign.u_y.is_none(), "the sign of `u_y`, taken as up"),
+            (
+                columns.u_y.is_some() && sign.u_y.is_none(),
+                if self.is_turned {
+                    "the sign of `u_x`, taken as right"
+                } else {
+                    "the sign of `u_y`, taken as up"
+                },
+            ),
+            (self.is_turned && columns.u_x.is_some() && sign.u_x.is_none(), "the sign of `u_y`, taken as up"),
             (is_plane && columns.u_x.is_some() && sign.u_x.is_none(), "the sign of `u_x`, taken as right"),
             (
                 is_plane && columns.x.is_some() && sign.x.is_none(),

@@ -1,6 +1,6 @@
 //! Built-in mappings for known programs and the default; a mapping of the user overrides them.
 
-use crate::import::mapping::{DeclaredBy, Mapping};
+use crate::import::mapping::{Axes, DeclaredBy, Mapping};
 use crate::study::diagnostic::StudyError;
 use crate::study::file::StudySource;
 use crate::study::solver::{PRESETS, Preset};
@@ -11,6 +11,17 @@ use oedometer_formats::{Array, Frame};
 pub const CONVENTION: &str = include_str!("../presets/column.toml");
 /// The mapping of a layer's result for which nothing is declared.
 pub const PLANE_CONVENTION: &str = include_str!("../presets/layer.toml");
+/// The mapping of a slab's result for which nothing is declared.
+pub const SLAB_CONVENTION: &str = include_str!("../presets/slab.toml");
+
+/// The text of the mapping for which nothing is declared.
+pub fn convention_of(axes: Axes) -> &'static str {
+    match axes {
+        Axes::Column => CONVENTION,
+        Axes::Layer => PLANE_CONVENTION,
+        Axes::Slab => SLAB_CONVENTION,
+    }
+}
 
 /// The mappings of the presets, each a file of its name.
 static TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/import/presets");
@@ -30,7 +41,7 @@ impl Preset {
 
     /// Its mapping, overridden key by key by the user's own. Columns that only the preset names may be missing in a
     /// file.
-    fn mapping(self, own: Option<&StudySource>, is_plane: bool) -> Result<Mapping, StudyError> {
+    fn mapping(self, own: Option<&StudySource>, axes: Axes) -> Result<Mapping, StudyError> {
         let base = StudySource { name: format!("the preset {}", self.name), text: self.text().to_owned() };
         let mut merged = base.table()?;
         let mut optional = keys_of_columns(&merged);
@@ -44,7 +55,7 @@ impl Preset {
         }
         if let Some(columns) = merged.get_mut("columns").and_then(toml::Value::as_table_mut) {
             columns.retain(|_, name| name.as_str() != Some(""));
-            if !is_plane {
+            if axes == Axes::Column {
                 // The fields of a column do not depend on `x`.
                 let is_along = |key: &str| ["x", "u_x"].contains(&key);
                 optional.retain(|key| !is_along(key));
@@ -54,7 +65,16 @@ impl Preset {
         let is_sample_open = !merged.contains_key("sample");
         let source = own.unwrap_or(&base);
         let mapping: Mapping = StudySource { name: source.name.clone(), text: merged.to_string() }.read()?;
+        let turn = |key: String| match key.as_str() {
+            "x" => "y".to_owned(),
+            "y" => "x".to_owned(),
+            "u_x" => "u_y".to_owned(),
+            "u_y" => "u_x".to_owned(),
+            _ => key,
+        };
+        let optional = if axes == Axes::Slab { optional.into_iter().map(turn).collect() } else { optional };
         Mapping { optional, is_sample_open, declared_by: DeclaredBy::Preset(self.name), ..mapping }
+            .for_axes(axes, source)?
             .checked(source)
     }
 }
@@ -84,30 +104,25 @@ impl Mapping {
     pub fn resolve(
         preset: Option<Preset>,
         own: Option<&StudySource>,
-        is_plane: bool,
+        axes: Axes,
     ) -> Result<Self, StudyError> {
         match (preset, own) {
-            (Some(preset), own) => preset.mapping(own, is_plane),
-            (None, Some(own)) => {
-                let mapping = Self::read(own)?;
-                if is_plane {
-                    mapping.check_plane(own)?;
-                }
-                Ok(mapping)
-            }
-            (None, None) => Self::convention(is_plane),
+            (Some(preset), own) => preset.mapping(own, axes),
+            (None, Some(own)) => Self::read(own)?.for_axes(axes, own),
+            (None, None) => Self::convention(axes),
         }
     }
 
-    /// The mapping of a result for which nothing is declared, of a column or of a layer.
+    /// The mapping of a result for which nothing is declared, of a column, of a layer or of a slab.
     ///
     /// # Errors
     /// Never: the text is a constant.
-    pub fn convention(is_plane: bool) -> Result<Self, StudyError> {
-        let text = if is_plane { PLANE_CONVENTION } else { CONVENTION }.to_owned();
-        let mapping = Self::read(&StudySource { name: "the convention".to_owned(), text })?;
-        // A layer's result may lack the horizontal displacement.
-        Ok(Self { declared_by: DeclaredBy::Convention, optional: vec!["u_x".to_owned()], ..mapping })
+    pub fn convention(axes: Axes) -> Result<Self, StudyError> {
+        let source = StudySource { name: "the convention".to_owned(), text: convention_of(axes).to_owned() };
+        let mut mapping = Self::read(&source)?.for_axes(axes, &source)?;
+        // A layer's result may lack the displacement along it.
+        mapping.optional.push("u_x".to_owned());
+        Ok(Self { declared_by: DeclaredBy::Convention, ..mapping })
     }
 }
 
@@ -123,16 +138,16 @@ mod tests {
     #[test]
     fn every_preset_is_a_mapping_and_ones_own_goes_over_it() {
         for preset in PRESETS {
-            for is_plane in [false, true] {
+            for axes in [Axes::Column, Axes::Layer] {
                 let mapping =
-                    preset.mapping(None, is_plane).unwrap_or_else(|error| panic!("{}: {error}", preset.name));
-                assert_eq!(mapping.columns.x.is_some(), is_plane);
+                    preset.mapping(None, axes).unwrap_or_else(|error| panic!("{}: {error}", preset.name));
+                assert_eq!(mapping.columns.x.is_some(), axes == Axes::Layer);
             }
         }
         let text =
             "[columns]\np = \"pressure_interpolated\"\nu_y = \"\"\n[rows]\ncorners = false\n".to_owned();
         let own = StudySource { name: "map.toml".to_owned(), text };
-        let mapping = named("ogs").mapping(Some(&own), false).expect("a mapping");
+        let mapping = named("ogs").mapping(Some(&own), Axes::Column).expect("a mapping");
         assert_eq!(
             mapping.columns.get(crate::import::mapping::Column::Pressure).map(String::as_str),
             Some("pressure_interpolated")
@@ -143,7 +158,7 @@ mod tests {
         let wrong = StudySource { name: "map.toml".to_owned(), text: "[columns]\npp = \"a\"\n".to_owned() };
         assert!(
             named("ogs")
-                .mapping(Some(&wrong), false)
+                .mapping(Some(&wrong), Axes::Column)
                 .is_err_and(|error| error.to_string().contains("map.toml:2"))
         );
     }

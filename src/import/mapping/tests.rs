@@ -10,18 +10,74 @@ fn read(text: &str) -> Result<Mapping, String> {
 
 #[test]
 fn the_convention_is_a_mapping() {
-    for is_plane in [false, true] {
-        let mapping = Mapping::convention(is_plane).expect("a constant");
+    for axes in [Axes::Column, Axes::Layer] {
+        let mapping = Mapping::convention(axes).expect("a constant");
         assert_eq!(mapping.columns.get(Column::Up).map(String::as_str), Some("u_y"));
-        assert_eq!(mapping.columns.x.is_some(), is_plane);
+        assert_eq!(mapping.columns.x.is_some(), axes == Axes::Layer);
         assert_eq!(mapping.position.y, StatedPlace::Reference);
     }
+}
+
+/// x of a slab is the direction along which its fields vary, whatever the file calls it; y lies across.
+#[test]
+fn the_axes_of_a_slab_are_those_of_the_literature() {
+    use crate::import::raw_row::{RawRow, SolvedBody};
+
+    let of = |text: &str| {
+        let source = StudySource { name: "map.toml".to_owned(), text: text.to_owned() };
+        Mapping::resolve(None, Some(&source), Axes::Slab).map_err(|error| error.to_string())
+    };
+    let body = SolvedBody { height: 5.0, length: None, seconds_per_time_factor: 1.0 };
+    let row = RawRow {
+        x: Some(2.0),
+        y: 0.5,
+        pressure: Some(7.0),
+        displacement: Some(-0.25),
+        horizontal_displacement: Some(0.125),
+        ..RawRow::default()
+    };
+    let columns = "columns = { x = \"a\", y = \"b\", p = \"p\", u_x = \"c\", u_y = \"d\" }\n";
+    // As a column of the table reads it: where x stands and u_x, y and u_y.
+    for (sign, wanted) in [
+        ("", [2.0, 0.125, 0.5, -0.25]),
+        ("sign = { x = \"left\" }\n", [3.0, 0.125, 0.5, -0.25]),
+        ("sign = { u_x = \"left\" }\n", [2.0, -0.125, 0.5, -0.25]),
+        ("sign = { u_y = \"down\" }\n", [2.0, 0.125, 0.5, 0.25]),
+        ("origin = { x = 0.5, y = 0.125 }\n", [1.5, 0.125, 0.375, -0.25]),
+    ] {
+        let mapping = of(&format!("{columns}{sign}")).expect("a mapping");
+        let names = [&mapping.columns.y, mapping.columns.x.as_ref().expect("across")];
+        assert_eq!(names, ["a", "b"], "the place along which fields vary stands first");
+        // The reader takes the column that is kept as y from the file's x.
+        let read = RawRow {
+            x: Some(row.y),
+            y: row.x.expect("given"),
+            displacement: row.horizontal_displacement,
+            horizontal_displacement: row.displacement,
+            ..row
+        };
+        let refused = |why: String| oedometer_formats::ImportError::content(std::path::Path::new("a"), why);
+        let sample = read.sample(&mapping, body, &refused).expect("inside");
+        let kept = [
+            sample.initial_height,
+            sample.displacement,
+            sample.initial_distance,
+            sample.horizontal_displacement,
+        ];
+        assert_eq!(kept, wanted, "{sign}");
+    }
+    let told = of("[columns]\ny = \"x\"\np = \"p\"\n").expect_err("no x");
+    assert!(told.contains("the axes are exchanged") && told.contains("no column `x`"), "{told}");
+    let convention = Mapping::convention(Axes::Slab).expect("a constant");
+    let up = convention.columns.get(Column::Up).map(String::as_str);
+    assert_eq!((convention.columns.y.as_str(), up), ("x", Some("u_x")));
+    assert_eq!(convention.shown(Column::Y), Column::X);
 }
 
 #[test]
 fn what_is_left_out_is_that_of_the_convention() {
     let short = read("[columns]\nt = \"t\"\np = \"p\"\nu_y = \"u_y\"\n").expect("all the rest is left out");
-    let convention = Mapping::convention(false).expect("a constant");
+    let convention = Mapping::convention(Axes::Column).expect("a constant");
     assert_eq!((short.columns, short.position), (convention.columns, convention.position));
     assert_eq!((short.units.time, short.units.length), (convention.units.time, convention.units.length));
     let pressure = |mapping: &Mapping| mapping.columns.get(Column::Pressure).cloned().unwrap_or_default();
@@ -146,7 +202,8 @@ fn what_is_taken_for_granted_is_each_unit_and_sign_of_a_column_that_is_there() {
         }
     }
     for is_plane in [false, true] {
-        let convention = Mapping::convention(is_plane).expect("a constant");
+        let axes = if is_plane { Axes::Layer } else { Axes::Column };
+        let convention = Mapping::convention(axes).expect("a constant");
         assert_eq!(convention.taken_for_granted(is_plane), None);
         let given = Mapping { units: Units::default(), ..convention };
         assert_eq!(given.taken_for_granted(is_plane), None, "whoever declares it is no user");

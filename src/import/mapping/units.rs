@@ -182,7 +182,7 @@ pub enum ZeroState {
     FirstFrame,
 }
 
-/// Water at rest.
+/// Water at rest, at the present height of a place: its initial one and `u_y`, where the files have it.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hydrostatic {
@@ -504,7 +504,8 @@ mod tests {
             ),
         ] {
             let preset = Preset::from_str(preset, false).expect("a preset");
-            let mapping = Mapping::resolve(Some(preset), None, true).expect("a mapping");
+            let mapping =
+                Mapping::resolve(Some(preset), None, crate::import::mapping::Axes::Layer).expect("a mapping");
             let columns = &mapping.columns;
             let found = [
                 Column::Time,

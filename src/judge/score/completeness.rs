@@ -197,7 +197,8 @@ impl Whole<'_> {
         let distances = coverage::lines(&state.initial_distance, self.parameters.length);
         let all = |lines: &[f64]| lines.iter().map(|line| short(*line)).collect::<Vec<_>>().join(", ");
         let place = if heights.len() == 1 {
-            format!("y = {}", all(&heights))
+            let axis = if self.reference == ReferenceKind::Mandel { "x" } else { "y" };
+            format!("{axis} = {}", all(&heights))
         } else if self.is_plane() && distances.len() <= PROFILES {
             format!("x = {}", all(&distances))
         } else {
@@ -214,7 +215,8 @@ impl Whole<'_> {
         let can_scatter = !state.initial_distance.is_empty();
         let is_one_height = |lines: &[f64]| lines.len() == 1;
         let bare = bare_along(&state.initial_height, self.parameters.height, can_scatter, is_one_height)?;
-        Some(stretch(bare, "over the base"))
+        let from = if self.reference == ReferenceKind::Mandel { "from the middle" } else { "over the base" };
+        Some(stretch(bare, from))
     }
 
     fn bare_length(&self, state: &SampledState) -> Option<String> {

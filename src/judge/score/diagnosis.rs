@@ -1,186 +1,111 @@
 //! Likely mistakes behind the numbers of an external result.
 //!
-//! Each possible mistake is corrected as a trial, with nothing fitted but a gradient; it is named only where
-//! the corrected numbers agree with the exact ones and the given ones do not. A solver that is merely
-//! inaccurate agrees with none of them.
+//! An explanation is a world (one input of the solver, or the meaning of places and times, changed) with a reading of
+//! each column (its unit, sign or offset). It is named only where it makes all columns agree with the exact ones that
+//! did not agree before, and no column worse: so a cause that one quantity excludes is not offered for another, and a
+//! solver that is merely inaccurate is told nothing.
 
-mod inputs;
+mod clock;
+mod given;
+mod patterns;
+mod readings;
+mod world;
 
-use crate::case::Quantity;
 use crate::import::SampledState;
 use crate::import::mapping::Mapping;
-use crate::import::mapping::units::{LengthUnit, StressUnit, TimeUnit};
 use crate::judge::score::coverage::SAME_PLACE;
-use crate::measure::fields::ExactFields;
+use given::{Column, Field, Given};
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
-use oedometer_soil::elementary::powi;
+use oedometer_soil::elementary::{ln, powi};
 use oedometer_soil::wording::short;
-use std::borrow::Cow;
+use readings::Reading;
+use world::{Coupling, Ends, Predicted, World, with_soils};
 
-/// Relative errors below this are an inaccurate solver's, and no mistake in a file.
-const INACCURATE: f64 = 0.1;
+/// Relative errors below this are not taken for a mistake.
+const NOTICED: f64 = 2e-3;
 /// Relative error that a corrected result may have.
 const CORRECTED: f64 = 0.1;
 /// Share of its former error that a corrected result may have.
 const IMPROVED: f64 = 0.1;
 /// [`IMPROVED`] where a number was fitted.
-const IMPROVED_BY_FIT: f64 = 0.01;
-/// Share of the unit weight of water by which a gradient may miss it.
-const UNIT_WEIGHT: f64 = 0.05;
-/// Exact values below this share of the load's are round-off and show nothing.
-const VANISHED: f64 = 1e-6;
+const IMPROVED_BY_FIT: f64 = 0.12;
+/// Former errors from which on a coarse result may keep more of its error, how much, and what it may have left.
+const COARSE: [f64; 3] = [0.1, 0.3, 0.05];
 /// Exact values above this share of the load's are not zero.
 const NOTABLE: f64 = 1e-3;
-/// Number of states that are examined, spread over all of them.
-const STATES: usize = 12;
-/// Samples of a state that are examined where there are more than twice as many.
-const SAMPLES: u32 = 5000;
-/// Share of a part by which the place of a sample in it advances from one part to the next, of 2³².
-const GOLDEN_RATIO: u32 = 0x9e37_79b9;
-/// Time factors in which a wrong unit of time is searched; before and after nothing changes.
-const TIME_FACTORS: std::ops::RangeInclusive<f64> = 1e-7..=20.0;
-/// Most mistakes of units, signs and ends that are searched together.
-const MOST_TOGETHER: usize = 3;
-/// Factor by which an explanation with one mistake more must be better.
-const PENALTY: f64 = 1.2;
-/// Difference over the final settlement from which on the top of a column is not plane.
-const UNEVEN_TOP: f64 = 0.02;
 /// Errors up to this are equal.
 const ROUND_OFF: f64 = 1e-9;
+/// An error below which one explanation is no better than another.
+const SETTLED: f64 = 1e-5;
+/// Factor by which an explanation with one mistake more must be better.
+const PENALTY: f64 = 1.2;
+/// Multiple of its former error that a column may have in a world.
+const WORSE: f64 = 1.5;
+/// Samples of a state that are looked at where there are more than twice as many, and in the trials of a fit.
+const SAMPLES: [usize; 2] = [5000, 24];
+/// Difference over the final settlement from which on the top of a column is not plane.
+const UNEVEN_TOP: f64 = 0.02;
+/// Share of an error below which what is left of it is nothing.
+const CLEAR: f64 = 1e-4;
+/// Largest relative difference of one factor in several columns.
+const COMMON: f64 = 0.05;
+/// A time factor before anything drains.
+const EARLY: f64 = 1e-6;
 
-/// A possible mistake, and the error that is left when it is corrected.
-struct Mistake {
-    sentence: String,
-    left: f64,
-    /// Number of single mistakes in it.
-    count: usize,
+/// A world with the reading of each column in it.
+struct Explanation {
+    world: World,
+    readings: Vec<Reading>,
 }
 
-impl Mistake {
-    /// The error that is left, with a penalty for every further mistake: of two explanations the simpler one.
-    fn cost(&self) -> f64 {
-        let more = self.count.saturating_sub(1);
-        (self.left + ROUND_OFF) * powi(PENALTY, i32::try_from(more).unwrap_or(i32::MAX))
+impl Explanation {
+    /// The best readings in a world.
+    fn of(world: World, given: &Given<'_>, with_patterns: bool) -> Option<Self> {
+        let predicted = world.predict(given)?;
+        Some(Self::by(world, &predicted, given, with_patterns))
+    }
+
+    fn by(world: World, predicted: &Predicted, given: &Given<'_>, with_patterns: bool) -> Self {
+        let is_own = world.count == 0;
+        let of = |column: &Column| readings::best(column, predicted, given, [with_patterns, is_own]);
+        let readings = given.columns.iter().map(of).collect();
+        Self { world, readings }
+    }
+
+    /// The largest error that is left.
+    fn left(&self, given: &Given<'_>) -> f64 {
+        let shown = self.readings.iter().zip(&given.columns).filter(|(_, column)| !column.shows_nothing());
+        shown.map(|(reading, _)| reading.left).fold(0.0, f64::max)
+    }
+
+    fn count(&self) -> usize {
+        self.world.count + self.readings.iter().map(|reading| reading.count).sum::<usize>()
+    }
+
+    /// The errors that are left, with a penalty for every mistake: of two explanations the simpler one.
+    fn cost(&self, given: &Given<'_>) -> f64 {
+        let shown = self.readings.iter().zip(&given.columns).filter(|(_, column)| !column.shows_nothing());
+        shown.map(|(reading, _)| cost(reading.left, 0)).sum::<f64>() + cost(1.0, self.count())
     }
 }
 
-/// The exact fields with places or times read differently.
-struct Variant {
-    /// How the sentence goes on.
-    said: String,
-    /// The questions to ask.
-    asked: Vec<String>,
-    exact: Vec<ExactFields>,
+/// The logarithm of an error with a penalty for each mistake.
+fn cost(left: f64, count: usize) -> f64 {
+    ln((left + SETTLED) * powered(count))
 }
 
-/// A result with its exact solution.
-struct Given<'a> {
-    parameters: &'a ColumnParameters,
-    solution: Reference,
-    states: Vec<&'a SampledState>,
-    /// Time factors of the states.
-    times: Vec<f64>,
-    mapping: &'a Mapping,
-    /// Whether these are only some of the samples.
-    are_picked: bool,
+/// The penalty of so many mistakes.
+fn powered(count: usize) -> f64 {
+    powi(PENALTY, i32::try_from(count).unwrap_or(i32::MAX))
 }
 
-impl Given<'_> {
-    /// The exact fields of a solution at times and at the samples of states.
-    fn exact_of(
-        &self,
-        solution: &Reference,
-        times: &[f64],
-        states: &[&SampledState],
-    ) -> Result<Vec<ExactFields>, ExactError> {
-        let of = |(time, state): (&f64, &&SampledState)| {
-            ExactFields::of(solution, *time, state.places(self.parameters.height))
-        };
-        times.iter().zip(states).map(of).collect()
-    }
-
-    /// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
-    fn uneven_top(&self, settlement: f64) -> Option<String> {
-        if self.solution.is_plane() {
-            return None;
-        }
-        let last =
-            self.states.last().filter(|state| state.displacement.len() == state.initial_height.len())?;
-        let highest = last.initial_height.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let is_top = |y: f64| highest - y <= SAME_PLACE * self.parameters.height;
-        let top = last.initial_height.iter().zip(&last.displacement).filter(|(y, _)| is_top(**y));
-        let moved = top.map(|(_, moved)| *moved);
-        let [least, most] = moved.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], moved| {
-            [least.min(moved), most.max(moved)]
-        });
-        (most - least > UNEVEN_TOP * settlement.abs()).then(|| {
-            format!(
-                "your top is not plane: at y = {} m u_y lies between {} and {} m: are the sides on rollers, and does the \
-                 load press evenly?",
-                short(highest),
-                short(least),
-                short(most)
-            )
-        })
-    }
-
-    /// Whether nothing but diffusion happens in the solution.
-    fn is_slow(&self) -> bool {
-        use ReferenceKind::{DynamicColumn, DynamicSingleMode, StandingWave};
-        !matches!(self.solution.kind(), DynamicColumn | DynamicSingleMode | StandingWave)
-    }
-
-    /// Changed times with the solution prepared for them, where it is slow and the times show something.
-    fn at_times(&self, change: impl Fn(f64) -> f64) -> Option<(Vec<f64>, Reference)> {
-        let times: Vec<f64> = self.times.iter().map(|time| change(*time)).collect();
-        let is_seen = times.iter().any(|time| TIME_FACTORS.contains(time));
-        let is_within = |time: &f64| (0.0..=*TIME_FACTORS.end()).contains(time);
-        if !(self.is_slow() && is_seen && times.iter().all(is_within)) {
-            return None;
-        }
-        let solution = Reference::new(self.solution.kind(), self.parameters, &times).ok()?;
-        Some((times, solution))
-    }
-
-    /// The exact fields as they are and upside down, each at the given times and at times in other units.
-    fn variants(&self) -> Vec<Variant> {
-        let height = self.parameters.height;
-        let turned: Vec<SampledState> = (self.states.iter())
-            .map(|state| SampledState {
-                initial_height: state.initial_height.iter().map(|y| (height - y).max(0.0)).collect(),
-                initial_distance: state.initial_distance.clone(),
-                ..SampledState::default()
-            })
-            .collect();
-        let turned: Vec<&SampledState> = turned.iter().collect();
-        let per_time_factor = self.parameters.time(1.0);
-        let given = self.mapping.units.time;
-        let in_unit = |unit: TimeUnit| {
-            let ratio = unit.seconds(1.0, per_time_factor) / given.seconds(1.0, per_time_factor);
-            let said = format!(" at {} × the time", short_factor(ratio));
-            let asked = format!("are times in {} where {} is declared?", unit.name(), given.name());
-            Some((said, Some(asked), self.at_times(|time| time * ratio)?))
-        };
-        let as_given = self.at_own_times().map(|own| (String::new(), None, own));
-        let others = TimeUnit::ALL.into_iter().filter(|unit| *unit != given);
-        let mut variants = Vec::new();
-        for (said, asked, (times, solution)) in as_given.into_iter().chain(others.filter_map(in_unit)) {
-            for (states, end, question) in [
-                (&self.states, "", None),
-                (&turned, " upside down", Some("is `y` counted from the other end?")),
-            ] {
-                let Ok(exact) = self.exact_of(&solution, &times, states) else { continue };
-                let asked = asked.clone().into_iter().chain(question.map(str::to_owned)).collect();
-                variants.push(Variant { said: format!("{end}{said}"), asked, exact });
-            }
-        }
-        variants
-    }
-
-    fn at_own_times(&self) -> Option<(Vec<f64>, Reference)> {
-        let solution = Reference::new(self.solution.kind(), self.parameters, &self.times).ok()?;
-        Some((self.times.clone(), solution))
-    }
+/// Whether what is left of an error makes a correction likely.
+fn convinces(before: f64, left: f64, is_fitted: bool) -> bool {
+    let share = if is_fitted { IMPROVED_BY_FIT } else { IMPROVED };
+    let [from, coarse_share, coarse_left] = COARSE;
+    let is_clear = left <= CORRECTED.min(share * before);
+    let is_coarse = before > from && left <= coarse_left && left <= coarse_share * before;
+    before > NOTICED && (is_clear || is_coarse)
 }
 
 /// Sentences on what seems to be wrong with the numbers of a result, compared with a reference.
@@ -193,279 +118,353 @@ pub fn diagnosis(
     states: &[SampledState],
     mapping: &Mapping,
 ) -> Result<Vec<String>, ExactError> {
-    let picked: Vec<Cow<'_, SampledState>> = spread(states).into_iter().map(picked).collect();
-    let states: Vec<&SampledState> = picked.iter().map(Cow::as_ref).collect();
     let times: Vec<f64> = states.iter().map(|state| parameters.time_factor(state.time)).collect();
     let solution = Reference::new(reference, parameters, &times)?;
-    let are_picked = picked.iter().any(|state| matches!(state, Cow::Owned(_)));
-    let given = Given { parameters, solution, states, times, mapping, are_picked };
-    let exact = given.exact_of(&given.solution, &given.times, &given.states)?;
-    let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
-    let mut variants: Option<Vec<Variant>> = None;
-    let mut judged = 0;
-    for (quantity, column, scale) in [
-        (Quantity::Pressure, "p", parameters.load),
-        (Quantity::EffectiveStress, "effective_stress", parameters.load),
-        (Quantity::Displacement, "u_y", parameters.final_settlement()),
-    ] {
-        let trials = Trials { given: &given, quantity, scale, states: &given.states, exact: &exact };
-        let error = trials.error(&exact, 1.0);
-        let is_given = given.states.iter().any(|state| !trials.computed(state).is_empty());
-        if !is_given || trials.size() < VANISHED * scale {
-            continue;
+    let [whole, thin] = SAMPLES.map(|most| {
+        let mut given = Given::of(parameters, reference, states, mapping, most);
+        given.solution = Some(solution.clone());
+        let own = World::own(&given).predict_by(&solution, &given);
+        if let Some(own) = &own {
+            given.hold_against(own);
         }
-        judged += 1;
-        if given.states.iter().all(|state| trials.computed(state).iter().all(|value| *value == 0.0)) {
-            sentences.push((
-                "is 0 everywhere: is it another array than the one that is meant?".to_owned(),
-                vec![column],
-            ));
-            continue;
-        }
-        let mut mistakes = Vec::new();
-        if error > INACCURATE {
-            mistakes.extend(trials.all(error, variants.get_or_insert_with(|| given.variants())));
-        }
-        if error > inputs::NOTICED {
-            mistakes.extend(trials.inputs(error));
-        }
-        let Some(mistake) = mistakes.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost())) else {
-            continue;
-        };
-        match sentences.iter_mut().find(|(sentence, _)| *sentence == mistake.sentence) {
-            Some((_, columns)) => columns.push(column),
-            None => sentences.push((mistake.sentence, vec![column])),
-        }
+        own.map(|own| (given, own))
+    });
+    let (Some((whole, own)), Some((thin, own_thin))) = (whole, thin) else { return Ok(Vec::new()) };
+    let mut sentences = Vec::new();
+    if whole.columns.iter().any(|column| !column.shows_nothing()) {
+        let base = Explanation::by(World::own(&whole), &own, &whole, true);
+        let best = other_worlds(&thin, &own_thin).unwrap_or(base);
+        sentences = sentences_of(&best, &whole);
     }
-    // A wrong load shows in everything that a result has; a factor on one quantity alone is something else.
-    sentences.retain(|(sentence, columns)| !sentence.contains(inputs::OF_LOAD) || columns.len() == judged);
-    let uneven = given.uneven_top(parameters.final_settlement());
-    let told = |(sentence, columns): (String, Vec<&str>)| match columns.split_last() {
-        Some((last, others)) if !others.is_empty() => {
-            format!("each of your {} and {last} {sentence}", others.join(", "))
-        }
-        _ => format!("your {} {sentence}", columns.concat()),
+    sentences.extend(exchanged_axes(&whole).filter(|_| sentences.is_empty()));
+    sentences.extend(uneven_top(&whole, solution.is_plane()));
+    Ok(sentences)
+}
+
+/// The best explanation in another world, where one convinces more than readings alone.
+fn other_worlds(given: &Given<'_>, own: &Predicted) -> Option<Explanation> {
+    let base = Explanation::by(World::own(given), own, given, false);
+    let raw: Vec<f64> = given
+        .columns
+        .iter()
+        .map(|column| column.misfit_as_given(&column.exact(own).collect::<Vec<f64>>()))
+        .collect();
+    let worst = |explanation: &Explanation| explanation.left(given);
+    let before = worst(&base);
+    if !(before > NOTICED || base.count() > 1) {
+        return None;
+    }
+    let is_accepted = |one: &Explanation| {
+        let left = worst(one);
+        let is_better = convinces(before, left, one.world.is_fitted);
+        let is_simpler =
+            one.count() < base.count() && left <= WORSE * before + ROUND_OFF && before <= CORRECTED;
+        let spoils = (one.readings.iter().zip(&raw).zip(&given.columns)).any(|((reading, raw), column)| {
+            !column.shows_nothing() && reading.is_plain() && reading.left > NOTICED.max(WORSE * raw)
+        });
+        (is_better || is_simpler) && !spoils
     };
-    Ok(sentences.into_iter().map(told).chain(uneven).collect())
-}
-
-/// Some of the states, from the first to the last.
-fn spread(states: &[SampledState]) -> Vec<&SampledState> {
-    let count = states.len().min(STATES);
-    let last = states.len().saturating_sub(1);
-    (0..count).filter_map(|one| states.get(one * last / count.saturating_sub(1).max(1))).collect()
-}
-
-/// Some of the samples of a state, spread over all of them without a period: a mistake is in all samples, and every
-/// trial evaluates the exact fields again.
-fn picked(state: &SampledState) -> Cow<'_, SampledState> {
-    let all = state.initial_height.len();
-    if all <= 2 * SAMPLES as usize {
-        return Cow::Borrowed(state);
-    }
-    // One of each of as many equal parts, at a place in it that advances by the golden ratio.
-    let place = |part: u32| {
-        let within = part.wrapping_mul(GOLDEN_RATIO);
-        let places = u128::from(u64::from(part) << 32 | u64::from(within)) * all as u128;
-        usize::try_from(places / (u128::from(SAMPLES) << 32)).ok()
-    };
-    Cow::Owned(samples_at(state, &(0..SAMPLES).filter_map(place).collect::<Vec<_>>()))
-}
-
-/// The samples of a state at some of its places.
-fn samples_at(state: &SampledState, places: &[usize]) -> SampledState {
-    let of = |list: &[f64]| places.iter().filter_map(|place| list.get(*place).copied()).collect();
-    SampledState {
-        time: state.time,
-        initial_distance: of(&state.initial_distance),
-        initial_height: of(&state.initial_height),
-        volume: of(&state.volume),
-        pressure: of(&state.pressure),
-        effective_stress: of(&state.effective_stress),
-        displacement: of(&state.displacement),
-        horizontal_displacement: of(&state.horizontal_displacement),
-        surface_displacement: state.surface_displacement,
-        ..SampledState::default()
-    }
-}
-
-/// A sample: computed and exact value, height in m, weight.
-type Sample = [f64; 4];
-
-/// All that is tried on one quantity.
-struct Trials<'a> {
-    given: &'a Given<'a>,
-    quantity: Quantity,
-    /// What a value of 1 stands for: the load, or the final settlement.
-    scale: f64,
-    states: &'a [&'a SampledState],
-    exact: &'a [ExactFields],
-}
-
-impl Trials<'_> {
-    fn computed<'a>(&self, state: &'a SampledState) -> &'a [f64] {
-        match self.quantity {
-            Quantity::Pressure => &state.pressure,
-            Quantity::EffectiveStress => &state.effective_stress,
-            _ => &state.displacement,
-        }
-    }
-
-    fn samples<'a>(&'a self, exact: &'a [ExactFields]) -> impl Iterator<Item = Sample> + 'a {
-        self.states.iter().zip(exact).flat_map(|(state, fields)| {
-            let places = state.initial_height.iter().zip(&state.volume);
-            (self.computed(state).iter().zip(fields.field(self.quantity)).zip(places))
-                .map(|((computed, exact), (y, volume))| [*computed, *exact, *y, *volume])
-        })
-    }
-
-    /// Relative error over all states, with every computed value multiplied by a factor.
-    fn error(&self, exact: &[ExactFields], factor: f64) -> f64 {
-        self.error_of(self.samples(exact), |value, _| factor * value)
-    }
-
-    /// Relative error over samples, with every computed value corrected by its height.
-    fn error_of(&self, samples: impl Iterator<Item = Sample>, corrected: impl Fn(f64, f64) -> f64) -> f64 {
-        let (mut difference, mut size) = (0.0, 0.0);
-        for [computed, exact, height, volume] in samples {
-            difference += volume * powi((corrected(computed, height) - exact) / self.scale, 2);
-            size += volume * powi(exact / self.scale, 2);
-        }
-        (difference / size).sqrt()
-    }
-
-    /// Root of the mean square of the exact values.
-    fn size(&self) -> f64 {
-        let (mut sum, mut volumes) = (0.0, 0.0);
-        for [_, exact, _, volume] in self.samples(self.exact) {
-            sum += volume * powi(exact / self.scale, 2);
-            volumes += volume;
-        }
-        (sum / volumes).sqrt() * self.scale
-    }
-
-    /// The mistake that makes exact fields into computed ones divided by a factor.
-    fn mistake(&self, exact: &[ExactFields], factor: f64, sentence: impl Into<String>) -> Mistake {
-        Mistake { sentence: sentence.into(), left: self.error(exact, factor), count: 1 }
-    }
-
-    /// The exact fields with another field in place of the quantity.
-    fn exact_with(&self, field: impl Fn(&ExactFields) -> Vec<f64>) -> Vec<ExactFields> {
-        let of = |fields: &ExactFields| match self.quantity {
-            Quantity::Pressure => ExactFields { pressure: field(fields), ..ExactFields::default() },
-            _ => ExactFields { effective_stress: field(fields), ..ExactFields::default() },
+    let limit = base.cost(given);
+    let mut best: Option<Explanation> = None;
+    for stage in STAGES {
+        let explanations =
+            worlds(given, stage).into_iter().filter_map(|world| Explanation::of(world, given, false));
+        let better = explanations.filter(|one| is_accepted(one) && one.cost(given) < limit);
+        best = best.into_iter().chain(better).min_by(|a, b| a.cost(given).total_cmp(&b.cost(given)));
+        // A name that leaves next to nothing, or a factor of the time that all columns have: nothing more is needed.
+        let is_enough = |best: &Explanation| {
+            let is_common = stage != Stage::Named && best.readings.iter().all(Reading::is_plain);
+            is_common || (stage == Stage::Named && worst(best) <= CLEAR * before)
         };
-        self.exact.iter().map(of).collect()
-    }
-
-    /// The mistakes that would explain the error.
-    fn all(&self, error: f64, variants: &[Variant]) -> Vec<Mistake> {
-        let convinces = |mistake: &Mistake, share: f64| mistake.left <= CORRECTED.min(share * error);
-        let mut mistakes = self.conventions(variants);
-        if self.quantity == Quantity::EffectiveStress {
-            let total = self.exact_with(|fields| {
-                fields.effective_stress.iter().zip(&fields.pressure).map(|(s, p)| s - p).collect()
-            });
-            let sentence = "matches the exact total stress: is the pore pressure left in?";
-            mistakes.push(self.mistake(&total, 1.0, sentence));
+        if best.as_ref().is_some_and(is_enough) {
+            break;
         }
-        mistakes.extend(self.zeros());
-        mistakes.retain(|mistake| convinces(mistake, IMPROVED));
-        mistakes.extend(self.gradient().filter(|mistake| convinces(mistake, IMPROVED_BY_FIT)));
-        mistakes
     }
+    best
+}
 
-    /// The exact field in another unit, with another sign, upside down or at times in another unit: up to three of these
-    /// together.
-    fn conventions(&self, variants: &[Variant]) -> Vec<Mistake> {
-        let declared = &self.given.mapping.units;
-        let units: Vec<(&str, f64)> = if self.quantity == Quantity::Displacement {
-            let given = declared.displacement.unwrap_or(declared.length);
-            LengthUnit::ALL.map(|unit| (unit.name(), unit.metres() / given.metres())).to_vec()
+/// The stages of the search, the cheap ones first.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Worlds with nothing fitted.
+    Named,
+    /// A fitted factor or offset of the times.
+    Clock,
+    /// A fitted stiffness.
+    Stiffness,
+    /// A fitted factor of the times of a result that is upside down.
+    Turned,
+}
+
+const STAGES: [Stage; 4] = [Stage::Named, Stage::Clock, Stage::Stiffness, Stage::Turned];
+
+/// The other worlds of a stage.
+fn worlds(given: &Given<'_>, stage: Stage) -> Vec<World> {
+    let own = World::own(given);
+    match stage {
+        Stage::Named => {
+            let parts = [places(given, &own), loads(given, &own), waters(given, &own), soils(given, &own)];
+            parts.into_iter().flatten().chain(problems(given, &own)).collect()
+        }
+        Stage::Clock => clock::clocks(given, &own),
+        Stage::Stiffness => clock::stiffness(given, &own).into_iter().collect(),
+        Stage::Turned => {
+            let turned = places(given, &own).into_iter().filter(|world| world.ends == Ends::UpsideDown);
+            turned.flat_map(|world| clock::clocks(given, &world)).collect()
+        }
+    }
+}
+
+/// Places that are read otherwise, and water that leaves elsewhere.
+fn places(given: &Given<'_>, own: &World) -> Vec<World> {
+    let at = |ends: Ends, said: &str, asked: &str| World { ends, ..own.clone().with(said, asked) };
+    let mut all = Vec::new();
+    let is_column = own.is_a_column();
+    let turned = if is_column && !given.moves() && given.parameters.soils.is_empty() {
+        "is `y` counted from the other end? Or is the base drained in place of the surface?"
+    } else {
+        "is `y` counted from the other end?"
+    };
+    let turned =
+        if given.kind == ReferenceKind::Mandel { "does `x` count from the drained side?" } else { turned };
+    let said = if given.kind == ReferenceKind::Mandel { " with x turned" } else { " upside down" };
+    all.push(at(Ends::UpsideDown, said, turned));
+    if is_column {
+        let base = "is the base drained in place of the surface?";
+        all.push(at(Ends::DrainedBase, " of a column that drains at its base", base));
+        if given.parameters.soils.is_empty() {
+            let both = "is the base drained, too?";
+            all.push(at(Ends::BothDrained, " of a column that drains at both ends", both));
+        }
+    }
+    if given.kind == ReferenceKind::Mandel {
+        let asked = "are the axes exchanged? Of `mandel` x runs along the drained direction, from the middle, and y across";
+        all.push(at(Ends::AxesExchanged, " with x and y exchanged", asked));
+    }
+    if given.kind_is_plane() {
+        all.push(at(Ends::OtherSide, " with x turned", "does `x` count from the other end?"));
+    }
+    all
+}
+
+/// Another load: a factor with a name, or one that all columns have.
+fn loads(given: &Given<'_>, own: &World) -> Vec<World> {
+    let shown = given.columns.iter().filter(|column| !column.shows_nothing()).count();
+    // At small strain one column alone cannot tell the load from a factor.
+    let is_linear = !matches!(own.kind, ReferenceKind::LargeStrain(_) | ReferenceKind::XieLeo);
+    if (shown < 2 && is_linear) || own.kind.is_manufactured() {
+        return Vec::new();
+    }
+    let with = |factor: f64| {
+        let mut world = own.clone();
+        if is_linear && !own.parameters.self_weight {
+            world.load = factor;
         } else {
-            let given = declared.stress.unwrap_or(StressUnit::Pascal);
-            StressUnit::ALL.map(|unit| (unit.name(), unit.pascals() / given.pascals())).to_vec()
-        };
-        let given = units.iter().find(|(_, factor)| *factor == 1.0).map_or("", |(name, _)| name);
-        let signed = units.iter().flat_map(|(name, factor)| [(name, factor, 1.0), (name, factor, -1.0)]);
-        let mut mistakes = Vec::new();
-        for variant in variants {
-            for (name, factor, sign) in signed.clone() {
-                let unit = (*factor != 1.0).then(|| format!("is it in {name} where {given} is declared?"));
-                let turned = (sign < 0.0).then(|| "is the sign declared wrongly?".to_owned());
-                let asked: Vec<String> =
-                    [unit, turned].into_iter().flatten().chain(variant.asked.clone()).collect();
-                if !(1..=MOST_TOGETHER).contains(&asked.len()) {
-                    continue;
-                }
-                let begin = match sign / factor {
-                    1.0 => "matches the exact one".to_owned(),
-                    ratio => format!("is {} × the exact one", short_factor(ratio)),
-                };
-                // In a layer under a cosine load the other end looks like the other sign.
-                let is_sign_alone = asked.len() == 1 && sign < 0.0 && self.given.solution.is_plane();
-                let end = if is_sign_alone { " Or does `x` count from the other end?" } else { "" };
-                let sentence = format!("{begin}{}: {}{end}", variant.said, asked.join(" And "));
-                let mistake = self.mistake(&variant.exact, sign * factor, sentence);
-                mistakes.push(Mistake { count: asked.len(), ..mistake });
-            }
+            world.parameters.load *= factor;
         }
-        mistakes
-    }
-
-    /// Places inside at which nothing was written: mid-side nodes of elements that have the pressure
-    /// at their corners.
-    fn zeros(&self) -> Option<Mistake> {
-        let is_inside = |sample: &Sample| sample[1].abs() > NOTABLE * self.scale;
-        let is_zero = |sample: &Sample| sample[0] == 0.0 && is_inside(sample);
-        let inside = self.samples(self.exact).filter(is_inside).count();
-        let zeros = self.samples(self.exact).filter(is_zero).count();
-        if zeros < 2 || 4 * zeros > 3 * inside {
-            return None;
-        }
-        let others = self.samples(self.exact).filter(|sample| !is_zero(sample));
-        let sentence = format!(
-            "is exactly 0 at {zeros} of {inside} samples{} where it should not be, and right at the others: are \
-             they mid-side nodes without a value?",
-            if self.given.are_picked { " looked at" } else { "" }
-        );
-        Some(Mistake { sentence, left: self.error_of(others, |value, _| value), count: 1 })
-    }
-
-    /// A constant gradient over the depth on top of the exact pressure: the weight of the water.
-    fn gradient(&self) -> Option<Mistake> {
-        if self.quantity != Quantity::Pressure {
-            return None;
-        }
-        let height = self.given.parameters.height;
-        let depth = |y: f64| (height - y) / height;
-        let (mut sums, mut offsets) = ([0.0; 3], [0.0; 2]);
-        for [computed, exact, y, volume] in self.samples(self.exact) {
-            let (depth, difference) = (depth(y), computed - exact);
-            sums = [sums[0] + volume, sums[1] + volume * depth, sums[2] + volume * depth * depth];
-            offsets = [offsets[0] + volume * difference, offsets[1] + volume * difference * depth];
-        }
-        let determinant = sums[0] * sums[2] - sums[1] * sums[1];
-        let slope = (sums[0] * offsets[1] - sums[1] * offsets[0]) / determinant;
-        let constant = (offsets[0] - slope * sums[1]) / sums[0];
-        let gradient = slope / height;
-        let weight = self.given.parameters.soil.unit_weight_of_water();
-        // A water level above or below the surface adds the constant.
-        let corrected = |value: f64, y: f64| value - constant - slope * depth(y);
-        let left = self.error_of(self.samples(self.exact), corrected);
-        let sentence = format!(
-            "differs from the exact one by a constant gradient of {} Pa/m: is the hydrostatic part left in?",
-            short(gradient)
-        );
-        let is_water = (gradient.abs() / weight - 1.0).abs() <= UNIT_WEIGHT;
-        is_water.then_some(Mistake { sentence, left, count: 1 })
-    }
+        let said = readings::short_factor(readings::rounded(factor));
+        let asked = format!("is the load {said} × that of the scene?");
+        world.with(&format!(" of {said} × the load"), asked)
+    };
+    let tens = [10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].into_iter().filter(|_| given.moves() && given.is_stressed());
+    let few = [3.0, 4.0, 5.0].into_iter().flat_map(|factor| [factor, 1.0 / factor]).filter(|_| !is_linear);
+    let named = [2.0, 0.5].into_iter().chain(few).chain(tens).map(with);
+    let common = common_factor(given, own);
+    // A factor without a name counts twice.
+    named.chain(common.map(|factor| World { is_fitted: true, count: 2, ..with(factor) })).collect()
 }
 
-/// A factor in words: −1.00, 0.001, 60.
-fn short_factor(factor: f64) -> String {
-    let digits = if factor.abs() == 1.0 { format!("{factor:.2}") } else { short(factor) };
-    digits.replace('-', "−")
+/// The factor that all columns have, where stresses and displacements agree on it.
+fn common_factor(given: &Given<'_>, own: &World) -> Option<f64> {
+    let predicted = own.predict(given).filter(|_| given.moves() && given.is_stressed())?;
+    let of = |column: &Column| {
+        let (mut both, mut square) = (0.0, 0.0);
+        for ((computed, exact), weight) in
+            column.computed.iter().zip(column.exact(&predicted)).zip(&column.weights)
+        {
+            both += weight * computed / column.scale * (exact / column.scale);
+            square += weight * powi(exact / column.scale, 2);
+        }
+        both / square
+    };
+    let factors: Vec<f64> = given.columns.iter().filter(|column| !column.shows_nothing()).map(of).collect();
+    let first = *factors.first()?;
+    let are_one = factors.iter().all(|factor| (factor / first - 1.0).abs() <= COMMON);
+    (are_one && first > 0.0).then(|| factors.iter().sum::<f64>() / factors.len() as f64)
+}
+
+/// Water that is incompressible, or stores where it should not.
+fn waters(given: &Given<'_>, own: &World) -> Vec<World> {
+    use ReferenceKind::{CosineLayer, CosineLayerIncompressible, Terzaghi, TerzaghiIncompressible};
+    let stiffer = |factor: f64| {
+        with_soils(&own.parameters, |layer| {
+            layer.water_bulk_modulus = layer.water_bulk_modulus.map(|modulus| factor * modulus);
+        })
+    };
+    let with = |parameters: ColumnParameters, said: &str, asked: &str| {
+        World { parameters, ..own.clone() }.with(said, asked)
+    };
+    let porosity = given.parameters.soil.porosity;
+    let mut all = vec![
+        with(
+            stiffer(1e9),
+            " of incompressible water",
+            "is the storage of the water, n/K_w, missing from the mass balance?",
+        ),
+        with(stiffer(porosity), " of water softer by n", "is K_w taken for K_w/n?"),
+    ];
+    let compressible = match own.kind {
+        TerzaghiIncompressible => Some(Terzaghi),
+        CosineLayerIncompressible => Some(CosineLayer),
+        _ => None,
+    };
+    all.extend(compressible.map(|kind| {
+        let asked = format!(
+            "does the water of your solver store, so that `--reference {}` is the right one?",
+            kind.name()
+        );
+        World { kind, ..own.clone() }.with(" of compressible water", asked)
+    }));
+    all
+}
+
+/// A stiffness that is taken for another one.
+fn soils(given: &Given<'_>, own: &World) -> Vec<World> {
+    if !own.is_slow() {
+        return Vec::new();
+    }
+    let named = clock::moduli(given).into_iter();
+    let mut all: Vec<World> =
+        named.map(|(ratio, asked)| clock::stiffer(own, ratio).with(" of another stiffness", asked)).collect();
+    if given.kind_is_plane() || given.kind == ReferenceKind::Mandel {
+        let exchanged = with_soils(&own.parameters, |layer| {
+            let (young, nu) = (layer.youngs_modulus.unwrap_or(1.0), layer.poissons_ratio.unwrap_or(0.25));
+            let shear = young / (2.0 * (1.0 + nu));
+            let lame = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+            // λ for μ and μ for λ.
+            layer.youngs_modulus = Some(lame * (3.0 * shear + 2.0 * lame) / (shear + lame));
+            layer.poissons_ratio = Some(shear / (2.0 * (shear + lame)));
+        });
+        let world = World { parameters: exchanged, ..own.clone() };
+        all.push(world.with(" of another stiffness", "are λ and μ exchanged?"));
+    }
+    all
+}
+
+/// Another problem: nothing drains, the skeleton does not feel the pressure, the plate bends.
+fn problems(given: &Given<'_>, own: &World) -> Vec<World> {
+    let mut all = Vec::new();
+    if !own.is_slow() {
+        return all;
+    }
+    if given.moves() {
+        for ends in [Ends::Own, Ends::Closed] {
+            let still = World { clock: [0.0, 0.0], ends, ..own.clone() };
+            all.push(still.with(" of the start at all times", "does nothing drain: is the surface closed?"));
+        }
+    }
+    if given.moves() && given.has_pressure() {
+        let drained = World { coupling: Coupling::WithoutPressure, ..own.clone() };
+        let asked = "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once?";
+        all.push(drained.with(" of a skeleton without the pressure", asked));
+    }
+    if given.kind == ReferenceKind::Mandel && !given.moves() {
+        let slab = Reference::new(ReferenceKind::Mandel, given.parameters, &[]).ok();
+        let start = slab.and_then(|slab| slab.fields(EARLY, 1.0).ok()).map(|start| start.pressure);
+        all.extend(start.map(|start| {
+            let kind = ReferenceKind::TerzaghiIncompressible;
+            let pressure = start / given.parameters.load;
+            let said = " of a slab whose load does not move to its middle";
+            World { kind, pressure, ..own.clone().with(said, "is the top held plane by a rigid plate?") }
+        }));
+    }
+    all
+}
+
+/// The sentences of an explanation, one for all columns that are read alike.
+fn sentences_of(explanation: &Explanation, given: &Given<'_>) -> Vec<String> {
+    let Explanation { world, readings } = explanation;
+    let mut groups: Vec<(&Reading, Vec<&str>)> = Vec::new();
+    for (reading, column) in readings.iter().zip(&given.columns) {
+        if column.shows_nothing() || (reading.is_plain() && world.count == 0) {
+            continue;
+        }
+        let like = |group: &&mut (&Reading, Vec<&str>)| {
+            (&group.0.begin, &group.0.asked) == (&reading.begin, &reading.asked)
+        };
+        match groups.iter_mut().find(like) {
+            Some((_, columns)) => columns.push(column.name),
+            None => groups.push((reading, vec![column.name])),
+        }
+    }
+    // What all columns share first, and its questions once.
+    groups.sort_by_key(|(reading, _)| reading.count);
+    let of = |(place, (reading, columns)): (usize, (&Reading, Vec<&str>))| {
+        let questions = reading.asked.iter().chain(world.asked.iter().filter(|_| place == 0));
+        let asked = questions.cloned().collect::<Vec<_>>().join(" And ");
+        let who = match columns.split_last() {
+            Some((last, others)) if !others.is_empty() => {
+                format!("each of your {} and {last}", others.join(", "))
+            }
+            _ => format!("your {}", columns.concat()),
+        };
+        format!("{who} {}{}: {asked}", reading.begin, world.said)
+    };
+    groups.into_iter().enumerate().map(of).collect()
+}
+
+/// A sentence about a slab whose pressure varies across the drained direction alone.
+fn exchanged_axes(given: &Given<'_>) -> Option<String> {
+    let pressure = given.columns.iter().find(|column| column.field == Field::Pressure)?;
+    if given.kind != ReferenceKind::Mandel || pressure.distances.len() != pressure.computed.len() {
+        return None;
+    }
+    let scale = pressure.computed.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    // The largest difference of two neighbours along one direction, at one time and one place across it.
+    let largest = |across: &[f64], along: &[f64]| {
+        let mut order: Vec<usize> = (0..across.len()).collect();
+        let key = |place: usize| (pressure.states[place], across[place], along[place]);
+        order.sort_by(|a, b| {
+            let (a, b) = (key(*a), key(*b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2))
+        });
+        let pairs = order.windows(2).filter(|pair| {
+            let (a, b) = (key(pair[0]), key(pair[1]));
+            a.0 == b.0 && a.1 == b.1
+        });
+        pairs.map(|pair| (pressure.computed[pair[0]] - pressure.computed[pair[1]]).abs()).fold(0.0, f64::max)
+    };
+    let along_x = largest(&pressure.distances, &pressure.heights);
+    let along_y = largest(&pressure.heights, &pressure.distances);
+    (along_x <= ROUND_OFF * scale && along_y > NOTABLE * scale).then(|| {
+        "your p varies along y alone: are the axes exchanged? Of `mandel` x runs along the drained direction, from the \
+         middle, and y across"
+            .to_owned()
+    })
+}
+
+/// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.
+fn uneven_top(given: &Given<'_>, is_plane: bool) -> Option<String> {
+    if is_plane || given.kind == ReferenceKind::Mandel {
+        return None;
+    }
+    let settled = given.parameters.final_settlement();
+    let last = given.states.last().filter(|state| state.displacement.len() == state.initial_height.len())?;
+    let highest = last.initial_height.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_top = |y: f64| highest - y <= SAME_PLACE * given.parameters.height;
+    let top = last.initial_height.iter().zip(&last.displacement).filter(|(y, _)| is_top(**y));
+    let moved = top.map(|(_, moved)| *moved);
+    let [least, most] = moved
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], moved| [least.min(moved), most.max(moved)]);
+    (most - least > UNEVEN_TOP * settled.abs()).then(|| {
+        format!(
+            "your top is not plane: at y = {} m u_y lies between {} and {} m: are the sides on rollers, and does the \
+             load press evenly?",
+            short(highest),
+            short(least),
+            short(most)
+        )
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Matches the times of the results to be scored and compares each with the references.
 
 use crate::case::{Case, Quantity};
+use crate::import::Absent;
 use crate::import::mapping::Mapping;
 use crate::import::runs::Run;
 use crate::import::{SampledState, not_ended};
@@ -210,7 +211,7 @@ impl Scored {
         self.score.errors.retain(|row| is_judged(&row.quantity));
         self.score.unresolved.retain(|one| is_judged(&one.quantity));
         self.score.warnings.splice(0..0, missing);
-        self.score.warnings.extend(self.missing(parameters));
+        self.score.warnings.extend(self.missing(parameters, held.mapping));
         self.score.warnings.extend(held.mapping.taken_for_granted(held.case.scene.has_plane_fields()).map(|taken| Finding {
             name: Lack::Undeclared,
             sentence: format!(
@@ -250,11 +251,13 @@ impl Scored {
     }
 
     /// Quantities that are missing at a scored time, and tables that may be cut.
-    fn missing(&self, parameters: &ColumnParameters) -> Vec<Finding> {
+    fn missing(&self, parameters: &ColumnParameters, mapping: &Mapping) -> Vec<Finding> {
         let when =
             |place: usize| format!("T_v = {}", short(parameters.time_factor(self.run.states[place].time)));
         let absent = self.run.expected.absent(&self.run.states).into_iter();
-        let absent = absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: one.sentence(when) });
+        let shown = |one: Absent| Absent { column: one.column.map(|column| mapping.shown(column)), ..one };
+        let absent =
+            absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: shown(one).sentence(when) });
         let unended =
             self.run.unended.iter().map(|file| Finding { name: Lack::EndMissing, sentence: not_ended(file) });
         let doubts = self.run.doubts.first().map(|doubt| {

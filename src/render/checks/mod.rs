@@ -51,6 +51,10 @@ pub fn annotations_of(checks: &[StudyCheck], file_of: impl Fn(&str) -> Option<St
             let title = property(&format!("{}: {title}", check.study));
             all.push(format!("::{level} {place}title={title}::{}", data(message)));
         };
+        let level = if check.end() == CheckEnd::Pass { "warning" } else { "error" };
+        for diagnosis in &check.diagnoses {
+            add(level, 1, "diagnosis", diagnosis);
+        }
         for failure in failures_of(check).into_iter().flatten() {
             add("error", failure.line, failure.subject, &failure.sentence);
         }
@@ -109,6 +113,16 @@ pub fn junit(checks: &[StudyCheck]) -> Result<String, SerializeError> {
         let mut suite = TestSuite::new(check.study.clone());
         for sentence in TakenOver::sentences(&check.taken_over) {
             suite.add_property(Property::new("taken over", sentence));
+        }
+        if !check.diagnoses.is_empty() {
+            // First, because it is the cause of what fails below.
+            let mut status = status(check.end() == CheckEnd::Pass, &check.diagnoses.join("\n"));
+            if matches!(status, TestCaseStatus::NonSuccess { .. }) {
+                status.set_type("diagnosis");
+            }
+            let mut case = TestCase::new(format!("{}/diagnosis", check.study), status);
+            case.set_system_out(check.diagnoses.join("\n"));
+            suite.add_test_case(case);
         }
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
         for judgement in &check.judgements {
@@ -271,6 +285,7 @@ mod tests {
             held_back: 0,
             taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
+            diagnoses: Vec::new(),
         }
     }
 

@@ -14,7 +14,14 @@ use std::fmt::Write;
 
 /// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
 pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
-    let mut text = wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
+    let mut text = String::new();
+    if let Some(why) = why_it_fails(check) {
+        text += &wrapped(&format!("✗ {}: {why}", check.study), "", "  ");
+    }
+    for diagnosis in &check.diagnoses {
+        text += &wrapped(&format!("diagnosis: {diagnosis}"), "  ", "    ");
+    }
+    text += &wrapped(&format!("{}: {}", check.study, headline(check)), "", "  ");
     for sentence in TakenOver::sentences(&check.taken_over) {
         text += &wrapped(&sentence, "  ", "    ");
     }
@@ -47,6 +54,12 @@ pub fn markdown_of(
     let (sound, unsound): (Vec<_>, Vec<_>) = checks.iter().partition(|check| check.end() == CheckEnd::Pass);
     for check in unsound.into_iter().chain(sound) {
         let _ = write!(text, "\n### {}: {}\n", check.study, headline(check));
+        if let Some(why) = why_it_fails(check) {
+            let _ = write!(text, "\n**Fails: {}**\n", markdown(&why));
+        }
+        for diagnosis in &check.diagnoses {
+            let _ = write!(text, "\n**Diagnosis:** {}\n", markdown(diagnosis));
+        }
         for sentence in TakenOver::sentences(&check.taken_over) {
             let _ = write!(text, "\n{sentence}\n");
         }
@@ -132,6 +145,29 @@ pub fn all_judgements(checks: &[StudyCheck]) -> Table {
         ]);
     }
     whole
+}
+
+/// Text without what Markdown would take for markup of its own.
+fn markdown(text: &str) -> String {
+    text.replace('*', "\\*").replace('_', "\\_").replace('\n', " ")
+}
+
+/// What fails in a check, and why: the first failure with its reason. `None` where nothing does.
+pub fn why_it_fails(check: &StudyCheck) -> Option<String> {
+    if check.end() == CheckEnd::Pass {
+        return None;
+    }
+    let failures: Vec<_> = failures_of(check).into_iter().flatten().collect();
+    let more =
+        |count: usize| if count > 1 { format!(" (and {} more below)", count - 1) } else { String::new() };
+    let first =
+        failures.first().map(|one| format!("{}: {}{}", one.subject, one.sentence, more(failures.len())));
+    let input = || check.inputs.first().map(|input| format!("input changed: {}", input.sentence()));
+    let group = || {
+        check.groups.first().map(|group| format!("golden values {}: {}", group.change.name(), summary(group)))
+    };
+    // That golden values are missing stands in the headline.
+    first.or_else(input).or_else(group)
 }
 
 fn headline(check: &StudyCheck) -> String {

@@ -164,6 +164,7 @@ const MOST_OPEN: usize = 4;
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
     let mut blocks: Vec<Block> = unmet(results).map(Block::Table).into_iter().collect();
+    let told = diagnoses(study, results.records);
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
@@ -185,7 +186,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     if let Some(table) = runs::attached_table(results.records) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));
         blocks.extend(results.taken_over.iter().map(|sentence| Block::Paragraph(format!("{sentence}."))));
-        blocks.push(Block::Table(table.notes(diagnoses(study, results.records))));
+        blocks.push(Block::Table(table.notes(told.clone())));
     }
     if results.records.iter().any(|record| record.stability.is_none()) {
         blocks.extend(cost::work_blocks(results));
@@ -202,7 +203,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
             setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
             results.run_command()
         ),
-        callout: Some(verdict(results)),
+        callout: Some(verdict(results, &told)),
         sections: sections(blocks),
         files: Some(slug(&study.name)),
         ..Page::default()
@@ -211,9 +212,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
 }
 
 /// Whether everything is as expected, and the reasons if not.
-fn verdict(results: &StudyResults<'_>) -> Callout {
+fn verdict(results: &StudyResults<'_>, diagnoses: &[String]) -> Callout {
     let judged = results.judgements.len();
-    let mut text = match judged {
+    let mut text: String = diagnoses.iter().map(|one| format!("Diagnosis: {one}\n\n")).collect();
+    text += &match judged {
         0 => "The study has no expectations.".to_owned(),
         _ => format!("{} of {judged} expectations are met.", results.met()),
     };

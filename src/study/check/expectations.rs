@@ -48,22 +48,26 @@ impl Checker<'_> {
         subject: &Subject<'_>,
     ) -> Option<SeriesExpectation> {
         let before = self.diagnostics.len();
-        let (sample, norm) = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref())?;
+        // Whatever is wrong is told at once, and then nothing is made of it.
+        let measured = self.measured(table.quantity, table.sample.as_ref(), table.norm.as_ref());
         let own_word = table.reference.as_deref().map(String::as_str);
         let own_word = own_word.filter(|word| [NEXT_FINER, NO_REFERENCE].contains(word));
         let reference = match own_word {
             Some(_) => None,
-            None => Some(self.expected_reference(table.reference.as_ref(), table.span(), subject)?),
+            None => Some(self.expected_reference(table.reference.as_ref(), table.span(), subject)),
         };
-        self.own_words_fit(table, subject.scene, sample, own_word);
+        let usual = if table.quantity.is_of_surface() { Sample::Surface } else { Sample::Points };
+        self.own_words_fit(table, subject.scene, measured.map_or(usual, |(sample, _)| sample), own_word);
         let selection = self.selection(&table.inputs, subject.scene);
         let time_factor = self.expected_time_factor(
             [&table.time_factor, &table.time],
             table.span(),
             (&selection, table.axis.name()),
             subject.planned,
-        )?;
-        let height = self.height_of(&selection, table.span(), subject.height)?;
+        );
+        let height = self.height_of(&selection, table.span(), subject.height);
+        let ((sample, norm), reference) = (measured?, reference.map_or(Some(None), |kind| kind.map(Some))?);
+        let (time_factor, height) = (time_factor?, height?);
         let size = |cells: usize| match subject.plate_width {
             Some(width) => width / (cells + 1) as f64,
             None => height / cells as f64,

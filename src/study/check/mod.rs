@@ -3,6 +3,7 @@
 mod expectations;
 mod geometry;
 mod outputs;
+mod repaired;
 pub mod solvers;
 mod sweeps;
 mod values;
@@ -86,6 +87,14 @@ impl Study {
     /// # Errors
     /// Every complaint with its place.
     pub fn check_for(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
+        if let Err(error) = StudyFile::read(source) {
+            return Err(repaired::with_later_mistakes(error, purpose));
+        }
+        Self::check_read(source, purpose)
+    }
+
+    /// Checks a study that can be read.
+    fn check_read(source: &StudySource, purpose: Purpose) -> Result<Self, StudyError> {
         let file = StudyFile::read(source)?;
         let mut checker = Checker {
             source,

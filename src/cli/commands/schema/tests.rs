@@ -94,7 +94,8 @@ fn the_schema_has_the_keys_and_the_words_of_the_code() {
         name: "s.toml".to_owned(),
         text: "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nzzzzzz = 1\n".to_owned(),
     };
-    let told = Study::check(&source).expect_err("an unknown key").to_string();
+    let told = Study::check(&source).expect_err("an unknown key").diagnostics;
+    let told = told[0].help.as_deref().expect("help");
     let listed = told.split("the keys here are ").nth(1).expect("a list of keys");
     let mut known: Vec<&str> = listed.split_whitespace().map(|key| key.trim_end_matches(',')).collect();
     known.sort_unstable();

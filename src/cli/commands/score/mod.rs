@@ -6,7 +6,8 @@ use crate::case::{Case, Norm, Quantity};
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say, write_document};
-use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
+use crate::import::mapping::Axes;
+use crate::import::mapping::preset::convention_of;
 use crate::judge::score::completeness::Lack;
 use crate::judge::score::results::{Comparison, Results, Scored};
 use crate::judge::score::score_series::ScoredSeries;
@@ -87,8 +88,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_data(preset.text())?;
             return Ok(Exit::Pass);
         }
-        let is_plane = SceneKind::named(&arguments.scene).is_some_and(SceneKind::has_plane_fields);
-        print_data(if is_plane { PLANE_CONVENTION } else { CONVENTION })?;
+        let axes = SceneKind::named(&arguments.scene).map_or(Axes::Column, Axes::of);
+        print_data(convention_of(axes))?;
         return Ok(Exit::Pass);
     }
     if arguments.junit.is_some() && !arguments.strict && arguments.below.is_none() {
@@ -117,6 +118,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if let Some((series, cells)) = &series {
         results.keep_series(series, cells);
     }
+    lead(&results, arguments, comparison.references)?;
     match arguments.format {
         TableFormat::Json => print_data(&json_of(&results.scores())?)?,
         TableFormat::Csv => {
@@ -143,6 +145,36 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         write_document(path, &junit_of_findings(&arguments.scene, &findings, told)?)?;
     }
     Ok(exit)
+}
+
+/// The first lines: what fails, and what seems to be wrong.
+fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) -> anyhow::Result<()> {
+    let is_gate = arguments.strict || arguments.below.is_some();
+    let reference = references.first().map(|kind| kind.name());
+    let errors = arguments.below.map(|bound| errors_below(bound, &results.all, reference)).transpose()?;
+    let too_large = errors.into_iter().flatten().filter_map(|one| one.failure);
+    let incomplete = results.all.iter().filter(|_| is_gate).flat_map(|one| {
+        let name = one.name();
+        one.score.warnings.iter().map(move |lack| format!("{name}: {}: {}", lack.name.name(), lack.sentence))
+    });
+    let reasons: Vec<String> = too_large.chain(incomplete).collect();
+    let more = match reasons.len() {
+        0 | 1 => String::new(),
+        all => format!(" (and {} more below)", all - 1),
+    };
+    if let Some(first) = reasons.first() {
+        say!("✗ {first}{more}");
+    }
+    for one in &results.all {
+        let name = if is_gate || results.all.len() > 1 { format!("{}: ", one.name()) } else { String::new() };
+        for sentence in &one.score.diagnosis {
+            say!("diagnosis: {name}{sentence}");
+            if arguments.format == TableFormat::Markdown {
+                print_data(&format!("**Diagnosis:** {name}{sentence}\n\n"))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Quantities by their names.
@@ -221,9 +253,6 @@ fn judged(
         }
         if is_gate && one.score.warnings.is_empty() {
             findings.push(Finding { subject: format!("{}/complete", one.name()), failure: None });
-        }
-        for sentence in &one.score.diagnosis {
-            say!("diagnosis: {name}{sentence}");
         }
         for note in &one.run.notes {
             say!("note: {name}{note}");

@@ -4,7 +4,7 @@ use crate::case::{Case, Quantity};
 use crate::cli::commands::score::Arguments;
 use crate::cli::exit::Ended;
 use crate::cli::output::say;
-use crate::import::mapping::Mapping;
+use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, are_tables, files_of, runs_of};
 use crate::study::file::StudySource;
@@ -24,7 +24,7 @@ pub fn read(
     let body = SolvedBody::of(case);
     let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
-    let mut mapping = mapping_of(arguments, case.scene.has_plane_fields(), is_tables)?;
+    let mut mapping = mapping_of(arguments, Axes::of(case.scene), is_tables)?;
     mapping.let_lack(without);
     let steps = &arguments.set_time_step;
     if let Some(step) = steps.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
@@ -78,20 +78,22 @@ pub fn read(
 }
 
 /// The declared meaning of the columns or arrays; a note says what is assumed if nothing is declared.
-fn mapping_of(arguments: &Arguments, is_plane: bool, is_tables: bool) -> anyhow::Result<Mapping> {
+fn mapping_of(arguments: &Arguments, axes: Axes, is_tables: bool) -> anyhow::Result<Mapping> {
     let own = arguments.mapping.as_deref().map(source_of).transpose()?;
     let mut preset = arguments.preset;
     if preset.is_none() && own.is_none() {
         if is_tables {
-            let along = if is_plane {
-                ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it"
-            } else {
-                ""
+            let up = "y is the initial height over the base in m, p is in Pa and positive in compression, u_y is in m and \
+                      positive upward";
+            let along = ", x is the initial distance from the crest of the load in m, u_x is in m and positive away from it";
+            let places = match axes {
+                Axes::Column => up.to_owned(),
+                Axes::Layer => format!("{up}{along}"),
+                Axes::Slab => "x is the initial distance from the middle of the slab to its drained side in m, p is in Pa \
+                               and positive in compression, u_x is in m and positive outward"
+                    .to_owned(),
             };
-            say!(
-                "note: no --mapping, so t is in s, y is the initial height over the base in m, p is in Pa and positive \
-                 in compression, u_y is in m and positive upward{along}; --show-mapping prints this as a file to edit"
-            );
+            say!("note: no --mapping, so t is in s, {places}; --show-mapping prints this as a file to edit");
         } else {
             preset = Preset::from_str("meshio", false).ok();
             say!(
@@ -100,7 +102,7 @@ fn mapping_of(arguments: &Arguments, is_plane: bool, is_tables: bool) -> anyhow:
             );
         }
     }
-    Ok(Mapping::resolve(preset, own.as_ref(), is_plane)?)
+    Ok(Mapping::resolve(preset, own.as_ref(), axes)?)
 }
 
 fn source_of(path: &Path) -> anyhow::Result<StudySource> {

@@ -1,3 +1,5 @@
+mod changes;
+
 use super::*;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::study::file::StudySource;
@@ -83,7 +85,7 @@ fn every_mistake_is_named_in_good_and_in_mediocre_results() {
                         *pressure += 9810.0 * (1.0 + level - height);
                     }
                 }),
-                "constant gradient of 9810 Pa/m: is the hydrostatic part left in?",
+                "is the hydrostatic part left in?",
             );
         }
     }
@@ -125,9 +127,9 @@ fn an_inaccurate_solver_is_told_nothing() {
     }
     // A locked or a soft one, and one that forgets the last digits.
     for factor in [0.3, 0.7, 1.4, 3.0] {
-        let wrong = changed(0.02, |state| {
+        let wrong = changed(0.1, |state| {
             scale(&mut state.displacement, factor);
-            scale(&mut state.pressure, factor);
+            scale(&mut state.pressure, 1.0 / factor);
         });
         assert_eq!(told(&wrong), [""; 0], "{factor} × the fields");
     }
@@ -241,9 +243,7 @@ fn another_stress_in_the_place_of_the_pressure_is_named() {
         };
         only(
             &changed(off, |state| state.pressure = total(state)),
-            &[
-                "your p matches the exact total stress: is it given in place of the pore pressure? Or does nothing drain?",
-            ],
+            &["your p matches the exact total stress: is it given in place of the pore pressure?"],
         );
     }
 }
@@ -258,10 +258,13 @@ fn another_load_is_named_where_all_fields_have_it() {
                 scale(&mut state.displacement, 2.0);
             }),
             &[
-                "each of your p, effective_stress and u_y is 2 × the exact one: is the load 2 × that of the scene?",
+                "each of your p, effective_stress and u_y matches the exact one of 2 × the load: is the load 2 × that of the scene?",
             ],
         );
-        only(&changed(off, |state| scale(&mut state.displacement, 2.0)), &[]);
+        only(
+            &changed(off, |state| scale(&mut state.displacement, 2.0)),
+            &["your u_y is 2 × the exact one: and only it: is it doubled where it is written?"],
+        );
     }
 }
 
@@ -276,24 +279,21 @@ fn another_stiffness_and_another_permeability_are_named() {
         })
     };
     for off in [0.0, 1e-3] {
-        let told = told(&slower(off).collect::<Vec<_>>());
-        assert!(
-            told.len() == 2 && told.iter().all(|told| told.contains("is E taken for E_oed?")),
-            "{off}: {told:?}"
-        );
-        assert!(
-            told.iter().any(|told| told.contains("u_y is 1.2 × the exact one at 0.833 × the time")),
-            "{told:?}"
+        only(
+            &slower(off).collect::<Vec<_>>(),
+            &[
+                "each of your p, effective_stress and u_y matches the exact one of another stiffness: is E taken for E_oed?",
+            ],
         );
     }
     only(
         &changed(1e-3, |state| scale(&mut state.displacement, 1.2)),
-        &["your u_y is 1.2 × the exact one: is E taken"],
+        &["your u_y is 1.2 × the exact one: is E taken for E_oed where displacements are computed?"],
     );
     // μ = 1e-3 Pa s.
     for (factor, words) in [
-        (1e3, "at 1000 × the time: is k/μ taken for the hydraulic conductivity k?"),
-        (1e-3, "at 0.001 × the time: is k divided by μ where it should not be?"),
+        (1e3, "is k/μ taken for the hydraulic conductivity k?"),
+        (1e-3, "is k divided by μ where it should not be?"),
     ] {
         let times = if factor > 1.0 { [2e-3, 4e-3, 8e-3, 1.6e-2] } else { TIMES };
         let exact = times.map(|time| factor * time);
@@ -309,7 +309,7 @@ fn another_stiffness_and_another_permeability_are_named() {
         } else {
             "is k/γ_w, or k/μ in place of it, taken for the hydraulic conductivity k?"
         };
-        assert!(told.iter().any(|told| told.ends_with(words)), "{factor}: {told:?}");
+        assert!(told.iter().any(|told| told.contains(words)), "{factor}: {told:?}");
     }
 }
 
@@ -374,8 +374,8 @@ fn two_or_three_wrong_units_signs_and_ends_together_are_named() {
                 state.initial_height.iter_mut().for_each(|height| *height = 1.0 - *height);
             }),
             &[
-                "your p is −1.00 × the exact one upside down at 60 × the time: is the sign declared wrongly? And are times in \
-               min where s is declared? And is `y` counted from the other end?",
+                "your p is −1.00 × the exact one upside down at 60 × the time: is the sign declared wrongly? And is `y` counted \
+                 from the other end?",
             ],
         );
     }
@@ -402,7 +402,7 @@ fn a_slab_without_a_plate_is_named() {
         diagnosis(&column, ReferenceKind::Mandel, &states, &mapping(CONVENTION)).expect("a slab")
     };
     let without = told(&|time, zeta| start * bare.fields(time, zeta).expect("inside").pressure);
-    let bends = "your p matches a slab whose load does not move to its middle: is the top held plane by a rigid plate?";
+    let bends = "your p matches the exact one of a slab whose load does not move to its middle: is the top held plane by a rigid plate?";
     assert_eq!(without, [bends]);
     let with = told(&|time, zeta| {
         slab.fields(time, zeta).expect("inside").pressure * (1.0 + 0.2 * (7.0 * zeta).sin())

@@ -1,0 +1,196 @@
+//! Reads on after mistakes of spelling, so that a study's mistakes are told all at once and not one kind after the other.
+
+use crate::study::check::{Purpose, Study};
+use crate::study::diagnostic::{Diagnostic, StudyError};
+use crate::study::file::StudySource;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// Words before the name of what was probably meant.
+const MEANT: [&str; 2] = ["did you mean `", "it is called `"];
+/// Words about a key in a wrong table: what its right one lacks then is not known.
+const MISPLACED: &str = "` belongs to ";
+/// Words before a line as it would be right, and before an example of one.
+const RIGHT: [&str; 3] = ["write `", "without quotes: `", "like `"];
+
+/// A text whose wrong lines are mended or left out.
+struct Mended {
+    text: String,
+    /// Numbers of the wrong lines.
+    lines: BTreeSet<usize>,
+    /// Numbers of those whose value is not known now, each with its table.
+    unknown: BTreeMap<usize, String>,
+}
+
+/// Adds to the mistakes that kept a study from being read those that show once these are mended: a misspelt word is taken
+/// for the one that it was probably meant to be, and any other wrong line is left out.
+pub fn with_later_mistakes(mut error: StudyError, purpose: Purpose) -> StudyError {
+    let Some(mended) = mended(&error) else { return error };
+    let source = StudySource { name: error.name.clone(), text: mended.text.clone() };
+    let Err(later) = Study::check_read(&source, purpose) else { return error };
+    let moved = later.diagnostics.into_iter().filter_map(|one| {
+        let (line, columns) = place(&source.text, one.span.as_ref()?)?;
+        let span = mended.is_sure(line).then(|| bytes(&error.source, line, columns))??;
+        Some(Diagnostic { span: Some(span), ..one })
+    });
+    let moved: Vec<Diagnostic> = moved.filter(|one| !error.diagnostics.contains(one)).collect();
+    error.diagnostics.extend(moved);
+    error
+}
+
+impl Mended {
+    /// Whether a mistake at a line is none of what was left out: not in the same block; what is expected depends on the
+    /// sweeps and outputs, and these on the values before them.
+    fn is_sure(&self, line: usize) -> bool {
+        let lines: Vec<&str> = self.text.split('\n').collect();
+        let here = block(&lines, line);
+        let is_sure = |(number, table): (&usize, &String)| {
+            let is_same_block = block(&lines, *number) == here && here.is_some();
+            let is_expected = table_of(&lines, line).starts_with("expect");
+            !is_same_block
+                && match table.as_str() {
+                    "sweep" | "output" => !is_expected,
+                    table if table.starts_with("expect") => true,
+                    _ => is_expected,
+                }
+        };
+        !self.lines.contains(&line) && self.unknown.iter().all(is_sure)
+    }
+}
+
+/// The text with its wrong lines mended; `None` where a mistake has no place.
+fn mended(error: &StudyError) -> Option<Mended> {
+    let source: Vec<&str> = error.source.split('\n').collect();
+    let mut lines: Vec<String> = source.iter().map(|&line| line.to_owned()).collect();
+    let (mut numbers, mut unknown) = (BTreeSet::new(), BTreeMap::new());
+    for one in &error.diagnostics {
+        let (number, columns) = place(&error.source, one.span.as_ref()?)?;
+        let line = lines.get_mut(number)?;
+        let is_entry = line.contains('=') && !line.trim_start().starts_with(['[', '#']);
+        let is_misplaced = one.help.as_deref().is_some_and(|help| help.contains(MISPLACED));
+        if !is_entry || is_misplaced || !numbers.insert(number) {
+            return None;
+        }
+        let word = line.get(columns.clone())?.to_owned();
+        let quoted =
+            |words: &str| one.help.as_deref()?.split_once(words)?.1.split_once('`').map(|(text, _)| text);
+        let key = line[..line.find('=')?].trim().to_owned();
+        let right = RIGHT.iter().find_map(|words| quoted(words).map(|text| (text, *words)));
+        let right = right.filter(|(text, _)| text.split_once(" =").is_some_and(|(name, _)| name == key));
+        match (MEANT.iter().find_map(|words| quoted(words)), right) {
+            // A value in quotes; a key keeps its line only by its right name.
+            (Some(meant), _) if word.starts_with(['"', '\'']) => {
+                line.replace_range(columns, &format!("\"{meant}\""));
+            }
+            (Some(meant), _) if columns.end <= line.find('=')? => line.replace_range(columns, meant),
+            (None, Some((right, words))) => {
+                right.clone_into(line);
+                if words == RIGHT[2] {
+                    unknown.insert(number, table_of(&source, number));
+                }
+            }
+            _ => {
+                line.insert(0, '#');
+                if !one.message.starts_with("unknown key") {
+                    unknown.insert(number, table_of(&source, number));
+                }
+            }
+        }
+    }
+    (!numbers.is_empty()).then(|| Mended { text: lines.join("\n"), lines: numbers, unknown })
+}
+
+/// Number of the header above a line, or its own; `None` before the first one.
+fn block(lines: &[&str], number: usize) -> Option<usize> {
+    (0..=number).rev().find(|place| lines.get(*place).is_some_and(|line| line.trim_start().starts_with('[')))
+}
+
+/// The table in which a line stands: its header, or the first part of its key.
+fn table_of(lines: &[&str], number: usize) -> String {
+    let header = block(lines, number).and_then(|place| lines.get(place));
+    let name = header.map_or_else(
+        || lines.get(number).and_then(|line| line.trim_start_matches('#').split(['=', '.']).next()),
+        |header| header.split(['#', '.']).next(),
+    );
+    name.unwrap_or_default().trim().trim_matches(['[', ']', ' ']).to_owned()
+}
+
+/// Line of a span, counted from 0, and its bytes in that line.
+fn place(text: &str, span: &Range<usize>) -> Option<(usize, Range<usize>)> {
+    let before = text.get(..span.start)?;
+    let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let end = text[span.start..].find('\n').map_or(text.len(), |newline| span.start + newline);
+    Some((before.matches('\n').count(), span.start - start..span.end.min(end) - start))
+}
+
+/// The bytes of a part of a line.
+fn bytes(text: &str, line: usize, columns: Range<usize>) -> Option<Range<usize>> {
+    let start = text.split_inclusive('\n').take(line).map(str::len).sum::<usize>();
+    let end = start + columns.end;
+    (end <= text.len()).then_some(start + columns.start..end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mistakes_of_all_kinds_are_told_at_once_each_at_its_place() {
+        let text = "title = \"t\"\nscene = \"terzagi\"\n[material]\nporosity = 3.0\n[[sweep]]\nmethod = [\"GC-SRI-pach\"]\ncells = [2]\n\
+                    [[expect]]\nmethod = \"GC-SRI-patch\"\nquantity = \"presure\"\nordr = { value = 2.0 }\n";
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        let error = Study::check(&source).expect_err("five mistakes");
+        let at: Vec<&str> = error.diagnostics.iter().filter_map(|one| text.get(one.span.clone()?)).collect();
+        let told = error.to_string();
+        for place in ["\"terzagi\"", "\"presure\"", "3.0", "\"GC-SRI-pach\""] {
+            assert!(at.contains(&place), "{place}: {at:?}\n{told}");
+        }
+        assert!(told.contains("names no time factor") && told.contains("`ordr`"), "{told}");
+        // What is sound but for its spelling has that mistake alone.
+        let sound =
+            "title = \"t\"\nscene = \"terzagi\"\n[[sweep]]\nmethod = [\"GC-SRI-patch\"]\ncells = [2]\n";
+        let source = StudySource { name: "t.toml".to_owned(), text: sound.to_owned() };
+        assert_eq!(Study::check(&source).expect_err("one mistake").diagnostics.len(), 1);
+    }
+
+    #[test]
+    fn what_is_left_out_makes_no_mistake_elsewhere() {
+        let sound = "title = \"t\"\nscene = \"terzaghi\"\n[output]\ntime_factors = [0.1]\n[column]\nheight = 1.0\n[[sweep]]\n\
+                     method = [\"GC-SRI-patch\"]\ncells = [4, 8, 16]\n[[expect]]\nmethod = \"GC-SRI-patch\"\nquantity = \"pressure\"\n\
+                     time_factor = 0.1\norder = { value = 2.0 }\n";
+        let count = |old: &str, new: &str| {
+            assert!(sound.contains(old), "{old}");
+            let source = StudySource { name: "t.toml".to_owned(), text: sound.replacen(old, new, 1) };
+            Study::check(&source).expect_err(new).diagnostics.len()
+        };
+        for (old, new) in [
+            ("[0.1]", "[\"late\"]"),
+            ("[0.1]", "\"late\""),
+            ("1.0", "\"tall\""),
+            ("[\"GC-SRI-patch\"]", "\"GC-SRI-patch\""),
+            ("[\"GC-SRI-patch\"]", "[3]"),
+            ("[4, 8, 16]", "[4, 8, 16.5]"),
+            ("{ value = 2.0 }", "2.0"),
+            ("time_factor = 0.1", "time_factor = true"),
+        ] {
+            assert_eq!(count(old, new), 1, "{new}");
+        }
+        // A second mistake elsewhere is told with each of them.
+        let wrong = sound.replace("\"pressure\"", "\"presure\"");
+        for (old, new) in [("[\"GC-SRI-patch\"]", "\"GC-SRI-patch\""), ("1.0", "\"tall\"")] {
+            let source = StudySource { name: "t.toml".to_owned(), text: wrong.replacen(old, new, 1) };
+            assert_eq!(Study::check(&source).expect_err(new).diagnostics.len(), 2, "{new}");
+        }
+    }
+
+    #[test]
+    fn an_expectation_tells_all_that_it_lacks() {
+        let text = "title = 't'\nscene = 'terzaghi'\n[[sweep]]\nmethod = ['GC-SRI-patch']\ncells = [2]\n\
+                    [[expect]]\nmethod = 'GC-SRI-patch'\nquantity = 'settlement'\nsample = 'nodes'\nreference = 'xie-leo'\n";
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        let told = Study::check(&source).expect_err("three mistakes").to_string();
+        for words in ["a settlement", "xie-leo", "names no time factor"] {
+            assert!(told.contains(words), "{words}: {told}");
+        }
+    }
+}
