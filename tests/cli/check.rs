@@ -252,7 +252,7 @@ fn a_summary_that_cannot_be_written_hides_no_verdict() {
     ] {
         let told = place.check(&options);
         assert_eq!(told.code, code, "{}{}", told.out, told.err);
-        assert!(told.out.starts_with("short: 1 of 1 expectations met"), "{}", told.out);
+        assert!(told.out.contains("short: 1 of 1 expectations met"), "{}", told.out);
         assert!(told.err.contains("error: cannot write no/such/folder/summary.md: "), "{}", told.err);
         assert!(told.err.contains("error: cannot write short.toml/junit.xml: "), "{}", told.err);
     }

@@ -49,6 +49,8 @@ const UNEVEN_TOP: f64 = 0.02;
 const CLEAR: f64 = 1e-4;
 /// Largest relative difference of one factor in several columns.
 const COMMON: f64 = 0.05;
+/// Words of a question about one column, where the others match.
+const ONLY: &str = "and only it: ";
 /// A time factor before anything drains.
 const EARLY: f64 = 1e-6;
 
@@ -397,11 +399,16 @@ fn sentences_of(explanation: &Explanation, given: &Given<'_>) -> Vec<String> {
             None => groups.push((reading, vec![column.name])),
         }
     }
+    let mut shown = readings.iter().zip(&given.columns).filter(|(_, column)| !column.shows_nothing());
+    let others_match = shown.all(|(reading, _)| reading.left <= CORRECTED);
     // What all columns share first, and its questions once.
     groups.sort_by_key(|(reading, _)| reading.count);
     let of = |(place, (reading, columns)): (usize, (&Reading, Vec<&str>))| {
         let questions = reading.asked.iter().chain(world.asked.iter().filter(|_| place == 0));
-        let asked = questions.cloned().collect::<Vec<_>>().join(" And ");
+        let mut asked = questions.cloned().collect::<Vec<_>>().join(" And ");
+        if !others_match {
+            asked = asked.replace(ONLY, "");
+        }
         let who = match columns.split_last() {
             Some((last, others)) if !others.is_empty() => {
                 format!("each of your {} and {last}", others.join(", "))

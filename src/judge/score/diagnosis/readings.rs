@@ -3,7 +3,7 @@
 use super::given::{Column, Field, Given};
 use super::patterns;
 use super::world::Predicted;
-use super::{convinces, cost};
+use super::{ONLY, convinces, cost};
 use crate::import::mapping::units::{LengthUnit, StressUnit};
 use oedometer_exact::ReferenceKind;
 use oedometer_soil::elementary::powi;
@@ -148,7 +148,7 @@ fn scaled(column: &Column, exact: &[f64], given: &Given<'_>) -> Vec<Reading> {
     let mut all: Vec<Scale> = scales(column, given).into_iter().filter(|scale| scale.count > 0).collect();
     for (factor, word) in [(2.0, "doubled"), (0.5, "halved")] {
         let load = format!("is the load {} × that of the scene? Or is it ", short(factor));
-        let begin = if is_alone { load } else { "and only it: is it ".to_owned() };
+        let begin = if is_alone { load } else { format!("{ONLY}is it ") };
         let asked = vec![format!("{begin}{word} where it is written?")];
         all.push(Scale { factor: 1.0 / factor, asked, count: 1, is_head: false });
     }
@@ -370,7 +370,7 @@ fn constant_factor(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<
     let load = if given.is_one_column() {
         format!("is the load {} × that of the scene? Or is ", short_factor(rounded(factor)))
     } else {
-        "and only it: is ".to_owned()
+        format!("{ONLY}is ")
     };
     let asked = vec![format!("{load}a factor missing where it is written?")];
     Some(Reading { begin, asked, count: 2, is_fitted: true, left })
