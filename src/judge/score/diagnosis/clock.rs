@@ -95,7 +95,7 @@ pub fn clocks(given: &Given<'_>, base: &World) -> Vec<World> {
     let times: Vec<f64> = given.states.iter().map(|state| given.parameters.time_factor(state.time)).collect();
     let positive = || times.iter().copied().filter(|time| *time > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    if !base.is_slow() || !(first.is_finite() && last > 0.0) {
+    if !(base.is_slow() && first.is_finite() && last > 0.0) {
         return Vec::new();
     }
     let trial = Trial::of(given);
@@ -117,7 +117,9 @@ fn fits(trial: &Trial<'_>, ends: [f64; 2], world: &dyn Fn(f64) -> World, is_time
     let [low, high] = ends.map(ln);
     let count = (((high - low) / ln(10.0)) * PER_DECADE[usize::from(is_time)]).ceil().max(2.0);
     let step = (high - low) / count;
-    let powers: Vec<f64> = (0..=count as usize).map(|place| low + step * place as f64).collect();
+    let places =
+        std::iter::successors(Some(0.0), |place| Some(place + 1.0)).take_while(|place| *place <= count);
+    let powers: Vec<f64> = places.map(|place| low + step * place).collect();
     let factors: Vec<f64> = powers.iter().map(|power| exp(*power)).collect();
     // One solution for all of them; one that is computed step by step holds for the times that it was asked for alone.
     let ready = if is_time { world(1.0).solution(trial.given, &factors) } else { None };

@@ -86,7 +86,7 @@ impl Column {
     pub fn misfit(&self, exact: &[f64], corrected: impl Fn(usize, f64) -> f64) -> f64 {
         let all = || self.computed.iter().enumerate().map(|(place, value)| corrected(place, *value));
         let exact_size = self.size(exact.iter().copied());
-        if !(exact_size > VANISHED * self.scale) {
+        if exact_size.is_nan() || exact_size <= VANISHED * self.scale {
             return f64::INFINITY;
         }
         let off = all().zip(exact).map(|(value, exact)| value - exact);

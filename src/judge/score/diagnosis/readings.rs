@@ -80,7 +80,7 @@ pub fn best(
         is_fitted: false,
         left,
     };
-    if column.shows_nothing() || !(left > super::NOTICED) {
+    if column.shows_nothing() || left.is_nan() || left <= super::NOTICED {
         return plain;
     }
     let mut all = scaled(column, &exact, given);
