@@ -214,7 +214,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
 /// Whether everything is as expected, and the reasons if not.
 fn verdict(results: &StudyResults<'_>, diagnoses: &[String]) -> Callout {
     let judged = results.judgements.len();
-    let mut text: String = diagnoses.iter().map(|one| format!("Diagnosis: {one}\n\n")).collect();
+    let mut text = String::new();
+    for sentence in diagnoses {
+        let _ = write!(text, "Diagnosis: {sentence}\n\n");
+    }
     text += &match judged {
         0 => "The study has no expectations.".to_owned(),
         _ => format!("{} of {judged} expectations are met.", results.met()),
