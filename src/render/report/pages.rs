@@ -218,9 +218,9 @@ fn verdict(results: &StudyResults<'_>, diagnoses: &[String]) -> Callout {
     for sentence in diagnoses {
         let _ = write!(text, "Diagnosis: {sentence}\n\n");
     }
-    text += &match judged {
-        0 => "The study has no expectations.".to_owned(),
-        _ => format!("{} of {judged} expectations are met.", results.met()),
+    let _ = match judged {
+        0 => write!(text, "The study has no expectations."),
+        _ => write!(text, "{} of {judged} expectations are met.", results.met()),
     };
     if let Some((case, sentence)) = results.unsound.first() {
         let fail = count_of(results.unsound.len(), "check of its runs fails", "checks of its runs fail");

@@ -1,5 +1,16 @@
 //! Exact results with one change, on scenes and soils of all kinds: each is named, and nothing that the data exclude.
 
+#![expect(
+    clippy::items_after_statements,
+    clippy::needless_for_each,
+    clippy::semicolon_if_nothing_returned,
+    clippy::too_many_lines,
+    clippy::type_complexity,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "one table of all changes, each a closure"
+)]
+
 use super::super::*;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
