@@ -106,7 +106,9 @@ fn the_committed_page_says_what_its_own_table_comes_to() {
         let best = table(RaceQuantity::All, THRESHOLD).best().expect("somebody arrives");
         let [reached, nearly] = [best.reached, best.within_two].map(percent);
         let mut integrators: BTreeMap<&str, usize> = BTreeMap::new();
-        situations(&rows).iter().for_each(|one| *integrators.entry(&one[0].integrator).or_default() += 1);
+        for one in situations(&rows) {
+            *integrators.entry(&one[0].integrator).or_default() += 1;
+        }
         let (integrator, count) = integrators.iter().max_by_key(|(_, count)| **count).expect("a situation");
         let method = &best.method;
         let sentence = match question {

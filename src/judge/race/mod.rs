@@ -150,13 +150,16 @@ impl RaceFindings {
     /// What the situations of some studies come to; `None` where no study is of the race.
     pub fn from_studies<'a>(studies: impl IntoIterator<Item = (&'a Study, &'a [Record])>) -> Option<Self> {
         let all = studies.into_iter().filter_map(|(study, records)| Situation::from_records(study, records));
-        let (properties, situations): (Vec<Situation>, Vec<Situation>) = all.partition(|one| one.is_property);
+        let (mut properties, situations): (Vec<Situation>, Vec<Situation>) =
+            all.partition(|one| one.is_property);
+        properties.sort_by(|a, b| a.name.cmp(&b.name));
         let is_empty = properties.is_empty() && situations.is_empty();
         (!is_empty).then(|| Self { properties, ..Self::from_situations(situations) })
     }
 
-    /// What situations come to.
-    pub fn from_situations(situations: Vec<Situation>) -> Self {
+    /// What situations come to, in the order of their names: sentences do not depend on the order of studies.
+    pub fn from_situations(mut situations: Vec<Situation>) -> Self {
+        situations.sort_by(|a, b| a.name.cmp(&b.name));
         let profiles_of = |answer: Question, quantity: RaceQuantity| {
             let table = cost_table(&situations, quantity, THRESHOLD).only(|name| answer.takes(name));
             QuestionProfiles { answer, quantity, profiles: table.profiles() }
