@@ -72,7 +72,7 @@ mod tests {
             // `b` is the best of settlements, and at 3 % of everything; without family p it alone arrives.
             let turned = quantity == RaceQuantity::Settlement || threshold > 0.025;
             let p = if turned { [Some(9.0), Some(1.0)] } else { [Some(1.0), None] };
-            let q = if turned { [Some(9.0), Some(1.0)] } else { [Some(1.9), Some(1.0)] };
+            let q = if turned { [Some(9.0), Some(1.0)] } else { [Some(2.5), Some(1.0)] };
             CostTable {
                 contenders: ["a", "b"].map(str::to_owned).to_vec(),
                 rows: vec![row("p", p), row("q", q), row("r", [Some(1.0), Some(3.0)])],
