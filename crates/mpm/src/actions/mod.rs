@@ -22,11 +22,14 @@ use crate::actions::forcing::Forced;
 use crate::actions::rigid_plate::RigidPlate;
 use crate::actions::self_weight::SelfWeight;
 use crate::actions::stress_slopes::StressPlanes;
+use crate::actions::surface_load::LoadedSurface;
 use oedometer_soil::tensor::Vector;
 
-/// What acts on a body beside the load on its surface, where it does.
-#[derive(Clone, Debug, Default)]
+/// What acts on a body, where it does.
+#[derive(Clone, Debug)]
 pub struct Actions<const D: usize> {
+    /// Load on the surface; 0 Pa where none acts.
+    pub surface: LoadedSurface<D>,
     /// Rigid plate on the upper face of the first direction.
     pub plate: Option<RigidPlate>,
     /// Weight of skeleton and water; the pressures of the points are total ones then.

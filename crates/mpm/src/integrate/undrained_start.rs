@@ -107,7 +107,7 @@ impl<const D: usize> Body<D> {
         for point in 0..self.points.len() {
             let (gradient, dilation) = self.gradient_of(point, rows, strained);
             let stress = self.stress_law_of(point).elastic_stress(&gradient, dilation);
-            let of_basis = self.basis.value(self.grid.node_stride(), point, displacements);
+            let of_basis = self.operators.basis.value(self.grid.node_stride(), point, displacements);
             let moved = self.carrying(point, displacements, of_basis);
             self.points.pressure[point] += pressures[point];
             for d in 0..D {

@@ -9,11 +9,9 @@ use crate::actions::self_weight::SelfWeight;
 use crate::actions::stress_slopes::StressPlanes;
 use crate::actions::surface_load::{LoadShape, LoadedSurface};
 use crate::method::{Configuration, Memory, Method, Recovery};
-use crate::operators::corners::{Domains, build_corners, corner_stencils};
-use crate::operators::recovery::RecoveryOperator;
+use crate::operators::Operators;
+use crate::operators::corners::build_corners;
 use crate::operators::stacked_points::StackedPoints;
-use crate::operators::stencil::PointStencils;
-use crate::operators::strain_gradient::StrainOperator;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;
 use crate::state::nodes::{Nodes, Support};
@@ -133,29 +131,19 @@ pub struct Body<const D: usize> {
     pub soils: Vec<Material>,
     /// Law of each soil with its stiffness.
     pub stress_laws: Vec<StressLaw>,
-    /// Operators.
+    /// Choices of operators.
     pub method: Method,
     /// Configuration of the shape functions.
     pub configuration: Configuration,
     /// Whether gradients are pushed forward from where the shape functions were built: on the initial
     /// configuration always, and within an implicit step that moves points.
     pub is_pushed_forward: bool,
-    /// Loaded surface.
-    pub surface: LoadedSurface<D>,
-    /// What else acts on the body.
+    /// What acts on the body.
     pub actions: Actions<D>,
-    /// `N` and `∇N` between points and nodes.
-    pub basis: PointStencils<D>,
-    /// `G` where it is not the gradient of the basis.
-    pub strain: StrainOperator<D>,
-    /// Domains of the points where they turn with the material.
-    pub domains: Option<Domains<D>>,
+    /// Operators between points, nodes and cells where the points are.
+    pub operators: Operators<D>,
     /// Faces that are held.
     support: Support<D>,
-    /// Whether the basis reaches beyond a surface that moves through the grid.
-    splines_end_at_surface: bool,
-    /// `R`, from the sites of the divergence to the points.
-    pub recovery: RecoveryOperator<D>,
     /// Values at the sites on their way to the points: pressure increments, Pa, or rates of dilation, 1/s;
     /// `[cell]`, `[point]` or `[node]`.
     pub site_values: Vec<f64>,
@@ -201,33 +189,32 @@ impl<const D: usize> Body<D> {
             * (1.0 - material.porosity)
             * material.grain_density;
         let sites = site_places(method, &grid, count);
-        let domains = Domains::of(method, configuration, &points);
+        let operators = Operators::new(method, configuration, &grid, &points);
         // Domains that turn have lengths of their own.
         let is_stacked = load_shape == LoadShape::Uniform
             && plate_load.is_none()
             && forcing.is_none()
-            && domains.is_none();
+            && operators.domains.is_none();
         let stacked = is_stacked.then(|| StackedPoints::of(&points, method.domains_follow()));
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
             stress_laws: soils.iter().map(Material::stress_law).collect(),
-            surface: LoadedSurface::of(&points, load)
-                .shaped(load_shape, &points)
-                .spread_by(method.basis, support)
-                .stretching(configuration.moves_points() && !method.domains_follow()),
             actions: Actions {
+                surface: LoadedSurface::of(&points, load)
+                    .shaped(load_shape, &points)
+                    .spread_by(method.basis, support)
+                    .stretching(configuration.moves_points() && !method.domains_follow()),
+                plate: None,
                 weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
                 forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
                 cell_averages: (method.memory == Memory::Cells).then(|| CellAverages::new(&grid, stacked)),
-                ..Actions::default()
+                weight_carried: Vec::new(),
+                velocity_gradients: None,
+                stress_planes: None,
             },
-            basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
-            domains,
-            strain: StrainOperator::of(method.strain, count),
+            operators,
             support,
-            splines_end_at_surface: method.basis.is_spline() && configuration.moves_points(),
-            recovery: RecoveryOperator::of(method, &grid, count),
             site_values: vec![0.0; sites],
             dilation_rates: vec![0.0; if method.strain.is_bbar() { count } else { 0 }],
             surface_flux: 0.0,
@@ -291,7 +278,8 @@ impl<const D: usize> Body<D> {
 
     /// Lets points bring the gradients of their velocities to the nodes, beginning with those of the present nodal ones.
     pub fn use_apic(&mut self) {
-        let gradients = VelocityGradients::new(self.points.len(), &self.grid, &self.basis, &self.nodes);
+        let gradients =
+            VelocityGradients::new(self.points.len(), &self.grid, &self.operators.basis, &self.nodes);
         self.actions.velocity_gradients = Some(gradients);
     }
 
@@ -302,7 +290,7 @@ impl<const D: usize> Body<D> {
 
     /// Takes domains that turn with the points' deformation since the start of the run.
     pub(crate) fn turn_domains(&mut self) {
-        if let Some(domains) = &mut self.domains {
+        if let Some(domains) = &mut self.operators.domains {
             domains.follow(&self.points.inverse_deformation);
         }
     }
@@ -360,16 +348,19 @@ impl<const D: usize> Body<D> {
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         let stride = self.grid.node_stride();
-        self.strain.carrier().map_or(of_basis, |ends| ends.of_point(point).values(stride, [field])[0])
+        self.operators
+            .strain
+            .carrier()
+            .map_or(of_basis, |ends| ends.of_point(point).values(stride, [field])[0])
     }
 
     /// Divergence of a nodal field at a point, on the present configuration.
     #[inline]
     pub fn divergence_at_point(&self, point: usize, field: &[Vector<D>]) -> f64 {
         if !self.is_pushed_forward {
-            return self.basis.divergence(self.grid.node_stride(), point, field);
+            return self.operators.basis.divergence(self.grid.node_stride(), point, field);
         }
-        let gradient = self.basis.gradient(self.grid.node_stride(), point, field);
+        let gradient = self.operators.basis.gradient(self.grid.node_stride(), point, field);
         let gradient = product(&gradient, &self.points.inverse_deformation[point]);
         (0..D).map(|d| gradient[d][d]).sum()
     }
@@ -392,16 +383,16 @@ impl<const D: usize> Body<D> {
             self.cells.find_reached(&self.grid, &self.points);
         }
         self.end_splines();
-        if let Some(domains) = &self.domains {
-            build_corners(&mut self.basis, &self.grid, &self.cells.place, &domains.half_edges);
+        if let Some(domains) = &self.operators.domains {
+            build_corners(&mut self.operators.basis, &self.grid, &self.cells.place, &domains.half_edges);
         } else {
             let places = [&self.cells.place[..], &self.points.half_length[..]];
-            self.method.basis.build(&mut self.basis, &self.grid, &self.support, places);
+            self.method.basis.build(&mut self.operators.basis, &self.grid, &self.support, places);
         }
-        self.strain.build(&self.grid, &self.cells, &self.points.half_length);
-        self.recovery.build(&self.grid, &self.cells);
+        self.operators.strain.build(&self.grid, &self.cells, &self.points.half_length);
+        self.operators.recovery.build(&self.grid, &self.cells);
         if self.recovers_by_soils() {
-            self.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
+            self.operators.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
         }
         if self.is_pushed_forward {
             self.cells.average_deformation(&self.points);
@@ -409,10 +400,10 @@ impl<const D: usize> Body<D> {
         self.apply_loads();
     }
 
-    /// Ends splines at a surface that moves through the grid.
+    /// Ends splines at a surface that moves through the grid: they would reach beyond it.
     fn end_splines(&mut self) {
-        if self.splines_end_at_surface {
-            self.support = self.surface.end_splines(&self.grid, &self.points);
+        if self.method.basis.is_spline() && self.configuration.moves_points() {
+            self.support = self.actions.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }
     }
@@ -425,14 +416,14 @@ impl<const D: usize> Body<D> {
         if self.method.strain.is_composite() {
             self.cells.find_reached(&self.grid, &self.points);
         }
-        if self.strain.carrier().is_some() {
-            self.strain.build(&self.grid, &self.cells, &self.points.half_length);
+        if self.operators.strain.carrier().is_some() {
+            self.operators.strain.build(&self.grid, &self.cells, &self.points.half_length);
         }
         if self.recovers_by_soils() {
-            self.recovery.build(&self.grid, &self.cells);
-            self.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
+            self.operators.recovery.build(&self.grid, &self.cells);
+            self.operators.recovery.keep_to_soils(&self.grid, &self.cells, &self.points.soil);
         } else {
-            self.recovery.look_around(&self.grid, &self.cells);
+            self.operators.recovery.look_around(&self.grid, &self.cells);
         }
         self.apply_loads();
     }

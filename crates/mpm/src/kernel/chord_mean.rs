@@ -21,7 +21,7 @@ impl<const D: usize> Body<D> {
     pub(crate) fn take_chord_drag(&mut self) {
         let (soil, law) = (&self.material, self.material.law);
         let solid_fraction = 1.0 - soil.porosity;
-        let end = law.strain_under(self.surface.load / soil.oedometric_modulus());
+        let end = law.strain_under(self.actions.surface.load / soil.oedometric_modulus());
         let (end_potential, end_stress) = (law.flow_potential(end), law.uniaxial_stress_ratio(end));
         let (nodes, points, cells) = (&mut self.nodes, &self.points, &self.cells);
         nodes.sums.chords.fill([0.0; 3]);
@@ -42,7 +42,7 @@ impl<const D: usize> Body<D> {
                 // Gradients of an earlier configuration take the volume with them.
                 volume *= points.inverse_deformation[point][D - 1][D - 1];
             }
-            self.basis.visit(self.grid.node_stride(), point, |node, _, gradient| {
+            self.operators.basis.visit(self.grid.node_stride(), point, |node, _, gradient| {
                 let weight = volume * gradient[D - 1];
                 let [potentials, stresses, size] = &mut sums[node];
                 *potentials += weight * potential;

@@ -108,7 +108,7 @@ impl<const D: usize> Body<D> {
         Some(Energy {
             kinetic: moving.sum(),
             stored: strained.sum::<f64>() + 0.5 * pressed.sum::<f64>() / self.material.water_bulk_modulus,
-            work: self.surface.work(&self.points, settlement),
+            work: self.actions.surface.work(&self.points, settlement),
         })
     }
 

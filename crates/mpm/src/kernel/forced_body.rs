@@ -29,7 +29,7 @@ impl<const D: usize> Body<D> {
             let volume = points.volume(point);
             forced.forces()[point].map(|force| force.map(|component| volume * component))
         };
-        self.basis.sum_values(self.grid.node_stride(), given, &mut nodes.sums.forces);
+        self.operators.basis.sum_values(self.grid.node_stride(), given, &mut nodes.sums.forces);
         for &node in &nodes.active {
             let [mixture, water] = nodes.sums.forces[node];
             for d in 0..D {
@@ -116,7 +116,7 @@ impl<const D: usize> Body<D> {
     fn start_gradient(&self, place: Place, field: &[Vector<D>]) -> Tensor<D> {
         match place {
             Place::Centre(cell) => self.cells.centre_gradient(&self.grid, cell, field),
-            Place::Point(point) => self.basis.gradient(self.grid.node_stride(), point, field),
+            Place::Point(point) => self.operators.basis.gradient(self.grid.node_stride(), point, field),
         }
     }
 

@@ -18,7 +18,7 @@ pub(crate) struct GrowingLoad {
 impl GrowingLoad {
     /// The load of a body, which grows over a time, s.
     pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
-        Self { load: body.surface.load, loading_time, share: 1.0 }
+        Self { load: body.actions.surface.load, loading_time, share: 1.0 }
     }
 
     /// Whether it still grows.
@@ -35,7 +35,7 @@ impl GrowingLoad {
     pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
         if self.loading_time > 0.0 {
             self.share = (time / self.loading_time).min(1.0);
-            body.surface.load = self.share * self.load;
+            body.actions.surface.load = self.share * self.load;
             body.apply_loads();
         }
     }
@@ -50,7 +50,7 @@ impl<const D: usize> Body<D> {
 
     /// Puts all loads on the nodes as the external force of the mixture.
     pub fn apply_loads(&mut self) {
-        self.surface.apply(&self.grid, &self.points, &mut self.nodes);
+        self.actions.surface.apply(&self.grid, &self.points, &mut self.nodes);
         if let Some(plate) = &self.actions.plate {
             plate.apply(&mut self.nodes);
         }
@@ -61,14 +61,14 @@ impl<const D: usize> Body<D> {
     pub fn settling_weights(&self) -> Vec<(usize, Vector<D>)> {
         match self.actions.plate.as_ref().and_then(|plate| plate.nodes.first()) {
             Some(lead) => vec![(*lead, along(NORMAL, 1.0))],
-            None => upward(self.surface.weights(&self.grid, &self.points)),
+            None => upward(self.actions.surface.weights(&self.grid, &self.points)),
         }
     }
 
     /// Nodes whose fluxes, times these weights, are what passes the surface and goes before the plate, per area
     /// of the surface.
     pub fn outflow_weights(&self) -> Vec<(usize, Vector<D>)> {
-        let mut weights = upward(self.surface.mean_weights(&self.grid, &self.points));
+        let mut weights = upward(self.actions.surface.mean_weights(&self.grid, &self.points));
         if let Some((plate, lead)) =
             self.actions.plate.as_ref().and_then(|plate| Some((plate, plate.nodes.first()?)))
         {
@@ -82,7 +82,7 @@ impl<const D: usize> Body<D> {
         let before_plate = self.actions.plate.as_ref().map_or(0.0, |plate| {
             plate.nodes.first().map_or(0.0, |lead| plate.face_over_surface * field[*lead][NORMAL])
         });
-        self.surface.mean_of(&self.grid, &self.points, field) + before_plate
+        self.actions.surface.mean_of(&self.grid, &self.points, field) + before_plate
     }
 
     /// Largest force on a free node or on the plate that nothing balances, N.

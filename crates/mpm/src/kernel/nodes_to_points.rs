@@ -48,13 +48,13 @@ impl<const D: usize> Body<D> {
     /// Step 4: velocities and places of the points; in the same pass, where velocities are mapped back, the momenta of step
     /// 5 that they give to the same nodes.
     pub(crate) fn advance_points(&mut self, motion: Motion, maps_back: bool) {
-        let basis = std::mem::take(&mut self.basis);
+        let basis = std::mem::take(&mut self.operators.basis);
         with_stencils!(&basis, stencils => if maps_back {
             wide!(self.advance_points_by::<_, true>(stencils, motion));
         } else {
             wide!(self.advance_points_by::<_, false>(stencils, motion));
         });
-        self.basis = basis;
+        self.operators.basis = basis;
     }
 
     #[inline(always)]
@@ -64,7 +64,7 @@ impl<const D: usize> Body<D> {
         motion: Motion,
     ) {
         let (stride, moves) = (*self.grid.node_stride(), self.configuration.moves_points());
-        let (nodes, carrier) = (&mut self.nodes, self.strain.carrier());
+        let (nodes, carrier) = (&mut self.nodes, self.operators.strain.carrier());
         let (nodal_motion, nodal_velocity) = (&nodes.motion[..], &nodes.solid_velocity[..]);
         let count = self.points.len();
         let Points {

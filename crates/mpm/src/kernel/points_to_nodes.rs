@@ -38,7 +38,7 @@ impl<const D: usize> Body<D> {
     pub(crate) fn sum_points<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&mut self) {
         let giving = Giving::new(&self.points, &self.soils, self.is_pushed_forward);
         let (stride, sums) = (*self.grid.node_stride(), &mut self.nodes.sums);
-        with_stencils!(&self.basis, stencils => wide!({
+        with_stencils!(&self.operators.basis, stencils => wide!({
             let mut sums = ToNodes::<D, _, MASSES, MOMENTA, FORCES>::new(sums, stride);
             let stencils = stencils.slices(giving.count());
             for point in 0..giving.count() {
@@ -50,18 +50,18 @@ impl<const D: usize> Body<D> {
 
     /// Builds the shape functions of points that have moved, and sums their masses, momenta and forces right away.
     pub(crate) fn build_basis_and_sum_points(&mut self) {
-        let mut basis = std::mem::take(&mut self.basis);
-        if let Some(domains) = &self.domains {
+        let mut basis = std::mem::take(&mut self.operators.basis);
+        if let Some(domains) = &self.operators.domains {
             self.cells.locate(&self.grid, &self.points, &self.soils);
             build_corners(&mut basis, &self.grid, &self.cells.place, &domains.half_edges);
-            self.basis = basis;
+            self.operators.basis = basis;
             self.sum_points::<true, true, true>();
             return;
         }
         with_shape!(self.method.basis, &mut basis, S, stencils => {
             wide!(self.build_and_sum::<_, S>(stencils));
         });
-        self.basis = basis;
+        self.operators.basis = basis;
         self.cells.end_locating(&self.points, &self.soils);
     }
 
@@ -99,7 +99,7 @@ impl<const D: usize> Body<D> {
     pub(crate) fn take_velocities(&mut self) {
         if let Some(gradients) = &self.actions.velocity_gradients {
             let momenta = &mut self.nodes.sums.momenta;
-            gradients.add_momenta(&self.grid, &self.cells, &self.points, &self.basis, momenta);
+            gradients.add_momenta(&self.grid, &self.cells, &self.points, &self.operators.basis, momenta);
         }
         self.nodes.take_velocities(&self.material);
         if let Some(plate) = &self.actions.plate {
@@ -111,7 +111,7 @@ impl<const D: usize> Body<D> {
     pub(crate) fn take_forces(&mut self) {
         if let Some(planes) = &mut self.actions.stress_planes {
             let forces = &mut self.nodes.sums.forces;
-            planes.add_forces(&self.grid, &self.cells, &self.points, &self.basis, forces);
+            planes.add_forces(&self.grid, &self.cells, &self.points, &self.operators.basis, forces);
         }
         self.nodes.take_forces();
         if self.actions.weight.is_some() {

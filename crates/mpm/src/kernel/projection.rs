@@ -54,7 +54,7 @@ impl<const D: usize> Body<D> {
 
     /// Sites around a point with the values of their shape functions there.
     pub(crate) fn sites_around(&self, point: usize, site_of_node: &[Option<usize>]) -> Vec<(usize, f64)> {
-        let around = points_in_cells!(self).around(point);
+        let around = points_in_cells!(self, self.operators.basis).around(point);
         around.into_iter().filter_map(|(node, value)| Some((site_of_node[node]?, value))).collect()
     }
 

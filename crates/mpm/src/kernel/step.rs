@@ -169,7 +169,7 @@ impl<const D: usize> Body<D> {
             ];
         }
         if let Some(gradients) = &mut self.actions.velocity_gradients {
-            gradients.take(&self.grid, &self.basis, &self.nodes);
+            gradients.take(&self.grid, &self.operators.basis, &self.nodes);
         }
     }
 

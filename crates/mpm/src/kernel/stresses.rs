@@ -56,8 +56,8 @@ impl<const D: usize> Body<D> {
         let (stride, field) = (*self.grid.node_stride(), &self.nodes.solid_velocity[..]);
         let (grid, cells, points) = (&self.grid, &self.cells, &mut self.points);
         let count = points.len();
-        match &self.strain {
-            StrainOperator::Basis => with_stencils!(&self.basis, stencils => {
+        match &self.operators.strain {
+            StrainOperator::Basis => with_stencils!(&self.operators.basis, stencils => {
                 wide!(straining.strain_by(points, stencils, stride, field));
             }),
             // Of points that move each row is taken once: right where it is made.
@@ -93,7 +93,7 @@ impl<const D: usize> Body<D> {
     fn following(&self) -> Following {
         let moves = self.configuration.moves_points();
         // A hyperelastic law asks for the whole deformation, and so do domains that turn.
-        let is_whole = self.material.law.is_hyperelastic() || self.domains.is_some();
+        let is_whole = self.material.law.is_hyperelastic() || self.operators.domains.is_some();
         Following {
             domain: moves && self.method.domains_follow(),
             inverse: self.configuration == Configuration::Total || moves && is_whole,

@@ -104,7 +104,7 @@ impl<const D: usize> Body<D> {
                 for point in 0..self.points.len() {
                     let porosity = self.soil_of(point).porosity_at(self.points.volume_ratio[point]);
                     let given = self.points.volume(point) * value(self, Place::Point(point), porosity);
-                    self.basis.visit(self.grid.node_stride(), point, |node, share, _| {
+                    self.operators.basis.visit(self.grid.node_stride(), point, |node, share, _| {
                         sites[node] += share * given;
                     });
                 }
@@ -155,9 +155,10 @@ impl<const D: usize> Body<D> {
         }
         self.site_values = sites;
         self.project_site_values();
-        let at = points_in_cells!(self);
+        let at = points_in_cells!(self, self.operators.basis);
         let pressures = &mut self.points.pressure;
-        self.recovery
+        self.operators
+            .recovery
             .recover(&at, &self.site_values, pressures, |pressure, increment| *pressure += increment);
     }
 
@@ -183,9 +184,13 @@ impl<const D: usize> Body<D> {
     /// takes.
     pub fn recover_dilation_rates(&mut self) {
         self.evaluate_sites(|body, place, _| body.divergence_at(place, &body.nodes.solid_velocity));
-        let at = points_in_cells!(self);
-        self.recovery
-            .recover(&at, &self.site_values, &mut self.dilation_rates, |rate, recovered| *rate = recovered);
+        let at = points_in_cells!(self, self.operators.basis);
+        self.operators.recovery.recover(
+            &at,
+            &self.site_values,
+            &mut self.dilation_rates,
+            |rate, recovered| *rate = recovered,
+        );
     }
 
     /// `D` and `R` of the body's method as rows; gradients are those of small strain.
@@ -199,7 +204,7 @@ impl<const D: usize> Body<D> {
         for (site, place) in sites.iter().enumerate() {
             site_of_place[*place] = Some(site);
         }
-        let at = points_in_cells!(self);
+        let at = points_in_cells!(self, self.operators.basis);
         let numbered = |row: Vec<(usize, f64)>| {
             let entries = row.into_iter().filter(|(_, weight)| *weight != 0.0);
             entries.filter_map(|(place, weight)| Some((site_of_place[place]?, weight))).collect()
@@ -207,7 +212,7 @@ impl<const D: usize> Body<D> {
         VolumetricRows {
             divergence: self.divergence_rows(&sites, &site_of_place),
             coupling: sites.iter().map(|place| self.coupling_of(*place, self.porosity_of(*place))).collect(),
-            recovery: self.recovery.rows(&at).into_iter().map(numbered).collect(),
+            recovery: self.operators.recovery.rows(&at).into_iter().map(numbered).collect(),
             projection: self.projection_rows(&sites, &site_of_place),
             sites,
             site_of_place,
@@ -215,7 +220,7 @@ impl<const D: usize> Body<D> {
     }
 
     fn divergence_rows(&self, sites: &[usize], site_of_place: &[Option<usize>]) -> Vec<VectorRow<D>> {
-        let at_point = |point: usize| self.basis.gradient_row(&self.grid, point);
+        let at_point = |point: usize| self.operators.basis.gradient_row(&self.grid, point);
         match self.method.pressure {
             PressureIntegration::Points if self.method.has_projection() => {
                 let mut rows = vec![VectorRow::new(); sites.len()];

@@ -64,7 +64,7 @@ impl<const D: usize> Body<D> {
         }
         let free_water = water_density * weight.gravity * self.settled_under(weight);
         if free_water != 0.0 {
-            self.surface.press(free_water, &self.grid, &self.points, &mut self.nodes);
+            self.actions.surface.press(free_water, &self.grid, &self.points, &mut self.nodes);
         }
     }
 
@@ -74,7 +74,7 @@ impl<const D: usize> Body<D> {
     /// with the masses of the nodes.
     pub(crate) fn carry_what_weight_leaves(&mut self, stresses: Vec<Tensor<D>>) {
         let mut resting = self.clone();
-        resting.surface.load = 0.0;
+        resting.actions.surface.load = 0.0;
         resting.apply_loads();
         resting.points.effective_stress = stresses;
         for point in 0..resting.points.len() {
@@ -100,10 +100,10 @@ impl<const D: usize> Body<D> {
     fn settled_under(&self, weight: SelfWeight) -> f64 {
         match self.configuration {
             Configuration::Frozen => 0.0,
-            Configuration::Updated => weight.level - self.surface.height(&self.points) - weight.rise,
+            Configuration::Updated => weight.level - self.actions.surface.height(&self.points) - weight.rise,
             Configuration::Total => {
                 let field = &self.nodes.displacement;
-                -self.surface.amplitude_of(&self.grid, &self.points, field) - weight.rise
+                -self.actions.surface.amplitude_of(&self.grid, &self.points, field) - weight.rise
             }
         }
     }

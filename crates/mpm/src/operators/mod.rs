@@ -7,3 +7,38 @@ pub mod sparse_rows;
 pub mod stacked_points;
 pub mod stencil;
 pub mod strain_gradient;
+
+use crate::method::{Configuration, Method};
+use crate::operators::corners::{Domains, corner_stencils};
+use crate::operators::recovery::RecoveryOperator;
+use crate::operators::stencil::PointStencils;
+use crate::operators::strain_gradient::StrainOperator;
+use crate::state::grid::Grid;
+use crate::state::points::Points;
+
+/// The operators of a method on a body's points.
+#[derive(Clone, Debug)]
+pub struct Operators<const D: usize> {
+    /// `N` and `∇N` between points and nodes.
+    pub basis: PointStencils<D>,
+    /// `G` where it is not the gradient of the basis.
+    pub strain: StrainOperator<D>,
+    /// Domains of the points where they turn with the material.
+    pub domains: Option<Domains<D>>,
+    /// `R`, from the sites of the divergence to the points.
+    pub recovery: RecoveryOperator<D>,
+}
+
+impl<const D: usize> Operators<D> {
+    /// Room for those of a method; they are built where the points are.
+    pub fn new(method: Method, configuration: Configuration, grid: &Grid<D>, points: &Points<D>) -> Self {
+        let count = points.len();
+        let domains = Domains::of(method, configuration, points);
+        Self {
+            basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
+            strain: StrainOperator::of(method.strain, count),
+            domains,
+            recovery: RecoveryOperator::of(method, grid, count),
+        }
+    }
+}

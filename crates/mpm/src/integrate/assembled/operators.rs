@@ -84,7 +84,7 @@ fn projection<const D: usize>(body: &Body<D>) -> Vec<Vec<(usize, [f64; 2])>> {
         let solid_mass = volume * (1.0 - soil.porosity) * soil.grain_density;
         let water_mass = volume * soil.porosity * body.material.water_density;
         let mut weights = Vec::new();
-        body.basis.visit(body.grid.node_stride(), point, |node, weight, _| {
+        body.operators.basis.visit(body.grid.node_stride(), point, |node, weight, _| {
             if weight != 0.0 {
                 weights.push((node, weight));
             }

@@ -104,7 +104,9 @@ impl<const D: usize> Body<D> {
     pub fn strain_row(&self, point: usize, rows: &VolumetricRows<D>) -> Vec<StrainEntry<D>> {
         let mut gradients = Vec::new();
         let stride = self.grid.node_stride();
-        self.strain.visit(&self.basis, stride, point, |node, gradient| gradients.push((node, *gradient)));
+        self.operators
+            .strain
+            .visit(&self.operators.basis, stride, point, |node, gradient| gradients.push((node, *gradient)));
         let is_bbar = self.method.strain.is_bbar();
         let mut entries: Vec<StrainEntry<D>> = gradients
             .into_iter()
@@ -162,7 +164,7 @@ impl<const D: usize> Body<D> {
             };
             stresses.clear();
             stresses.extend(strain_row(point).as_ref().iter().map(of_unit));
-            for (row, force) in self.basis.gradient_row(&self.grid, point) {
+            for (row, force) in self.operators.basis.gradient_row(&self.grid, point) {
                 let (row, mut place) = (&mut blocks.rows[row], 0);
                 for (column, stresses) in &stresses {
                     let block = entry_after(row, &mut place, *column, || [[0.0; D]; D]);
@@ -181,7 +183,7 @@ impl<const D: usize> Body<D> {
         let mut forces: Vec<Vec<(usize, Vector<D>)>> = vec![Vec::new(); self.nodes.len()];
         for point in 0..self.points.len() {
             let volume = self.points.volume(point);
-            for (node, gradient) in self.basis.gradient_row(&self.grid, point) {
+            for (node, gradient) in self.operators.basis.gradient_row(&self.grid, point) {
                 let (forces, mut place) = (&mut forces[node], 0);
                 for (site, weight) in &rows.recovery[point] {
                     let force = entry_after(forces, &mut place, *site, || [0.0; D]);

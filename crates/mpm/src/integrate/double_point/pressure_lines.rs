@@ -19,7 +19,7 @@ const FADINGS_PER_CELL: f64 = 2.0;
 impl<const D: usize> DoublePoint<D> {
     /// Takes the middles of what the soil fills of the cells with water points.
     pub(crate) fn take_middles(&mut self) {
-        let surface = self.body.surface.lowest(&self.body.points);
+        let surface = self.body.actions.surface.lowest(&self.body.points);
         for cell in self.cells.occupied() {
             self.middles[cell] = middle_of(&self.body.grid, cell, surface);
         }

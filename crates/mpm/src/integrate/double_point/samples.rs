@@ -114,7 +114,7 @@ impl<const D: usize> DoublePoint<D> {
         let mut forces = InternalForces::default();
         for (point, stress) in points.effective_stress.iter().enumerate() {
             let stress = std::array::from_fn(|d| points.volume(point) * stress[d][d]);
-            self.body.basis.visit(stride, point, |_, _, gradient| forces.add(&stress, gradient));
+            self.body.operators.basis.visit(stride, point, |_, _, gradient| forces.add(&stress, gradient));
         }
         for (point, pressure) in water.pressure.iter().enumerate() {
             let stress = [-water.volume_inside(point) * pressure; D];

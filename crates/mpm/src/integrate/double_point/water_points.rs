@@ -145,7 +145,7 @@ impl<const D: usize> DoublePoint<D> {
     /// Volumes and domains, cut at the surface.
     fn take_domains(&mut self) {
         let (soil, up) = (self.body.material, D - 1);
-        let lowest_surface = self.body.surface.lowest(&self.body.points);
+        let lowest_surface = self.body.actions.surface.lowest(&self.body.points);
         let water = &mut self.water;
         let mut point = 0;
         while point < water.len() {
@@ -163,7 +163,8 @@ impl<const D: usize> DoublePoint<D> {
             water.share[point] = 1.0;
             let (low, high) = (water.position[point][up] - half, water.position[point][up] + half);
             if high > lowest_surface {
-                let surface = self.body.surface.height_over(&self.body.points, &water.position[point]);
+                let surface =
+                    self.body.actions.surface.height_over(&self.body.points, &water.position[point]);
                 let kept = high.min(surface) - low;
                 if kept < 2.0 * half * LEAST_SHARE {
                     water.remove(point);
@@ -266,7 +267,7 @@ mod tests {
         for _ in 0..300 {
             double.kick_and_drift(4e-5, 4e-5, &settings);
         }
-        let domains = double.body.domains.as_ref().expect("domains that could turn");
+        let domains = double.body.operators.domains.as_ref().expect("domains that could turn");
         let settled = double.body.settlement(1.0);
         assert!(settled > 1e-4, "{settled}");
         for [along, up] in &domains.half_edges {

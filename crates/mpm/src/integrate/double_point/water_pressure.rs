@@ -30,7 +30,7 @@ impl<const D: usize> DoublePoint<D> {
     pub fn update_pressure(&mut self, dt: f64) {
         let body = &mut self.body;
         body.nodes.take_flux();
-        body.surface_flux += dt * body.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
+        body.surface_flux += dt * body.actions.surface.mean_of(&body.grid, &body.points, &body.nodes.flux);
         let bulk_modulus = body.material.water_bulk_modulus;
         self.evaluate_water_sites(|double, place, porosity| {
             let rate = double.body.volume_rate(porosity, |field| double.divergence_at(place, field));

@@ -251,7 +251,7 @@ impl<const D: usize> DrivenStepper<D> {
         let body = &mut self.body;
         let stride = *body.grid.node_stride();
         for point in 0..body.points.len() {
-            let of_basis = body.basis.value(&stride, point, &self.increment);
+            let of_basis = body.operators.basis.value(&stride, point, &self.increment);
             let moved = body.carrying(point, &self.increment, of_basis);
             for d in 0..D {
                 body.points.displacement[point][d] += moved[d];

@@ -49,7 +49,8 @@ impl<const D: usize> Trial<D> {
     /// it has in the place of the trace of each point's gradient. Whether any strain has changed since the last call.
     pub(super) fn strain_points(&mut self, traces: &[f64]) -> bool {
         let body = &mut self.body;
-        let (basis, strain) = (std::mem::take(&mut body.basis), std::mem::take(&mut body.strain));
+        let (basis, strain) =
+            (std::mem::take(&mut body.operators.basis), std::mem::take(&mut body.operators.strain));
         let has_changed = match &strain {
             StrainOperator::Basis => {
                 with_stencils!(&basis, stencils => wide!(self.strain_points_by(stencils, traces)))
@@ -57,7 +58,7 @@ impl<const D: usize> Trial<D> {
             StrainOperator::Composite(stencils) => wide!(self.strain_points_by(stencils, traces)),
             StrainOperator::BetweenEnds(stencils) => wide!(self.strain_points_by(stencils, traces)),
         };
-        (self.body.basis, self.body.strain) = (basis, strain);
+        (self.body.operators.basis, self.body.operators.strain) = (basis, strain);
         has_changed
     }
 

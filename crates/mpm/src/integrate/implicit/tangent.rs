@@ -33,8 +33,8 @@ struct Structure {
 impl Structure {
     fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         Self {
-            basis: body.basis.reach(),
-            strain: body.strain.reach(),
+            basis: body.operators.basis.reach(),
+            strain: body.operators.strain.reach(),
             cells: body.cells.of_point.clone(),
             last_node: body.last_spline_node(),
             numbers: unknowns.displacement.as_flattened().to_vec(),
@@ -84,8 +84,8 @@ impl Pattern {
             return true;
         }
         let known = &self.structure;
-        body.basis.reaches(&known.basis)
-            && body.strain.reaches(&known.strain)
+        body.operators.basis.reaches(&known.basis)
+            && body.operators.strain.reaches(&known.strain)
             && known.cells == body.cells.of_point
             && known.last_node == body.last_spline_node()
             && self.has_unknowns(unknowns)
@@ -141,7 +141,7 @@ fn dependencies<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<V
             if body.method.strain.is_bbar() {
                 body.strain_row(point, &unknowns.rows).iter().for_each(|entry| feel(entry.node));
             } else {
-                body.strain.visit(&body.basis, stride, point, |node, _| feel(node));
+                body.operators.strain.visit(&body.operators.basis, stride, point, |node, _| feel(node));
             }
             felt.extend(unknowns.rows.recovery[point].iter().map(|(site, _)| unknowns.pressure[*site]));
             felt
@@ -149,13 +149,13 @@ fn dependencies<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Vec<V
         .collect();
     // Forces and drag of a node depend on all points whose shape functions reach it.
     let mut by_node = vec![Vec::new(); body.nodes.len()];
-    let reach = body.basis.reach();
+    let reach = body.operators.basis.reach();
     let parts = reach.len() / by_point.len();
     let blocks_of = |point: usize| &reach[point * parts..(point + 1) * parts];
     for (point, felt) in by_point.iter().enumerate() {
         // Neighbours mostly depend on the same unknowns: skip repetitions.
         if point == 0 || blocks_of(point) != blocks_of(point - 1) || *felt != by_point[point - 1] {
-            body.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
+            body.operators.basis.visit(stride, point, |node, _, _| by_node[node].extend_from_slice(felt));
         }
     }
     if body.material.conductivity_mean == ConductivityMean::Chord {
@@ -214,7 +214,7 @@ fn add_cell_means<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_no
         felt.sort_unstable();
         felt.dedup();
     }
-    let reach = body.basis.reach();
+    let reach = body.operators.basis.reach();
     let parts = reach.len() / by_point.len();
     let mut last = None;
     for (point, cell) in body.cells.of_point.iter().enumerate() {
@@ -222,7 +222,7 @@ fn add_cell_means<const D: usize>(body: &Body<D>, by_point: &[Vec<usize>], by_no
         let reached = Some((*cell, &reach[point * parts..(point + 1) * parts]));
         if last != reached {
             last = reached;
-            body.basis.visit(body.grid.node_stride(), point, |node, _, _| {
+            body.operators.basis.visit(body.grid.node_stride(), point, |node, _, _| {
                 by_node[node].extend_from_slice(&by_cell[*cell]);
             });
         }

@@ -139,10 +139,10 @@ fn a_column_that_is_unloaded_keeps_what_it_has_yielded_and_reloads_stiffly() {
     let schedule = schedule();
     let plan = Plan::of(&problem(), &schedule);
     let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
-    let (start, full_load) = (newton.settlement(), newton.trial.body.surface.load);
+    let (start, full_load) = (newton.settlement(), newton.trial.body.actions.surface.load);
     // The seed's start is that of a linear soil: the load of the start is in its strain.
     let mut settled_under = |share: f64| {
-        newton.trial.body.surface.load = share * full_load;
+        newton.trial.body.actions.surface.load = share * full_load;
         newton.trial.body.apply_loads();
         // Steps that grow: L-stable ones that are too large overshoot, and what has yielded stays.
         let mut dt = 0.01;
@@ -220,11 +220,11 @@ fn loading_unloading_and_reloading_follow_finite_volumes() {
     let schedule = schedule();
     let plan = Plan::of(&problem(), &schedule);
     let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
-    let (start, full_load) = (newton.settlement(), newton.trial.body.surface.load);
+    let (start, full_load) = (newton.settlement(), newton.trial.body.actions.surface.load);
     let (mut loads, mut references) = (Vec::new(), Vec::new());
     // The front stops on its way, and is met again.
     for share in [1.0, 0.1, 1.2] {
-        newton.trial.body.surface.load = share * full_load;
+        newton.trial.body.actions.surface.load = share * full_load;
         newton.trial.body.apply_loads();
         let (mut dt, mut seconds) = (0.002, 0.0);
         for _ in 0..90 {

@@ -129,8 +129,11 @@ impl<const D: usize> Trial<D> {
                 .map(|number| number.map_or(0.0, |number| self.unknowns.scales.length * increments[number]));
         }
         if let Some(weight) = &mut self.body.actions.weight {
-            weight.rise =
-                self.body.surface.amplitude_of(&self.body.grid, &self.body.points, &self.displacement);
+            weight.rise = self.body.actions.surface.amplitude_of(
+                &self.body.grid,
+                &self.body.points,
+                &self.displacement,
+            );
         }
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
@@ -147,7 +150,7 @@ impl<const D: usize> Trial<D> {
     fn take_pressures(&mut self, increments: &[f64]) {
         let (unknowns, scale) = (&self.unknowns, self.unknowns.scales.pressure);
         self.body.points.pressure.copy_from_slice(&self.anchor.pressure);
-        if !self.body.recovery.is_local() {
+        if !self.body.operators.recovery.is_local() {
             for (pressure, row) in self.body.points.pressure.iter_mut().zip(&unknowns.rows.recovery) {
                 let change = |(site, weight): &(usize, f64)| weight * increments[unknowns.pressure[*site]];
                 *pressure += scale * row.iter().map(change).sum::<f64>();
@@ -159,10 +162,15 @@ impl<const D: usize> Trial<D> {
         for (place, number) in unknowns.rows.sites.iter().zip(&unknowns.pressure) {
             body.site_values[*place] = increments[*number];
         }
-        let at = points_in_cells!(body);
-        body.recovery.recover(&at, &body.site_values, &mut body.points.pressure, |pressure, change| {
-            *pressure += scale * change;
-        });
+        let at = points_in_cells!(body, body.operators.basis);
+        body.operators.recovery.recover(
+            &at,
+            &body.site_values,
+            &mut body.points.pressure,
+            |pressure, change| {
+                *pressure += scale * change;
+            },
+        );
     }
 
     /// Ends a step at increments of the unknowns, after so much flux through the surface, m. The points keep the state;
@@ -178,7 +186,7 @@ impl<const D: usize> Trial<D> {
         }
         let stride = *self.body.grid.node_stride();
         for point in 0..self.anchor.len() {
-            let of_basis = self.body.basis.value(&stride, point, &self.displacement);
+            let of_basis = self.body.operators.basis.value(&stride, point, &self.displacement);
             let moved = self.body.carrying(point, &self.displacement, of_basis);
             for d in 0..D {
                 self.body.points.displacement[point][d] += moved[d];
@@ -226,7 +234,7 @@ impl<const D: usize> Trial<D> {
             let gained =
                 |node: usize| -> Vector<D> { std::array::from_fn(|d| nodes[node][d] - before[node][d]) };
             for (point, velocity) in points.iter_mut().enumerate() {
-                body.basis.visit(&stride, point, |node, weight, _| {
+                body.operators.basis.visit(&stride, point, |node, weight, _| {
                     for (total, gain) in velocity.iter_mut().zip(gained(node)) {
                         *total += weight * gain;
                     }
@@ -248,7 +256,7 @@ impl<const D: usize> Trial<D> {
             }
         }
         points.inverse_deformation[point] = identity();
-        if let Some(domains) = &mut self.body.domains {
+        if let Some(domains) = &mut self.body.operators.domains {
             domains.carry(point, &deformation);
         }
         self.carried[point] = product(&deformation, &self.carried[point]);

@@ -99,7 +99,7 @@ impl<const D: usize> Unknowns<D> {
             return;
         }
         self.has_old_rows = true;
-        if body.method.strain.is_bbar() || !body.recovery.is_local() {
+        if body.method.strain.is_bbar() || !body.operators.recovery.is_local() {
             self.take_rows(body);
         }
     }

@@ -145,9 +145,9 @@ impl<const D: usize> Body<D> {
             let moved = |(node, weight): &(usize, Vector<D>)| dot(weight, &self.nodes.displacement[*node]);
             -self.settling_weights().iter().map(moved).sum::<f64>()
         } else if self.configuration.moves_points() {
-            initial_height - self.surface.height(&self.points)
+            initial_height - self.actions.surface.height(&self.points)
         } else {
-            -self.surface.amplitude_of(&self.grid, &self.points, &self.nodes.displacement)
+            -self.actions.surface.amplitude_of(&self.grid, &self.points, &self.nodes.displacement)
         }
     }
 
@@ -184,7 +184,7 @@ impl<const D: usize> Body<D> {
     fn sample_nodes(&self) -> Samples {
         let mut means = Means::new(self.nodes.len());
         for point in 0..self.points.len() {
-            self.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
+            self.operators.basis.visit(self.grid.node_stride(), point, |node, weight, _| {
                 means.add(node, point, weight * self.points.volume(point));
             });
         }
@@ -242,7 +242,9 @@ impl<const D: usize> Body<D> {
         for point in 0..self.points.len() {
             let (volume, stress) = (self.points.volume(point), &self.points.effective_stress[point]);
             let total = std::array::from_fn(|d| volume * (stress[d][d] - self.points.pressure[point]));
-            self.basis.visit(self.grid.node_stride(), point, |_, _, gradient| forces.add(&total, gradient));
+            self.operators
+                .basis
+                .visit(self.grid.node_stride(), point, |_, _, gradient| forces.add(&total, gradient));
         }
         forces.imbalance()
     }

@@ -161,17 +161,17 @@ fn domains_turn_with_a_step_and_carry_their_corners_along() {
     }
     body.update_effective_stress(0.1);
     body.build_operators();
-    let [[along, up], _] = body.domains.as_ref().expect("domains that turn").half_edges[9];
+    let [[along, up], _] = body.operators.domains.as_ref().expect("domains that turn").half_edges[9];
     assert!((along / half - 1.0).abs() < 2e-3 && (up / half - 0.1).abs() < 2e-3, "{along} {up}");
     // A field whose hats' interpolant turns with the corners: |x − a| about a line of nodes through the domain's edge.
     let kink: Vec<Vector<2>> =
         (0..body.nodes.len()).map(|node| [(body.grid.node_position(node)[0] - 0.25).abs(), 0.0]).collect();
     let place = body.points.position[9];
-    let edges = body.domains.as_ref().expect("domains").half_edges[9];
+    let edges = body.operators.domains.as_ref().expect("domains").half_edges[9];
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let mean: f64 =
         corners.iter().map(|(s, t)| 0.25 * (place[0] + s * edges[0][0] + t * edges[1][0] - 0.25).abs()).sum();
-    let got = body.basis.value(body.grid.node_stride(), 9, &kink)[0];
+    let got = body.operators.basis.value(body.grid.node_stride(), 9, &kink)[0];
     assert!((got - mean).abs() < 1e-14, "{got} for {mean}");
 }
 

@@ -71,7 +71,7 @@ fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
             assert!((pressure / excess - 1.0).abs() < 1e-12, "{pressure}");
         }
         // Half a metre down without a change of stress: the free water presses with γ_w/2 on both phases.
-        let weights = body.surface.weights(&body.grid, &body.points);
+        let weights = body.actions.surface.weights(&body.grid, &body.points);
         let (top_node, share) = weights.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).expect("a node");
         let top =
             |body: &Body<1>| (body.nodes.mixture_force[top_node][0], body.nodes.water_force[top_node][0]);

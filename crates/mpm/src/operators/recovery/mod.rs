@@ -57,12 +57,12 @@ impl<const D: usize> PointsInCells<'_, D> {
 
 /// [`PointsInCells`] of a body, field by field: what is recovered may be another field of it.
 macro_rules! points_in_cells {
-    ($body:expr) => {
+    ($body:expr, $basis:expr) => {
         $crate::operators::recovery::PointsInCells {
             grid: &$body.grid,
             cells: &$body.cells,
             nodes: &$body.nodes,
-            basis: &$body.basis,
+            basis: &$basis,
             positions: &$body.points.position,
             volumes: [&$body.points.initial_volume, &$body.points.volume_ratio],
         }
@@ -212,7 +212,7 @@ pub(crate) mod tests {
         }
 
         pub(crate) fn at(&self) -> PointsInCells<'_, 2> {
-            points_in_cells!(self)
+            points_in_cells!(self, self.basis)
         }
     }
 
