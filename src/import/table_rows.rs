@@ -209,11 +209,14 @@ pub fn take_rows(
     rows: &mut Vec<SampleRow>,
 ) -> Result<bool, ImportError> {
     let mut table = Table::open(path, &mapping.csv)?;
-    let places = Places::of(&table, mapping)?;
+    let mut places = Places::of(&table, mapping)?;
     let time_column = places.columns[Column::Time as usize];
     let time_of_file =
         if time_column.is_none() { declared_time(path, place, false, mapping, body) } else { Ok(None) };
     let time_of_file = time_of_file.map_err(|why| table.error(why))?;
+    // A column that has the name of the convention needs no other word.
+    let time_column = time_column.or_else(|| table.place("t").filter(|_| time_of_file.is_none()));
+    places.columns[Column::Time as usize] = time_column;
     if time_column.or(time_of_file.map(|_| 0)).is_none() {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         return Err(table.error(format!(

@@ -196,6 +196,9 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
     let how = "add \"result.csv\" = … to [time] files, name a column `t`, or give --set-time-step if the name has the number of \
                a step";
     assert!(untimed.ends_with(&format!("result.csv: its time is declared nowhere: {how}")), "{untimed}");
+    let named =
+        states("[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\n", "t,y,p\n2,0.5,3\n").expect("a column `t`");
+    assert_eq!(named[0].time, 2.0);
     // Rows that do not count are none, and rows of one value alone do.
     let rows = "t,y,p,u_y,layer\n1,0.25,3,0,1\n1,0.5,4,0,2\n1,0.75,5,0,1\n";
     let of = |layer: &str| states(&format!("{CONVENTION}[rows]\nequals = {{ layer = {layer} }}\n"), rows);
