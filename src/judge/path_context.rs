@@ -47,7 +47,9 @@ impl Path<'_> {
         };
         let attached = self.records.iter().filter(|record| record.case.is_attached());
         let digits = attached.filter_map(of_digits);
-        self.records.iter().map(of_system).chain(digits).fold(ROUND_OFF, f64::max)
+        // An explicit step solves no system.
+        let solved = self.records.iter().filter(|record| !record.case.is_explicit());
+        solved.map(of_system).chain(digits).fold(ROUND_OFF, f64::max)
     }
 
     /// Signed errors of single numbers, a settlement or a value without a reference; empty for norms of fields.

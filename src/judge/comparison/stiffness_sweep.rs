@@ -94,12 +94,23 @@ impl SweepRow {
     }
 
     /// The first value of the sweep at which the result of a run that ended is lost; nothing where it is kept at all of
-    /// them.
+    /// them, and of a value at which the method did not run nothing is known.
     pub fn lost_from(&self) -> Option<usize> {
         let is_kept = |error: Option<f64>| error.is_some_and(|error| error < KEPT);
-        let is_lost =
-            |place: &usize| self.failed[*place].is_none() && !self.errors(*place).into_iter().all(is_kept);
+        let is_lost = |place: &usize| {
+            let errors = self.errors(*place);
+            self.failed[*place].is_none()
+                && errors.iter().any(Option::is_some)
+                && !errors.into_iter().all(is_kept)
+        };
         (0..self.found.len()).find(is_lost)
+    }
+
+    /// At how many values the method ran.
+    fn runs(&self) -> usize {
+        let has_run =
+            |place: &usize| self.failed[*place].is_some() || self.errors(*place).iter().any(Option::is_some);
+        (0..self.found.len()).filter(has_run).count()
     }
 
     /// The first value of the sweep at which the run failed, and how.
@@ -175,7 +186,10 @@ impl StiffnessSweep {
                 let found = values.iter().map(|value| found(method, time_factor, *value));
                 let found = found.collect::<Result<_, _>>()?;
                 let failed = values.iter().map(|value| failure(method, *value)).collect();
-                rows.push(SweepRow { method, time_factor, found, failed });
+                let row = SweepRow { method, time_factor, found, failed };
+                if row.runs() >= LEAST_VALUES || row.failed_from().is_some() {
+                    rows.push(row);
+                }
             }
         }
         Ok(Some(Self { stiffness, cells: hardest.case.cells, values, time_factors, rows }))

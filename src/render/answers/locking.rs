@@ -9,6 +9,7 @@ use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::{count_of, short, typed};
+use std::fmt::Write;
 
 const QUESTION: Question = Question { heading: "Who locks?", id: "locking" };
 
@@ -68,7 +69,7 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
     }
     for row in rows {
         if let Some((place, how)) = row.failed_from() {
-            text += &format!("; failed at ν = {} ({how}): `{}`", typed(sweep.values[place]), row.method);
+            let _ = write!(text, "; failed at ν = {} ({how}): `{}`", typed(sweep.values[place]), row.method);
         }
     }
     text + "."

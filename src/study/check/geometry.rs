@@ -21,6 +21,9 @@ const SOIL_MODULUS: [f64; 2] = [1e4, 1e11];
 /// Hydraulic conductivities of soils, from clay to coarse gravel, m/s.
 const SOIL_CONDUCTIVITY: [f64; 2] = [1e-14, 0.3];
 
+/// A number of a soil.
+type SoilNumber = fn(&oedometer_soil::material::Material) -> f64;
+
 /// Final strain `m_vl q` up to which small-strain theory is taken without a warning.
 const LARGEST_SMALL_STRAIN: f64 = 1e-2;
 /// Share of a wave's speed below which a projection is warned of.
@@ -389,8 +392,7 @@ impl Checker<'_> {
             return;
         }
         let soils = || planned.iter().flat_map(|planned| planned.case.soils());
-        type Number = fn(&oedometer_soil::material::Material) -> f64;
-        let ranges: [(&str, &str, [f64; 2], &str, Number); 2] = [
+        let ranges: [(&str, &str, [f64; 2], &str, SoilNumber); 2] = [
             ("youngs_modulus", "Pa", SOIL_MODULUS, "kPa or MPa", |soil| soil.youngs_modulus),
             ("hydraulic_conductivity", "m/s", SOIL_CONDUCTIVITY, "m/d or cm/s", |soil| {
                 soil.hydraulic_conductivity
