@@ -42,7 +42,12 @@ fn sentence(sweep: &StiffnessSweep, rows: &[&SweepRow], time: f64) -> String {
         named.collect::<Vec<_>>().join(", ")
     };
     let largest = sweep.values.last().copied().unwrap_or_default();
-    let is_kept = |row: &SweepRow| row.lost_from().is_none() && row.failed_from().is_none();
+    let last = sweep.values.len().saturating_sub(1);
+    let is_kept = |row: &SweepRow| {
+        row.lost_from().is_none()
+            && row.failed_from().is_none()
+            && row.errors(last).iter().all(Option::is_some)
+    };
     let kept = rows.iter().filter(|row| is_kept(row)).count();
     let mut text = format!(
         "Of {} on {} cells, at T_v = {}, {kept} {} displacement and pressure within {} % up to ν = {}",
