@@ -593,3 +593,12 @@ fn every_place_in_the_code_that_contributing_names_exists() {
     }
     assert!(named > 20, "{named} places");
 }
+
+#[test]
+fn every_page_of_the_manual_is_in_the_book_once() {
+    let summary = text_of("docs/SUMMARY.md");
+    for page in documents().iter().filter_map(|name| name.strip_prefix("docs/")) {
+        let count = summary.matches(&format!("({page})")).count();
+        assert_eq!(count, usize::from(page != "SUMMARY.md"), "{page}");
+    }
+}
