@@ -26,6 +26,9 @@ const MOST_ITERATIONS: usize = 16;
 const MOST_HALVINGS: u32 = 10;
 /// Error of an iteration, over the size of the problem's strains.
 const TOLERANCE: f64 = 1e-12;
+/// Perturbation for the tangent of a body that keeps its shape, over the size of the problem's strains: one that is not small
+/// against them averages the stiffnesses on both sides of a yield limit.
+const SHARE_OF_STRAIN: f64 = 1e-5;
 /// Contraction, the ratio of successive corrections, that is assumed where none is known.
 const SLOW: f64 = 0.1;
 /// Contraction beyond which the tangent is always renewed.
@@ -69,7 +72,8 @@ pub struct NewtonStepper<const D: usize> {
     round_off: f64,
     /// The same as measured where an iteration came to rest, and the duration of that stage, s.
     measured: [f64; 2],
-    /// Perturbation of a scaled unknown for the tangent: the problem's strain where the step is linear in it.
+    /// Perturbation of a scaled unknown for the tangent: the problem's strain where the step is linear in it, and a small share
+    /// of it where small strains pass a yield limit.
     difference: f64,
     error_scales: ErrorScales,
     stages: &'static [Stage],
@@ -117,7 +121,11 @@ impl<const D: usize> NewtonStepper<D> {
             tolerance: TOLERANCE * strain,
             round_off: f64::EPSILON * cells * cells * if keeps_shape { strain } else { 1.0 },
             measured: [0.0; 2],
-            difference: if is_linear { strain } else { DIFFERENCE },
+            difference: match (is_linear, keeps_shape) {
+                (true, _) => strain,
+                (false, true) => SHARE_OF_STRAIN * strain,
+                (false, false) => DIFFERENCE,
+            },
             error_scales: ErrorScales::of(&scales, plan),
             stages,
             start: StageStart::default(),
