@@ -148,10 +148,12 @@ pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.
 pub use campaign::case_run::run_case;
+pub use campaign::case_runner::run_study_with;
 pub use campaign::runner::{RunOptions, Selected, run_studies, run_study};
+pub use case::outcome::{Course, Outcome, Solver};
 pub use case::planned::Tier;
 pub use case::quantity::{Norm, Quantity, Sample};
-pub use case::solver::Solver;
+pub use case::solver::SolverName;
 pub use case::{Case, Task};
 pub use cli::{main, main_with};
 pub use golden::compare::compare;

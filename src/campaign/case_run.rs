@@ -1,16 +1,17 @@
-//! Runs one case, from its inputs to its record, and how long the processor worked on it, for which other programs do
-//! not count.
+//! This program as a solver of cases, and how long the processor worked on one, for which other programs do not count.
 
+use crate::case::machine::Machine;
+use crate::case::outcome::{Course, Inside, Outcome, Solver, Status, WallSample};
 use crate::case::work_estimate::MOST_PROBE_STEPS;
-use crate::case::{Case, Solver, Task};
-use crate::measure::record::{record_of, record_of_critical_step, record_of_stopped_search};
-use crate::record::{Machine, Record, Status, WallSample};
+use crate::case::{Case, SolverName, Task};
+use crate::measure::record::record_of;
+use crate::record::Record;
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::integrate::critical_step::formula;
 use oedometer_mpm::integrate::integrator::StepBound;
-use oedometer_mpm::run::observed::Stopped;
-use oedometer_mpm::run::results::outcome::{FailureKind, Outcome};
+use oedometer_mpm::run::observed::{CriticalStep, Stopped};
+use oedometer_mpm::run::results::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
 use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_mpm::scene::problem::SceneProblem;
@@ -23,55 +24,43 @@ const HISTORY_POINTS: usize = 48;
 /// First time factor of the settlement curve.
 const HISTORY_START: f64 = 1e-3;
 
-/// What of the machine a case has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cores {
-    /// Threads that it may use. Results do not depend on it.
-    pub threads: usize,
-    /// Whether nothing else competes for the cores meanwhile.
-    pub alone: bool,
+/// The methods of this program.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ThisProgram {
+    /// How explicit steps are computed where nothing moves.
+    pub kernel: Kernel,
 }
 
-impl Cores {
-    /// One thread: other cases have the others, or the case is timed.
-    pub fn one(alone: bool) -> Self {
-        Self { threads: 1, alone }
+impl Solver for ThisProgram {
+    fn solve(&self, case: &Case, course: &Course<'_>) -> Result<Outcome, ExactError> {
+        plausible(case)?;
+        let plain = &case.without_idle_choices();
+        let limit =
+            if course.seconds.is_finite() { TimeLimit::after(course.seconds) } else { TimeLimit::default() };
+        let in_time = |done: u64, expected: u64| (course.observe)(done, expected) && !limit.is_over();
+        let outcome = if case.task == Task::Stability {
+            critical_step_of(plain, &in_time)?
+        } else {
+            solved(plain, course, self.schedule(plain, course, limit), &in_time)?
+        };
+        Ok(named_if_late(outcome, course.seconds))
     }
-
-    /// All cores that the system gives this program, for a case that is alone.
-    pub fn all() -> Self {
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get);
-        Self { threads, alone: true }
-    }
 }
 
-/// Runs one case for so many seconds at most: what takes longer has failed, by that name.
-///
-/// # Errors
-/// When the exact solutions refuse the case's parameters.
-pub fn run_case_within(
-    seconds: f64,
-    case: &Case,
-    references: &[ReferenceKind],
-    kernel: Kernel,
-    cores: Cores,
-    observe: &dyn Fn(u64, u64) -> bool,
-) -> Result<Record, ExactError> {
-    let time_limit = TimeLimit::after(seconds);
-    let in_time = |done: u64, expected: u64| observe(done, expected) && !time_limit.is_over();
-    let course = Course { cores, kernel, time_limit };
-    Ok(named_if_late(run_case_on(course, case, references, &in_time)?, seconds))
+/// All cores that the system gives this program, for a case that is alone.
+pub fn all_cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
 }
 
-/// The record of a case that was stopped because its time was over says so.
-fn named_if_late(mut record: Record, seconds: f64) -> Record {
-    if let Status::Failed(failure) = &mut record.status
+/// The outcome of a case that was stopped because its time was over says so.
+fn named_if_late(mut outcome: Outcome, seconds: f64) -> Outcome {
+    if let Status::Failed(failure) = &mut outcome.status
         && failure.kind == FailureKind::Stopped
     {
         failure.kind = FailureKind::TimedOut;
         failure.reason = format!("it took longer than the {seconds} s that its study allows a case");
     }
-    record
+    outcome
 }
 
 /// Runs one case on one thread; `alone` says whether nothing else competes for the cores meanwhile.
@@ -103,71 +92,48 @@ pub fn run_case(
     alone: bool,
     observe: &dyn Fn(u64, u64) -> bool,
 ) -> Result<Record, ExactError> {
-    let course = Course { cores: Cores::one(alone), kernel, time_limit: TimeLimit::default() };
-    run_case_on(course, case, references, observe)
-}
-
-/// By what a case is run.
-#[derive(Clone, Copy)]
-struct Course {
-    cores: Cores,
-    kernel: Kernel,
-    time_limit: TimeLimit,
-}
-
-fn run_case_on(
-    course: Course,
-    case: &Case,
-    references: &[ReferenceKind],
-    observe: &dyn Fn(u64, u64) -> bool,
-) -> Result<Record, ExactError> {
-    plausible(case)?;
-    let plain = case.without_idle_choices();
-    if case.task == Task::Stability {
-        return stability_of(case, &plain, observe);
-    }
-    let (outcome, wall) = solved(course, &plain, observe)?;
-    let mut record = record_of(case, references, outcome)?;
-    record.wall.push(wall);
-    Ok(record)
-}
-
-/// Runs a case alone once more, only to time it: no errors are computed.
-///
-/// # Errors
-/// When the case's parameters are impossible.
-pub fn time_case(case: &Case) -> Result<WallSample, ExactError> {
-    let course =
-        Course { cores: Cores::one(true), kernel: Kernel::Fastest, time_limit: TimeLimit::default() };
-    solved(course, &case.without_idle_choices(), &|_, _| true).map(|(_, wall)| wall)
+    let course = Course { alone, observe, ..Course::alone() };
+    record_of(case, references, ThisProgram { kernel }.solve(case, &course)?)
 }
 
 /// What a case comes to, and how long that took.
 fn solved(
-    course: Course,
     case: &Case,
+    course: &Course<'_>,
+    mut schedule: Schedule,
     observe: &dyn Fn(u64, u64) -> bool,
-) -> Result<(Outcome, WallSample), ExactError> {
+) -> Result<Outcome, ExactError> {
     let problem = problem_of(case)?;
-    let Cores { threads, alone } = course.cores;
-    let mut schedule = schedule_of(case, course);
     let is_bound = case.integrator.step_bound() == StepBound::AllWaves;
     if is_bound && !matches!(case.time_step, TimeStepRule::Stable(_)) {
         // The limit is a diagnosis of this program, and no work of the method: it is not timed.
         schedule.critical_step = Some(problem.predicted_critical_step(&case.settings));
     }
-    let clock = clock_of(threads);
+    let clock = clock_of(course.threads);
     let (start, worked) = (Instant::now(), clock());
-    let outcome = problem.run(&schedule, observe);
+    let run = problem.run(&schedule, observe);
     let seconds = start.elapsed().as_secs_f64();
     let cpu_seconds = worked.zip(clock()).map(|(before, after)| after - before);
     let machine = Some(Machine::this());
-    Ok((outcome, WallSample { seconds, alone, cpu_seconds, machine, ..WallSample::default() }))
+    let wall = WallSample { seconds, alone: course.alone, cpu_seconds, machine, ..WallSample::default() };
+    Ok(outcome_of(run).timed(vec![wall]))
+}
+
+/// A run of the solver as the outcome of its case.
+fn outcome_of(run: outcome::Outcome) -> Outcome {
+    let outcome::Outcome { status, start, snapshots, history, counters, step_sizes } = run;
+    let mut outcome = match status {
+        RunStatus::Ok => Outcome::of_end(Status::Ok),
+        RunStatus::Failed(failure) => Outcome::of_failure(failure),
+    };
+    outcome.snapshots = snapshots;
+    let inside = Inside { counters, start: Some(start), history, critical_step: None };
+    outcome.with_steps(step_sizes).with_inside(inside)
 }
 
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
-    let Solver::Own(method) = *method else { unreachable!("an attached solver runs its own program") };
+    let SolverName::Own(method) = *method else { unreachable!("other programs solve their own cases") };
     SceneProblem::of(*scene, column, material, method, *cells, *points_per_cell)
 }
 
@@ -185,40 +151,62 @@ fn plausible(case: &Case) -> Result<(), ExactError> {
     Ok(())
 }
 
-/// Predicts and observes the critical step of a case, which is that of the plain one without idle choices.
-fn stability_of(case: &Case, plain: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Record, ExactError> {
-    let problem = problem_of(plain)?;
+/// Predicts and observes the critical step of a case.
+fn critical_step_of(case: &Case, observe: &dyn Fn(u64, u64) -> bool) -> Result<Outcome, ExactError> {
+    let problem = problem_of(case)?;
     let end = case.time_factors.last().map_or(0.0, |factor| factor * case.seconds_per_time_factor());
     // Of how many steps a search will be is not known: its work is told at its end.
     let go_on = |_, _| observe(0, 1);
-    Ok(match problem.critical_step(&plain.settings, end, MOST_PROBE_STEPS, &go_on) {
-        Ok(found) => record_of_critical_step(case, found),
-        Err(Stopped) => record_of_stopped_search(case),
+    Ok(match problem.critical_step(&case.settings, end, MOST_PROBE_STEPS, &go_on) {
+        Ok(found) => outcome_of_search(case, found),
+        Err(Stopped) => outcome_of_stopped_search(case),
     })
 }
 
-fn schedule_of(case: &Case, course: Course) -> Schedule {
-    let parameters = column_parameters(&case.column, &case.material);
-    let end = case.time_factors.last().copied().unwrap_or(0.0);
-    let history = if end > HISTORY_START {
-        let growth = elementary::ln(end / HISTORY_START) / (HISTORY_POINTS - 1) as f64;
-        (0..HISTORY_POINTS)
-            .map(|i| parameters.time(HISTORY_START * elementary::exp(growth * i as f64)))
-            .collect()
-    } else {
-        Vec::new()
-    };
-    Schedule {
-        outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
-        history,
-        rule: case.time_step,
-        settings: case.settings,
-        kernel: course.kernel,
-        integrator: case.integrator,
-        critical_step: None,
-        formulation: case.formulation,
-        threads: course.cores.threads,
-        time_limit: course.time_limit,
+fn outcome_of_search(case: &Case, found: CriticalStep) -> Outcome {
+    let largest = found.observed.unwrap_or(found.predicted);
+    let steps = StepSizes { predicted_critical: found.predicted, target: found.predicted, largest };
+    let steps_done = found.probes.iter().map(|probe| probe.steps).sum();
+    let inside = inside_of_search(case, steps_done, Some(found));
+    Outcome::of_end(Status::Ok).with_steps(steps).with_inside(inside)
+}
+
+fn outcome_of_stopped_search(case: &Case) -> Outcome {
+    let reason = "stopped from outside".to_owned();
+    let failure = Failure { kind: FailureKind::Stopped, step: 0, time: 0.0, growth: None, reason };
+    Outcome::of_failure(failure).with_inside(inside_of_search(case, 0, None))
+}
+
+fn inside_of_search(case: &Case, steps: u64, critical_step: Option<CriticalStep>) -> Inside {
+    let points = case.cells * case.points_per_cell;
+    let counters = Counters { points, steps, ..Counters::default() };
+    Inside { counters, start: None, history: Vec::new(), critical_step }
+}
+
+impl ThisProgram {
+    fn schedule(self, case: &Case, course: &Course<'_>, time_limit: TimeLimit) -> Schedule {
+        let parameters = column_parameters(&case.column, &case.material);
+        let end = case.time_factors.last().copied().unwrap_or(0.0);
+        let history = if end > HISTORY_START {
+            let growth = elementary::ln(end / HISTORY_START) / (HISTORY_POINTS - 1) as f64;
+            (0..HISTORY_POINTS)
+                .map(|i| parameters.time(HISTORY_START * elementary::exp(growth * i as f64)))
+                .collect()
+        } else {
+            Vec::new()
+        };
+        Schedule {
+            outputs: case.time_factors.iter().map(|factor| parameters.time(*factor)).collect(),
+            history,
+            rule: case.time_step,
+            settings: case.settings,
+            kernel: self.kernel,
+            integrator: case.integrator,
+            critical_step: None,
+            formulation: case.formulation,
+            threads: course.threads,
+            time_limit,
+        }
     }
 }
 
@@ -295,9 +283,11 @@ mod tests {
             );
             let study = Study::check(&StudySource { name: "s.toml".to_owned(), text }).expect("sound");
             let case = study.planned[0].case.clone();
-            let course =
-                Course { cores: Cores::one(true), kernel: Kernel::Fastest, time_limit: TimeLimit::default() };
-            (schedule_of(&case, course), column_parameters(&case.column, &case.material))
+            let program = ThisProgram { kernel: Kernel::Fastest };
+            (
+                program.schedule(&case, &Course::alone(), TimeLimit::default()),
+                column_parameters(&case.column, &case.material),
+            )
         };
         let (schedule, column) = of("[0.1, 2.0]");
         let factors: Vec<f64> = schedule.history.iter().map(|time| column.time_factor(*time)).collect();
@@ -311,5 +301,16 @@ mod tests {
         );
         assert_eq!(schedule.outputs.len(), 2);
         assert!(of("[0.001]").0.history.is_empty());
+    }
+
+    #[test]
+    fn a_search_that_is_stopped_is_a_failed_record_without_steps() {
+        let scene = oedometer_mpm::scene::SceneKind::Terzaghi;
+        let case = Case { cells: 4, ..Case::seed(crate::case::Task::Stability, scene) };
+        let stopped = record_of(&case, &[], outcome_of_stopped_search(&case)).expect("a record");
+        let failure = stopped.status.failure().expect("it was stopped");
+        assert_eq!((failure.kind, &*failure.reason), (FailureKind::Stopped, "stopped from outside"));
+        assert_eq!((stopped.counters.points, stopped.counters.steps, stopped.stability), (8, 0, None));
+        assert_eq!((stopped.hash, stopped.groups.step_over_limit), (case.hash(), 1.0));
     }
 }

@@ -1,12 +1,14 @@
-//! Runs the cases of a study with this program or an attached solver, and times them alone.
+//! Gives the cases of a study to their solvers, and times them alone.
 
-use crate::campaign::case_run::{Cores, run_case, run_case_within, time_case};
+use crate::campaign::case_run::ThisProgram;
 use crate::campaign::runner::{Progress, RunError};
 use crate::campaign::stop;
+use crate::case::outcome::{Course, Outcome, Solver, Standing};
 use crate::case::work_estimate::estimated_work;
-use crate::case::{Case, Task};
-use crate::foreign::attachment::{Attachment, Standing, Wish};
+use crate::case::{Case, SolverName, Task, Tier};
+use crate::foreign::attachment::solver_of;
 use crate::import::mapping::Axes;
+use crate::measure::record::record_of;
 use crate::record::{Record, RecordStore, Status, WallSample};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
@@ -19,18 +21,32 @@ const REPEATS_OF_LONG_CASES: usize = 3;
 /// Seconds beyond which the repeats of a case took long.
 const LONG_REPEATS: f64 = 0.1;
 
-/// A study with its attached solvers, ready to run.
+/// A study with the solvers of its cases, ready to run.
 pub struct CaseRunner<'a> {
     study: &'a Study,
-    attachments: Vec<Attachment<'a>>,
+    this_program: ThisProgram,
+    others: Vec<(SolverName, Box<dyn Solver + 'a>)>,
 }
 
 impl<'a> CaseRunner<'a> {
     /// The runner of a study's cases.
     pub fn of(study: &'a Study) -> Self {
         let axes = Axes::of(study.scene);
-        let attachments = study.solvers.iter().map(|solver| Attachment::new(solver, axes)).collect();
-        Self { study, attachments }
+        let of_table = |solver: &'a _| solver_of(solver, axes, study.may_start_solvers);
+        let others =
+            study.solvers.iter().map(|solver| (SolverName::Attached(solver.attached), of_table(solver)));
+        Self { study, this_program: ThisProgram { kernel: Kernel::Fastest }, others: others.collect() }
+    }
+
+    /// The same with a solver in the place of the program or result that the study calls so.
+    #[must_use]
+    fn with(mut self, name: &str, solver: &'a dyn Solver) -> Self {
+        for (known, other) in &mut self.others {
+            if known.to_string() == name {
+                *other = Box::new(solver);
+            }
+        }
+        self
     }
 
     /// The study.
@@ -38,7 +54,17 @@ impl<'a> CaseRunner<'a> {
         self.study
     }
 
-    /// Runs a case within the time that the study gives it; what an attached solver leaves is kept in the store.
+    /// The solver of a case, where that is not this program.
+    fn other(&self, case: &Case) -> Option<&dyn Solver> {
+        self.others.iter().find(|(name, _)| *name == case.method).map(|(_, solver)| &**solver)
+    }
+
+    /// What a finished record is to the solvers of now.
+    pub fn standing(&self, record: &Record) -> Standing {
+        self.other(&record.case).unwrap_or(&self.this_program).standing(record.attached.as_ref())
+    }
+
+    /// Runs a case within the time that the study gives it; files that its solver leaves are kept in the store.
     ///
     /// # Errors
     /// When the exact solutions refuse the case's parameters.
@@ -49,19 +75,8 @@ impl<'a> CaseRunner<'a> {
         alone: bool,
         observe: &dyn Fn(u64, u64) -> bool,
     ) -> Result<Record, ExactError> {
-        if case.is_attached() {
-            return self.attached(case, store, alone, observe);
-        }
-        let (seconds, references) = (self.study.case_seconds, &self.study.references);
-        run_case_within(seconds, case, references, Kernel::Fastest, Cores::one(alone), observe)
-    }
-
-    /// What a finished record is to the programs of now. Those of this program are told apart by their sources.
-    pub fn standing(&self, record: &Record) -> Standing {
-        match self.attachments.iter().find(|one| one.is_of(&record.case)) {
-            Some(attachment) => attachment.standing(record, !self.study.holds_back(&record.case)),
-            None => Standing::Proven,
-        }
+        let course = Course { seconds: self.study.case_seconds, alone, observe, ..Course::alone() };
+        record_of(case, &self.study.references, self.solved(case, store, course)?)
     }
 
     /// Runs a case alone, to be timed or looked at.
@@ -69,10 +84,7 @@ impl<'a> CaseRunner<'a> {
     /// # Errors
     /// When the exact solutions refuse the case's parameters.
     pub fn run_alone(&self, case: &Case, store: Option<&RecordStore>) -> Result<Record, ExactError> {
-        if case.is_attached() {
-            return self.attached(case, store, true, &|_, _| true);
-        }
-        run_case(case, &self.study.references, Kernel::Fastest, true, &|_, _| true)
+        record_of(case, &self.study.references, self.solved(case, store, Course::alone())?)
     }
 
     /// Wall times of a case alone; its errors are not computed again. None where it was stopped.
@@ -84,44 +96,80 @@ impl<'a> CaseRunner<'a> {
         case: &Case,
         store: Option<&RecordStore>,
     ) -> Result<Vec<WallSample>, ExactError> {
-        if case.is_attached() {
-            let timed = self.attached(case, store, true, &|_, _| true)?;
-            return Ok(if is_stopped(&timed) { Vec::new() } else { timed.wall });
-        }
-        time_case(case).map(|wall| vec![wall])
+        let timed = self.solved(case, store, Course::alone())?;
+        Ok(if has_stopped(&timed.status) { Vec::new() } else { timed.wall })
     }
 
-    fn attached(
+    fn solved(
         &self,
         case: &Case,
         store: Option<&RecordStore>,
-        alone: bool,
-        observe: &dyn Fn(u64, u64) -> bool,
-    ) -> Result<Record, ExactError> {
+        course: Course<'_>,
+    ) -> Result<Outcome, ExactError> {
+        let Some(other) = self.other(case) else { return self.this_program.solve(case, &course) };
         let place = store.map(|store| store.folder_of(&case.hash()));
         // It has a process group of its own, which no signal to this program reaches: from now on they are taken, and
         // end it with all that it has started. Where the system refuses, they do what they did.
         let _ = stop::heed_signals();
-        // The progress of an attached solver is unknown until it ends.
-        let is_wanted = || observe(0, 1) && !stop::is_over();
-        let wish = Wish {
-            references: &self.study.references,
-            place: place.as_deref(),
-            alone,
-            is_wanted: &is_wanted,
-        };
-        match self.attachments.iter().find(|one| one.is_of(case)) {
-            Some(attachment) if self.study.holds_back(case) => attachment.held_back(case, &wish),
-            Some(attachment) => attachment.run(case, &wish),
-            None => run_case(case, wish.references, Kernel::Fastest, alone, observe),
-        }
+        let observe = |done: u64, expected: u64| (course.observe)(done, expected) && !stop::is_over();
+        other.solve(case, &Course { place: place.as_deref(), observe: &observe, ..course })
     }
+}
+
+/// Runs all cases of a study, with a solver in Rust in the place of the `[[solver]]` that the study calls by its name; the
+/// records are judged like any others.
+///
+/// ```
+/// use oedometer::exact::exact_error::ExactError;
+/// use oedometer::{Case, Course, Outcome, Sample, Snapshot, Solver, Study, StudySource, Tier, run_study_with};
+/// use oedometer::{CheckEnd, GoldenFile, StudyCheck};
+///
+/// /// A solver that leaves the load on the water, whatever the time.
+/// struct Undrained;
+///
+/// impl Solver for Undrained {
+///     fn solve(&self, case: &Case, _: &Course<'_>) -> Result<Outcome, ExactError> {
+///         let state = |factor: &f64| {
+///             let mut state = Snapshot { time: factor * case.seconds_per_time_factor(), ..Snapshot::default() };
+///             state.points.initial_height = (0..case.cells).map(|cell| (cell as f64 + 0.5) * case.cell_size()).collect();
+///             state.points.pressure = vec![case.column.load; case.cells];
+///             state
+///         };
+///         Ok(Outcome::of_states(case.time_factors.iter().map(state).collect(), Sample::Points))
+///     }
+/// }
+///
+/// let text = r#"
+/// title = "Mine"
+/// scene = "terzaghi"
+/// output = { time_factors = [0.1], references = ["terzaghi"] }
+/// solver = [{ name = "mine", command = ["in-rust"], result = "{out}/none" }]
+/// sweep = [{ method = ["mine"], cells = [10] }]
+/// expect_case = [{ method = "mine", quantity = "pressure", time_factor = 0.1, error = { below = 1e-2 } }]
+/// "#;
+/// let study = Study::check(&StudySource { name: "mine.toml".to_owned(), text: text.to_owned() }).expect("sound");
+/// let records = run_study_with(&study, "mine", &Undrained)?;
+/// let check = StudyCheck::new(&study, &records, Tier::Full, Ok(GoldenFile::of("mine", &records, "as found")));
+/// assert_eq!(check.end(), CheckEnd::Failed, "water leaves at the top");
+/// # Ok::<(), ExactError>(())
+/// ```
+///
+/// # Errors
+/// When the exact solutions refuse the parameters of a case.
+pub fn run_study_with(study: &Study, name: &str, solver: &dyn Solver) -> Result<Vec<Record>, ExactError> {
+    let runner = CaseRunner::of(study).with(name, solver);
+    let cases = study.cases(Tier::Full).into_iter();
+    cases.map(|case| runner.run_within(case, None, true, &|_, _| true)).collect()
 }
 
 /// Whether the record of a case tells that it was stopped from outside.
 pub fn is_stopped(record: &Record) -> bool {
+    has_stopped(&record.status)
+}
+
+fn has_stopped(status: &Status) -> bool {
     let is_it = |failure: &Failure| matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut);
-    matches!(&record.status, Status::Failed(failure) if is_it(failure))
+    matches!(status, Status::Failed(failure) if is_it(failure))
 }
 
 /// Whether the wall time of a case is not known yet as well as its study asks.

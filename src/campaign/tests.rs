@@ -1,11 +1,12 @@
 //! Runs of studies whole: what is taken up, begun, kept, told, counted and timed.
 
-use crate::campaign::case_run::{run_case, time_case};
+use crate::campaign::case_run::{ThisProgram, run_case};
 use crate::campaign::case_runner::{CaseRunner, time_study};
 use crate::campaign::runner::{
     Progress, RunError, RunOptions, RunReport, Selected, Tally, run_studies, run_study,
 };
 use crate::campaign::shares::{Parting, shares_of};
+use crate::case::outcome::{Course, Solver};
 use crate::case::work_estimate::{estimated_work, work_of};
 use crate::case::{Case, Task, Tier};
 use crate::record::whole_file::StoreError;
@@ -252,7 +253,7 @@ fn a_case_has_the_time_of_its_study_and_is_refused_by_its_numbers() {
         "the start is no time to reach"
     );
     // A run that is timed alone says so, and where it was.
-    let wall = time_case(&sound).expect("a sound column");
+    let wall = ThisProgram::default().solve(&sound, &Course::alone()).expect("a sound column").wall.remove(0);
     assert!(wall.alone && wall.machine.is_some() && wall.seconds > 0.0);
     assert!(wall.cpu_seconds.is_none_or(|seconds| (0.0..60.0).contains(&seconds)), "{wall:?}");
 }

@@ -1,6 +1,6 @@
 //! The contenders of the race, one line each: what `method = ["race"]` runs, by the names that `solve` takes.
 
-use crate::case::{Case, Solver};
+use crate::case::{Case, SolverName};
 use oedometer_mpm::method::{Configuration, Method};
 use std::sync::LazyLock;
 
@@ -52,8 +52,8 @@ pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
 
 impl Contender {
     /// Its method: the same in every scene.
-    pub fn method(&self) -> Solver {
-        Solver::Own(self.method)
+    pub fn method(&self) -> SolverName {
+        SolverName::Own(self.method)
     }
 
     /// Whether a case of the race is its own.

@@ -3,7 +3,7 @@
 //! What a key means, its unit, its range and its place in a case stand here once. Parsing, checks, sweeps,
 //! selections of expectations, the JSON Schema and the columns of tables follow from it.
 
-use crate::case::{Case, Solver, step_label};
+use crate::case::{Case, SolverName, step_label};
 use oedometer_exact::parameters::Base;
 use oedometer_mpm::kernel::Drag;
 use oedometer_mpm::kernel::scheme::Scheme;
@@ -70,7 +70,7 @@ pub enum Range {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// What solves the case.
-    Method(Solver),
+    Method(SolverName),
     /// A rule of the time step.
     TimeStep(TimeStepRule),
     /// A word among its choices.
@@ -104,7 +104,7 @@ macro_rules! fields {
     )+ };
 }
 
-fields!(Solver: Method, TimeStepRule: TimeStep, bool: Flag, usize: Count, f64: Number);
+fields!(SolverName: Method, TimeStepRule: TimeStep, bool: Flag, usize: Count, f64: Number);
 
 macro_rules! word_fields {
     ($($kind:ty),+) => { $(
@@ -408,7 +408,8 @@ mod tests {
 
     #[test]
     fn values_read_as_tables_have_them_and_keys_with_their_units() {
-        let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("plain");
+        let ogs =
+            crate::case::Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("plain");
         let values =
             [Value::Method(ogs), Value::TimeStep(TimeStepRule::Tolerance(0.5)), Value::Word("explicit")];
         assert_eq!(values.map(|value| value.to_string()), ["ogs", "tolerance=5e-1", "explicit"]);
@@ -457,7 +458,7 @@ mod tests {
         };
         assert_eq!(idle(&case), [""; 0]);
         case.method =
-            crate::case::Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("plain");
+            crate::case::Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("plain");
         let own = ["drag", "flip", "mapping_back", "affine", "stress_slopes", "formulation", "scheme"];
         assert_eq!(idle(&case), [&["integrator", "time_step"], &own[..]].concat());
         case.time_step = TimeStepRule::Seconds(1.0);

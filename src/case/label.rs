@@ -130,7 +130,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Attached, Solver};
+    use crate::case::{Attached, SolverName};
     use oedometer_mpm::scene::SceneKind;
 
     #[test]
@@ -163,7 +163,7 @@ mod tests {
             assert_eq!(case.label(), format!("{own} courant=0.4{rest}"));
             assert_eq!(case.label_without_step(), own + &rest);
         }
-        let ogs = Attached::new("ogs", "0123456789abcdef").map(Solver::Attached).expect("a plain name");
+        let ogs = Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("a plain name");
         let mut case = Case { method: ogs, cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
         assert_eq!(case.label(), "ogs cells=8");
         (case.points_per_cell, case.time_step) = (1, TimeStepRule::Seconds(0.25));

@@ -310,7 +310,7 @@ mod tests {
         type Change = fn(&mut Case);
         let attached: Change = |case| {
             let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").expect("a plain name");
-            (case.method, case.task) = (crate::case::Solver::Attached(ogs), Task::Stability);
+            (case.method, case.task) = (crate::case::SolverName::Attached(ogs), Task::Stability);
         };
         let affine: Change =
             |case| (case.settings.affine, case.time_step) = (true, TimeStepRule::Stable(0.5));

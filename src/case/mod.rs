@@ -4,7 +4,9 @@ pub mod contender;
 pub mod keys;
 pub mod label;
 pub mod limits;
+pub mod machine;
 pub mod method_words;
+pub mod outcome;
 pub mod planned;
 pub mod quantity;
 pub mod solver;
@@ -25,7 +27,7 @@ use oedometer_soil::wording::words;
 pub use planned::{PlannedCase, Planner, Shared, Tier};
 pub use quantity::{Norm, Quantity, Sample};
 use serde::{Deserialize, Serialize};
-pub use solver::{Attached, Solver};
+pub use solver::{Attached, SolverName};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -75,7 +77,7 @@ pub struct Case {
     #[schemars(with = "Material")]
     pub material: Shared<Material>,
     /// What solves it.
-    pub method: Solver,
+    pub method: SolverName,
     /// Integrator.
     pub integrator: IntegratorKind,
     /// Accelerations that the balances keep.
@@ -106,7 +108,7 @@ impl Case {
             scene,
             column: scene.default_column().into(),
             material: scene.default_material().into(),
-            method: Solver::Own(Method::STANDARD),
+            method: SolverName::Own(Method::STANDARD),
             integrator,
             formulation: integrator.default_formulation(),
             settings: scene.default_settings(),
@@ -340,8 +342,8 @@ mod tests {
         }
     }
 
-    fn attached(name: &str, digest: &str) -> Solver {
-        Solver::Attached(Attached::new(name, digest).expect("a plain name"))
+    fn attached(name: &str, digest: &str) -> SolverName {
+        SolverName::Attached(Attached::new(name, digest).expect("a plain name"))
     }
 
     #[test]

@@ -7,27 +7,27 @@ use std::fmt;
 /// What solves a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(untagged)]
-pub enum Solver {
+pub enum SolverName {
     /// A method of this program.
     Own(Method),
     /// An external solver, attached by the study.
     Attached(#[schemars(with = "AttachedText")] Attached),
 }
 
-impl Solver {
+impl SolverName {
     /// The method, where it is one of this program.
     pub fn own(&self) -> Option<Method> {
         if let Self::Own(method) = self { Some(*method) } else { None }
     }
 }
 
-impl From<Method> for Solver {
+impl From<Method> for SolverName {
     fn from(method: Method) -> Self {
         Self::Own(method)
     }
 }
 
-impl fmt::Display for Solver {
+impl fmt::Display for SolverName {
     /// The name of the method or of the attached solver.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -5,7 +5,7 @@
 //! terminal said yes to: that is remembered by a digest of the commands and of the adapter's files.
 
 use crate::campaign::runner::Tally;
-use crate::case::solver::Solver;
+use crate::case::solver::SolverName;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place;
@@ -86,7 +86,7 @@ pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
 /// The solvers of a study that its cases would start.
 fn starting(study: &Study) -> Vec<&ExternalSolver> {
     let is_used = |solver: &&ExternalSolver| {
-        study.planned.iter().any(|planned| planned.case.method == Solver::Attached(solver.attached))
+        study.planned.iter().any(|planned| planned.case.method == SolverName::Attached(solver.attached))
     };
     study.solvers.iter().filter(|solver| !solver.is_given()).filter(is_used).collect()
 }

@@ -1,6 +1,8 @@
-//! An attached solver of a study, ready to run its cases.
+//! Solvers of a study that are other programs, or results that lie there.
 
-use crate::case::{Case, Sample, Solver};
+use crate::case::machine::Machine;
+use crate::case::outcome::{AttachedRun, Course, Outcome, Solver, Standing, WallSample};
+use crate::case::{Case, Sample};
 use crate::foreign::case_file::{CaseFile, suggested_step};
 use crate::foreign::ending::{difference, states_at_outputs};
 use crate::foreign::identity::{Version, commit_of, digest_of_program};
@@ -10,16 +12,13 @@ use crate::foreign::staging::{Filling, Staged, words_of};
 use crate::foreign::{ending, process};
 use crate::import::SampledState;
 use crate::import::mapping::{Axes, Mapping};
-use crate::measure::record::record_of_attached;
-use crate::record::{AttachedRun, Machine, Record, Status, WallSample};
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::run::results::outcome::Failure;
+use oedometer_mpm::run::results::outcome::{Failure, StepSizes};
 use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, Snapshot};
 use oedometer_soil::wording::{count_of, short};
 use regex_lite::Regex;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
@@ -34,11 +33,25 @@ const ROUND_OFF: f64 = 1e-12;
 /// Ratio of the time that a solver says it took to that of its run, from which on it is in another unit.
 const OWN_ABOVE_WALL: f64 = 1.5;
 
-/// A solver with what its runs share.
-pub struct Attachment<'a> {
+/// The solver of a study's table, ready for its cases; one that may not be started holds its cases back.
+pub fn solver_of<'a>(solver: &'a ExternalSolver, axes: Axes, may_start: bool) -> Box<dyn Solver + 'a> {
+    let reading = Reading::new(solver, axes);
+    if solver.is_given() {
+        return Box::new(GivenResult { reading });
+    }
+    let program = Attachment::new(reading);
+    if may_start { Box::new(program) } else { Box::new(HeldBack { program }) }
+}
+
+/// What the result of a solver means, or why that cannot be told.
+struct Reading<'a> {
     solver: &'a ExternalSolver,
-    /// What its result means, or why that cannot be told.
     mapping: Result<Mapping, String>,
+}
+
+/// A program with what its runs share.
+struct Attachment<'a> {
+    reading: Reading<'a>,
     version: OnceLock<Result<Version, String>>,
     /// Digest of its program as it is when first asked, or why that is not known.
     program: OnceLock<Result<String, String>>,
@@ -47,60 +60,91 @@ pub struct Attachment<'a> {
     gate: Gate,
 }
 
-/// How a case is to be run.
-#[derive(Clone, Copy)]
-pub struct Wish<'a> {
-    /// Exact solutions that the result is compared with.
-    pub references: &'a [ReferenceKind],
-    /// Folder of the case's record, beside which the run is kept; none where nothing is.
-    pub place: Option<&'a Path>,
-    /// Whether nothing else of this program competes for the cores meanwhile.
-    pub alone: bool,
-    /// Whether the case is still wanted.
-    pub is_wanted: &'a dyn Fn() -> bool,
+/// A program that nobody allowed to start.
+struct HeldBack<'a> {
+    program: Attachment<'a>,
 }
 
-/// What a record of an attached solver is to the program of now.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
-    /// It is what the program of now would give: by what the study declares that is known.
-    Proven,
-    /// Nothing says whether it is.
-    Unproven,
-    /// Another program made it, or it is read anew at no cost.
-    Outdated,
+/// A result that lies there.
+struct GivenResult<'a> {
+    reading: Reading<'a>,
 }
 
 /// What a run left: its states at the outputs, or how it failed.
 type Left = Result<(Vec<SampledState>, ReadResult), Failure>;
 
+impl Solver for Attachment<'_> {
+    fn solve(&self, case: &Case, course: &Course<'_>) -> Result<Outcome, ExactError> {
+        let (mut about, mut wall) = (AttachedRun::default(), Vec::new());
+        let left = self.runs(case, course, &mut about, &mut wall);
+        Ok(outcome(case, left, about, wall))
+    }
+
+    fn standing(&self, earlier: Option<&AttachedRun>) -> Standing {
+        self.standing_where(earlier, true)
+    }
+}
+
+impl Solver for HeldBack<'_> {
+    fn solve(&self, case: &Case, _: &Course<'_>) -> Result<Outcome, ExactError> {
+        let command = self.program.reading.solver.command.clone();
+        let about = AttachedRun { command, ..AttachedRun::default() };
+        Ok(outcome(case, Err(ending::of_held_back()), about, Vec::new()))
+    }
+
+    fn standing(&self, earlier: Option<&AttachedRun>) -> Standing {
+        self.program.standing_where(earlier, false)
+    }
+}
+
+impl Solver for GivenResult<'_> {
+    fn solve(&self, case: &Case, _: &Course<'_>) -> Result<Outcome, ExactError> {
+        let solver = self.reading.solver;
+        let name = |typed: &String| solver.folder.join(typed.replace("{cells}", &case.cells.to_string()));
+        let paths: Vec<PathBuf> = solver.files.iter().map(name).collect();
+        let left = self.reading.taken(case, &paths, |unread| ending::of_given(unread, &solver.files));
+        // Records and messages name files as the study does.
+        let folder = format!("{}/", solver.folder.display());
+        let left = in_plain_words(left, |text| text.replace(&folder, ""));
+        Ok(outcome(case, left, AttachedRun::default(), Vec::new()))
+    }
+
+    fn standing(&self, _: Option<&AttachedRun>) -> Standing {
+        Standing::Outdated
+    }
+}
+
+impl<'a> Reading<'a> {
+    fn new(solver: &'a ExternalSolver, axes: Axes) -> Self {
+        Self { solver, mapping: mapping_of(solver, axes).map_err(|error| error.to_string()) }
+    }
+
+    /// The result in files, whole.
+    fn taken(&self, case: &Case, paths: &[PathBuf], failure: impl Fn(Unread) -> Failure) -> Left {
+        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
+        let result = read(case, mapping, paths).map_err(failure)?;
+        let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
+        Ok((states, result))
+    }
+}
+
 impl<'a> Attachment<'a> {
-    /// A solver of a study about a body with its axes.
-    pub fn new(solver: &'a ExternalSolver, axes: Axes) -> Self {
-        let mapping = mapping_of(solver, axes).map_err(|error| error.to_string());
+    fn new(reading: Reading<'a>) -> Self {
         Self {
-            solver,
-            mapping,
+            gate: Gate::of(reading.solver.at_once),
+            reading,
             version: OnceLock::new(),
             program: OnceLock::new(),
             commit: OnceLock::new(),
-            gate: Gate::of(solver.at_once),
         }
     }
 
-    /// Whether the solver runs a case.
-    pub fn is_of(&self, case: &Case) -> bool {
-        Solver::Attached(self.solver.attached) == case.method
-    }
-
-    /// What a finished record is to the program of now. Only a solver that may be started tells its version.
-    pub fn standing(&self, record: &Record, may_start: bool) -> Standing {
-        if self.solver.is_given() {
-            return Standing::Outdated;
-        }
-        let of_record = record.attached.as_ref().and_then(|about| about.program_digest.as_ref());
-        let is_told = may_start || self.solver.version.is_empty();
-        match (of_record, &self.solver.known_by) {
+    /// What an earlier run is to the program of now. Only a solver that may be started tells its version.
+    fn standing_where(&self, earlier: Option<&AttachedRun>, may_start: bool) -> Standing {
+        let solver = self.reading.solver;
+        let known = earlier.and_then(|about| about.program_digest.as_ref());
+        let is_told = may_start || solver.version.is_empty();
+        match (known, &solver.known_by) {
             (Some(known), Some(_)) if is_told => match self.program(&|| true) {
                 Ok(present) if present == known => Standing::Proven,
                 Ok(_) => Standing::Outdated,
@@ -110,43 +154,30 @@ impl<'a> Attachment<'a> {
         }
     }
 
-    /// Runs a case, or takes the result that is there already.
-    ///
-    /// # Errors
-    /// When the exact solutions refuse the case's parameters.
-    pub fn run(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
-        let (mut about, mut wall) = (AttachedRun::default(), Vec::new());
-        let left = if self.solver.is_given() {
-            self.given(case)
-        } else {
-            self.runs(case, wish, &mut about, &mut wall)
-        };
-        record(case, wish, left, about, wall)
-    }
-
     /// Runs a case, once to warm up where that is asked for and then to be timed, and says of which program.
     fn runs(
         &self,
         case: &Case,
-        wish: &Wish<'_>,
+        course: &Course<'_>,
         about: &mut AttachedRun,
         wall: &mut Vec<WallSample>,
     ) -> Left {
         let _passed = self.gate.pass();
-        about.command.clone_from(&self.solver.command);
-        about.warmed_up = self.solver.warm_up;
-        about.commit.clone_from(self.commit.get_or_init(|| commit_of(&self.solver.folder)));
-        match self.version(wish.is_wanted) {
+        about.command.clone_from(&self.reading.solver.command);
+        about.warmed_up = self.reading.solver.warm_up;
+        about.commit.clone_from(self.commit.get_or_init(|| commit_of(&self.reading.solver.folder)));
+        match self.version(&|| course.is_wanted()) {
             Ok(version) => about.version.clone_from(&version.line),
             Err(trouble) => about.notes.push(trouble.clone()),
         }
-        if self.solver.known_by.is_none() {
-            return self.all_runs(case, wish, about, wall);
+        if self.reading.solver.known_by.is_none() {
+            return self.all_runs(case, course, about, wall);
         }
-        let program = self.program(wish.is_wanted);
-        let left = self.all_runs(case, wish, about, wall);
+        let program = self.program(&|| course.is_wanted());
+        let left = self.all_runs(case, course, about, wall);
         // What changed while it ran may have been another program from one run to the next.
-        let is_same = |program: &&String| self.identity(wish.is_wanted).is_ok_and(|end| end == **program);
+        let is_same =
+            |program: &&String| self.identity(&|| course.is_wanted()).is_ok_and(|end| end == **program);
         about.program_digest = program.as_ref().ok().filter(is_same).cloned();
         if about.program_digest.is_none() {
             let why = program.as_ref().err().map_or("its program changed while it ran", String::as_str);
@@ -159,17 +190,17 @@ impl<'a> Attachment<'a> {
     fn all_runs(
         &self,
         case: &Case,
-        wish: &Wish<'_>,
+        course: &Course<'_>,
         about: &mut AttachedRun,
         wall: &mut Vec<WallSample>,
     ) -> Left {
         let mut known: Option<(Vec<SampledState>, ReadResult)> = None;
-        for number in 0..self.solver.repeats + usize::from(self.solver.warm_up) {
-            if !(wish.is_wanted)() {
+        for number in 0..self.reading.solver.repeats + usize::from(self.reading.solver.warm_up) {
+            if !course.is_wanted() {
                 return Err(ending::of_stopped());
             }
-            let left = self.run_once(case, wish, about, wall)?;
-            if number == 0 && self.solver.warm_up {
+            let left = self.run_once(case, course, about, wall)?;
+            if number == 0 && self.reading.solver.warm_up {
                 wall.clear();
             }
             if let Some((others, _)) = &known {
@@ -180,49 +211,21 @@ impl<'a> Attachment<'a> {
         known.ok_or_else(|| ending::of_incomplete("the solver was not run"))
     }
 
-    /// The record of a case whose program may not be started: it was skipped.
-    ///
-    /// # Errors
-    /// When the exact solutions refuse the case's parameters.
-    pub fn held_back(&self, case: &Case, wish: &Wish<'_>) -> Result<Record, ExactError> {
-        let about = AttachedRun { command: self.solver.command.clone(), ..AttachedRun::default() };
-        record(case, wish, Err(ending::of_held_back()), about, Vec::new())
-    }
-
-    /// The result that is there already.
-    fn given(&self, case: &Case) -> Left {
-        let name =
-            |typed: &String| self.solver.folder.join(typed.replace("{cells}", &case.cells.to_string()));
-        let paths: Vec<PathBuf> = self.solver.files.iter().map(name).collect();
-        let left = self.taken(case, &paths, |unread| ending::of_given(unread, &self.solver.files));
-        // Records and messages name files as the study does.
-        let folder = format!("{}/", self.solver.folder.display());
-        in_plain_words(left, |text| text.replace(&folder, ""))
-    }
-
-    /// The result in files, whole.
-    fn taken(&self, case: &Case, paths: &[PathBuf], failure: impl Fn(Unread) -> Failure) -> Left {
-        let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
-        let result = read(case, mapping, paths).map_err(failure)?;
-        let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
-        Ok((states, result))
-    }
-
     /// One run in a fresh folder.
     fn run_once(
         &self,
         case: &Case,
-        wish: &Wish<'_>,
+        course: &Course<'_>,
         about: &mut AttachedRun,
         wall: &mut Vec<WallSample>,
     ) -> Left {
         // A mapping that is wrong fails before anything is started.
-        self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
+        self.reading.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
         let text = CaseFile::of(case).text().map_err(|error| ending::of_folder(&error.into()))?;
-        let staged = Staged::new(wish.place, &text).map_err(|error| ending::of_folder(&error))?;
-        let filling = Filling::of(case, self.solver, &staged.case_file(), &staged.out());
+        let staged = Staged::new(course.place, &text).map_err(|error| ending::of_folder(&error))?;
+        let filling = Filling::of(case, self.reading.solver, &staged.case_file(), &staged.out());
         let load = load_of_machine();
-        let finished = self.finished(&filling, &staged, wish);
+        let finished = self.finished(&filling, &staged, course);
         let own_seconds = self.own_seconds(&finished);
         if let Some(own) = own_seconds.filter(|own| *own > OWN_ABOVE_WALL * finished.seconds) {
             let [own, wall] = [own, finished.seconds].map(short);
@@ -236,7 +239,7 @@ impl<'a> Attachment<'a> {
         }
         wall.push(WallSample {
             seconds: finished.seconds,
-            alone: wish.alone,
+            alone: course.alone,
             cpu_seconds: finished.cpu_seconds,
             peak_memory: finished.peak_memory,
             load,
@@ -263,40 +266,42 @@ impl<'a> Attachment<'a> {
         left
     }
 
-    fn finished(&self, filling: &Filling, staged: &Staged, wish: &Wish<'_>) -> Finished {
+    fn finished(&self, filling: &Filling, staged: &Staged, course: &Course<'_>) -> Finished {
         let fill = |text: &str| filling.fill(text);
-        let words = words_of(self.solver, &self.solver.command, fill);
+        let words = words_of(self.reading.solver, &self.reading.solver.command, fill);
         let environment: Vec<(String, String)> =
-            self.solver.environment.iter().map(|(name, value)| (name.clone(), fill(value))).collect();
+            self.reading.solver.environment.iter().map(|(name, value)| (name.clone(), fill(value))).collect();
         let folder = staged.out();
-        let timeout = Duration::from_secs_f64(self.solver.timeout.min(MOST_SECONDS));
+        let timeout = Duration::from_secs_f64(self.reading.solver.timeout.min(MOST_SECONDS));
         let order = Order { words: &words, environment: &environment, folder: &folder, timeout };
-        process::run(&order, wish.is_wanted)
+        process::run(&order, &|| course.is_wanted())
     }
 
     /// What a run left, the first status that applies.
     fn left(&self, case: &Case, finished: &Finished, staged: &Staged, filling: &Filling) -> Left {
-        if let Some(failure) = ending::of_process(finished, self.solver) {
+        if let Some(failure) = ending::of_process(finished, self.reading.solver) {
             return Err(failure);
         }
-        let path = PathBuf::from(filling.fill(&self.solver.result));
-        self.taken(case, &[path], |unread| ending::of_reading(unread, self.solver, &staged.contents()))
+        let path = PathBuf::from(filling.fill(&self.reading.solver.result));
+        self.reading.taken(case, &[path], |unread| {
+            ending::of_reading(unread, self.reading.solver, &staged.contents())
+        })
     }
 
     /// The time that the solver says it took, s: the last that its output names.
     fn own_seconds(&self, finished: &Finished) -> Option<f64> {
-        let pattern = Regex::new(self.solver.solve_seconds.as_ref()?).ok()?;
+        let pattern = Regex::new(self.reading.solver.solve_seconds.as_ref()?).ok()?;
         let last = |text: &str| {
             let found = pattern.captures_iter(text).last()?;
             let number: f64 = found.get(1)?.as_str().parse().ok()?;
-            Some(number * self.solver.solve_unit).filter(|seconds| seconds.is_finite())
+            Some(number * self.reading.solver.solve_unit).filter(|seconds| seconds.is_finite())
         };
         last(&finished.output).or_else(|| last(&finished.errors))
     }
 
     /// What the solver says of its version, asked once.
     fn version(&self, is_wanted: &dyn Fn() -> bool) -> &Result<Version, String> {
-        self.version.get_or_init(|| Version::asked(self.solver, is_wanted))
+        self.version.get_or_init(|| Version::asked(self.reading.solver, is_wanted))
     }
 
     /// Digest of its program as it was when first asked.
@@ -306,19 +311,13 @@ impl<'a> Attachment<'a> {
 
     /// Digest of its program as its files are now.
     fn identity(&self, is_wanted: &dyn Fn() -> bool) -> Result<String, String> {
-        digest_of_program(self.solver, self.version(is_wanted).as_ref().map_err(String::clone)?)
+        digest_of_program(self.reading.solver, self.version(is_wanted).as_ref().map_err(String::clone)?)
     }
 }
 
-/// The record of what a run left.
-fn record(
-    case: &Case,
-    wish: &Wish<'_>,
-    left: Left,
-    mut about: AttachedRun,
-    wall: Vec<WallSample>,
-) -> Result<Record, ExactError> {
-    let (status, snapshots) = match left {
+/// The outcome of what a run left.
+fn outcome(case: &Case, left: Left, mut about: AttachedRun, wall: Vec<WallSample>) -> Outcome {
+    let outcome = match left {
         Ok((states, result)) => {
             about.sample = Some(result.sample);
             let more = result.notes.len().saturating_sub(MOST_TAKEN);
@@ -326,13 +325,13 @@ fn record(
             about.taken.extend((more > 0).then(|| format!("and {} more", count_of(more, "note", "notes"))));
             about.result_digest = Some(result.digest);
             let snapshot = |state| snapshot_of(case, result.sample, state);
-            (Status::Ok, states.iter().map(snapshot).collect())
+            Outcome::of_states(states.iter().map(snapshot).collect(), result.sample)
         }
-        Err(failure) => (Status::Failed(failure), Vec::new()),
+        Err(failure) => Outcome::of_failure(failure),
     };
     let step = suggested_step(case);
-    let record = record_of_attached(case, wish.references, status, snapshots, step, about)?;
-    Ok(Record { wall, ..record })
+    let steps = StepSizes { predicted_critical: 0.0, target: step, largest: step };
+    outcome.with_steps(steps).made_by(about).timed(wall)
 }
 
 /// What a run left, with its sentences changed.

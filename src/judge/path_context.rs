@@ -252,7 +252,7 @@ fn between(heights: &[f64], field: &[f64], height: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::Solver;
+    use crate::case::SolverName;
     use crate::case::quantity::Norm;
     use crate::case::quantity::Sample;
     use crate::judge::paths::{first_measure, first_norm, paths};
@@ -334,7 +334,7 @@ mod tests {
         let mut case = records("{ growth = 0.02 }", "[4, 8]").remove(0).case;
         let mut orders = |method: &str| {
             let method = oedometer_mpm::method::Method::named(method).expect("a known method");
-            case.method = crate::case::solver::Solver::Own(method);
+            case.method = crate::case::solver::SolverName::Own(method);
             [
                 (Quantity::Pressure, Sample::Points),
                 (Quantity::EffectiveStress, Sample::Points),
@@ -503,7 +503,7 @@ mod tests {
             for run in &mut runs {
                 let digest = "0123456789abcdef";
                 run.case.method =
-                    crate::case::Attached::new("ogs", digest).map(Solver::Attached).expect("plain");
+                    crate::case::Attached::new("ogs", digest).map(SolverName::Attached).expect("plain");
             }
             let kinds: Vec<_> = paths(&runs, axis)[0].limiters(&measure).iter().map(|one| one.kind).collect();
             assert!(

@@ -359,7 +359,7 @@ mod tests {
         .remove(0);
         let attach: Change = |case| {
             let ogs = crate::case::Attached::new("ogs", "0123456789abcdef").expect("plain");
-            case.method = crate::case::Solver::Attached(ogs);
+            case.method = crate::case::SolverName::Attached(ogs);
             case.swept = ["cells", "porosity"].into();
         };
         let (step, cells, points) = ("growth=0.5", "2 cells", "2 points per cell");

@@ -1,6 +1,7 @@
-//! Makes the record of a run of this program or of an attached solver.
+//! Makes the record of a case from the outcome that its solver left.
 
-use crate::case::Case;
+use crate::case::outcome::{Inside, Outcome};
+use crate::case::{Case, Task};
 use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::snapshot_errors;
@@ -10,8 +11,7 @@ use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
 };
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_mpm::run::observed::CriticalStep;
-use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, Outcome, RunStatus, StepSizes};
+use oedometer_mpm::run::results::outcome::{Counters, HistoryPoint, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
 use oedometer_mpm::scene::column::column_parameters;
 use std::sync::Arc;
@@ -41,52 +41,48 @@ fn empty_record(case: &Case, status: Status, step_sizes: StepSizes, step_over_li
     }
 }
 
-/// The record of a run; the caller adds wall times.
+/// The record of a case of what its solver left. States of a solver within this program are those of the outputs; any
+/// other is compared with the exact solutions at its own time.
 ///
 /// # Errors
 /// When a reference refuses the case's parameters.
 pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) -> Result<Record, ExactError> {
-    let steps = outcome.step_sizes;
-    let status = match outcome.status {
-        RunStatus::Ok => Status::Ok,
-        RunStatus::Failed(failure) => Status::Failed(failure),
+    let Outcome { status, snapshots, sample, steps, inside, foreign, wall, .. } = outcome;
+    let Some(inside) = inside else {
+        let of_places = || AttachedRun { sample, ..AttachedRun::default() };
+        let attached = Some(foreign.unwrap_or_else(of_places));
+        let record = Record { wall, attached, ..empty_record(case, status, steps, 0.0) };
+        return results_outside(case, snapshots).added_to(record, references);
     };
+    let share = match &inside.critical_step {
+        Some(found) => found.observed.map_or(1.0, |observed| observed / found.predicted),
+        None if case.task == Task::Stability => 1.0,
+        None => steps.largest / steps.predicted_critical,
+    };
+    let Inside { counters, start, history, critical_step } = inside;
+    let record = Record { counters, wall, ..empty_record(case, status, steps, share) };
+    if case.task == Task::Stability {
+        return Ok(Record { stability: critical_step, ..record });
+    }
     let parameters = column_parameters(&case.column, &case.material);
-    let curve = outcome
-        .history
-        .iter()
-        .map(|point| (parameters.time_factor(point.time), point.settlement, point.plate_force));
+    let point = |one: &HistoryPoint| (parameters.time_factor(one.time), one.settlement, one.plate_force);
     let results = Results {
         times: case.time_factors.to_vec(),
-        curve: curve.collect(),
-        start: Some(&outcome.start),
-        snapshots: outcome.snapshots,
+        curve: history.iter().map(point).collect(),
+        start: start.as_ref(),
+        snapshots,
     };
-    let record = empty_record(case, status, steps, steps.largest / steps.predicted_critical);
-    results.added_to(Record { counters: outcome.counters, ..record }, references)
+    results.added_to(record, references)
 }
 
-/// The record of a case whose states at its outputs came from an attached solver, one state for each output; none
-/// where it failed. Each state is compared with the exact solution at its own time. The caller adds wall times.
-///
-/// # Errors
-/// When a reference refuses the case's parameters.
-pub fn record_of_attached(
-    case: &Case,
-    references: &[ReferenceKind],
-    status: Status,
-    snapshots: Vec<Snapshot>,
-    suggested_step: f64,
-    attached: AttachedRun,
-) -> Result<Record, ExactError> {
+/// States of a solver outside of this program, one for each output.
+fn results_outside(case: &Case, snapshots: Vec<Snapshot>) -> Results<'static> {
     let parameters = column_parameters(&case.column, &case.material);
     let times: Vec<f64> = snapshots.iter().map(|snapshot| parameters.time_factor(snapshot.time)).collect();
     let settled = snapshots.iter().map(|snapshot| (snapshot.settlement, snapshot.plate_force));
     let curve =
         times.iter().zip(settled).map(|(time, (settlement, force))| (*time, settlement, force)).collect();
-    let steps = StepSizes { predicted_critical: 0.0, target: suggested_step, largest: suggested_step };
-    let record = Record { attached: Some(attached), ..empty_record(case, status, steps, 0.0) };
-    Results { times, curve, start: None, snapshots }.added_to(record, references)
+    Results { times, curve, start: None, snapshots }
 }
 
 /// What a run computed.
@@ -164,34 +160,6 @@ impl Results<'_> {
     }
 }
 
-/// The record of a case whose critical step was searched.
-pub fn record_of_critical_step(case: &Case, found: CriticalStep) -> Record {
-    let largest = found.observed.unwrap_or(found.predicted);
-    let steps = StepSizes { predicted_critical: found.predicted, target: found.predicted, largest };
-    let share = found.observed.map_or(1.0, |observed| observed / found.predicted);
-    let counters = Counters {
-        points: case.cells * case.points_per_cell,
-        steps: found.probes.iter().map(|probe| probe.steps).sum(),
-        ..Counters::default()
-    };
-    Record { counters, stability: Some(found), ..empty_record(case, Status::Ok, steps, share) }
-}
-
-/// The record of a case whose search for the critical step was stopped from outside.
-pub fn record_of_stopped_search(case: &Case) -> Record {
-    let steps = StepSizes { predicted_critical: 0.0, target: 0.0, largest: 0.0 };
-    let failure = Failure {
-        kind: FailureKind::Stopped,
-        step: 0,
-        time: 0.0,
-        growth: None,
-        reason: "stopped from outside".to_owned(),
-    };
-    let points = case.cells * case.points_per_cell;
-    let counters = Counters { points, ..Counters::default() };
-    Record { counters, ..empty_record(case, Status::Failed(failure), steps, 1.0) }
-}
-
 /// How far a reference can be trusted for a case, over all of its outputs.
 ///
 /// # Errors
@@ -233,16 +201,5 @@ mod tests {
             assert_eq!(used.tail_bound, each.into_iter().fold(0.0, f64::max), "{times:?}");
             times.rotate_left(1);
         }
-    }
-
-    #[test]
-    fn a_search_that_is_stopped_is_a_failed_record_without_steps() {
-        let scene = oedometer_mpm::scene::SceneKind::Terzaghi;
-        let case = Case { cells: 4, ..Case::seed(crate::case::Task::Stability, scene) };
-        let stopped = record_of_stopped_search(&case);
-        let failure = stopped.status.failure().expect("it was stopped");
-        assert_eq!((failure.kind, &*failure.reason), (FailureKind::Stopped, "stopped from outside"));
-        assert_eq!((stopped.counters.points, stopped.counters.steps, stopped.stability), (8, 0, None));
-        assert_eq!((stopped.hash, stopped.groups.step_over_limit), (case.hash(), 1.0));
     }
 }

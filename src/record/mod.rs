@@ -12,80 +12,17 @@ pub mod race_errors;
 pub mod store;
 pub mod whole_file;
 
+pub use crate::case::outcome::{AttachedRun, Status, WallSample};
 use crate::case::{Case, Norm, Quantity, Sample};
 pub use oedometer_mpm::run::observed::{CriticalStep, Probe};
-use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
+use oedometer_mpm::run::results::outcome::{Counters, StepSizes};
 use oedometer_mpm::run::results::snapshot::Snapshot;
-pub use provenance::{Machine, Origins, Provenance};
+pub use provenance::{Origins, Provenance};
 use serde::{Deserialize, Serialize};
 pub use store::{Found, RecordStore};
 
 /// Version of the record's layout.
 pub const SCHEMA: u32 = 2;
-
-/// How a case ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Status {
-    /// Every output reached.
-    Ok,
-    /// Ended before, by name.
-    Failed(Failure),
-}
-
-impl Status {
-    /// Whether the case ran out of its time.
-    pub fn is_late(&self) -> bool {
-        self.failure().is_some_and(|failure| failure.kind == FailureKind::TimedOut)
-    }
-
-    /// Whether another run may end otherwise: the time was too short, or an attached solver failed.
-    pub fn is_worth_another_run(&self) -> bool {
-        self.is_late() || self.failure().is_some_and(|failure| failure.kind.is_of_attached())
-    }
-
-    /// Whether an attached solver says that it cannot run here.
-    pub fn is_skipped(&self) -> bool {
-        self.failure().is_some_and(|failure| failure.kind == FailureKind::Skipped)
-    }
-
-    /// How it failed, if it did.
-    pub fn failure(&self) -> Option<&Failure> {
-        match self {
-            Self::Ok => None,
-            Self::Failed(failure) => Some(failure),
-        }
-    }
-
-    /// `ok`, or the failure's name.
-    pub fn name(&self) -> String {
-        self.failure().map_or("ok", |failure| failure.kind.name()).to_owned()
-    }
-}
-
-/// One wall time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct WallSample {
-    /// Seconds of wall time.
-    pub seconds: f64,
-    /// Whether nothing else of this program ran meanwhile; only such samples are compared.
-    pub alone: bool,
-    /// Seconds that the processor worked on it, where the system tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cpu_seconds: Option<f64>,
-    /// Where it ran, where that is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub machine: Option<Machine>,
-    /// Largest memory of an attached solver, bytes, where the system tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_memory: Option<u64>,
-    /// Programs that wanted the processor when an attached solver began, where the system tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub load: Option<f64>,
-    /// Time that an attached solver says it took, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub own_seconds: Option<f64>,
-}
 
 /// Dimensionless groups that say which theory can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -260,64 +197,6 @@ pub struct ReferenceUse {
     /// Why it does not hold for the case, where it does not: then no error is computed from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub does_not_hold: Option<String>,
-}
-
-/// What is known of the run of an attached solver beside its result. What changes from run to run at the same result, like
-/// times, is kept with the wall times.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct AttachedRun {
-    /// The command as the study has it, with its placeholders.
-    pub command: Vec<String>,
-    /// What it says of its version, where it was asked.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub version: Option<String>,
-    /// Digest of all by which its program is known, where the study declares that it is: the program that the command
-    /// starts, the files that command and environment name, those in `known_by`, and the output of the version command.
-    /// None where one of them cannot be read, or changed while it ran.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub program_digest: Option<String>,
-    /// Commit that the repository of the study was at when it was run, and whether files had changed since.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub commit: Option<String>,
-    /// Whether it was run once before it was timed.
-    #[serde(default)]
-    pub warmed_up: bool,
-    /// Kind of the places of its result, where there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sample: Option<Sample>,
-    /// What of the result was taken from where.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub taken: Vec<String>,
-    /// Digest of the content of the result's files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub result_digest: Option<String>,
-    /// Largest difference between the results of repeats, over the largest value of its field; none where there was
-    /// one run. Results at other places are told as a note.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub repeats_differ_by: Option<f64>,
-    /// What is odd about the run and fails nothing.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    /// The last lines that it said, of a run that failed.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub last_words: Vec<String>,
-}
-
-impl AttachedRun {
-    /// What made the result: version, program and commit, as far as they are known.
-    pub fn made_by(&self) -> String {
-        if self.command.is_empty() {
-            return "existing files".to_owned();
-        }
-        let version = self.version.as_ref().map(|version| format!("`{version}`"));
-        let program = self.program_digest.as_ref().map_or_else(
-            || format!("`{}`", self.command.join(" ")),
-            |digest| format!("program {}", digest.chars().take(8).collect::<String>()),
-        );
-        let commit = self.commit.as_ref().map(|commit| format!("at commit {commit}"));
-        let known: Vec<String> = [version, Some(program), commit].into_iter().flatten().collect();
-        known.join(", ")
-    }
 }
 
 /// Everything known of one case.

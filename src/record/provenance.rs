@@ -1,9 +1,8 @@
 //! Provenance of a record: program version, sources, compiler, target and machine; and the provenances of several
 //! records combined.
 
-use crate::record::whole_file::host_name;
+pub use crate::case::machine::Machine;
 use serde::{Deserialize, Serialize};
-use std::sync::LazyLock;
 
 /// Origin of a record.
 ///
@@ -79,34 +78,6 @@ impl Provenance {
 fn tag(words: &[&str]) -> u64 {
     let hash = blake3::hash(words.join("\n").as_bytes());
     hash.as_bytes().iter().take(8).fold(0, |number, byte| (number << 8) | u64::from(*byte))
-}
-
-/// A machine.
-#[derive(
-    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
-pub struct Machine {
-    /// Name of the host.
-    pub node: String,
-    /// Its processor, by its name where the system tells it.
-    pub processor: String,
-}
-
-/// The one this program runs on.
-static THIS: LazyLock<Machine> = LazyLock::new(|| {
-    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = text.lines().find_map(|line| {
-        let (key, value) = line.split_once(':')?;
-        (key.trim() == "model name").then(|| value.split_whitespace().collect::<Vec<_>>().join(" "))
-    });
-    Machine { node: host_name(), processor: name.unwrap_or_else(|| std::env::consts::ARCH.to_owned()) }
-});
-
-impl Machine {
-    /// The machine that this program runs on.
-    pub fn this() -> Self {
-        THIS.clone()
-    }
 }
 
 /// A property in which builds of one program may differ: its name, and its word for an origin.

@@ -1,6 +1,7 @@
 //! Files that are written completely or not at all, by renaming, and texts with a digest as their last field, which
 //! reveals damage.
 
+use crate::case::machine::host_name;
 use serde::Serialize;
 use std::fs;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -48,13 +49,6 @@ static PLACE: LazyLock<String> = LazyLock::new(|| {
 
 fn line_of(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_default().trim().to_owned()
-}
-
-/// Name of this machine.
-pub fn host_name() -> String {
-    let told = ["/proc/sys/kernel/hostname", "/etc/hostname"].map(line_of);
-    let host = told.into_iter().find(|name| !name.is_empty());
-    host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned())
 }
 
 /// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.

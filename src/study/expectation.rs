@@ -1,7 +1,7 @@
 //! What a study expects of its own results: of series of cases, and of single cases. Hard cases are judged by how they
 //! end, where their critical step lies, how large an error or a drift is.
 
-use crate::case::{Case, Key, Norm, Quantity, Sample, Solver, Tier, Value};
+use crate::case::{Case, Key, Norm, Quantity, Sample, SolverName, Tier, Value};
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
@@ -124,7 +124,7 @@ impl Selection {
     }
 
     /// The method, where one is named.
-    pub fn method(&self) -> Option<Solver> {
+    pub fn method(&self) -> Option<SolverName> {
         self.0
             .iter()
             .find_map(|(_, value)| if let Value::Method(method) = value { Some(*method) } else { None })
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn a_selection_fits_by_every_input_that_it_names_but_that_of_the_axis() {
         let key = |name: &str| Key::named(name, "sweep").expect("a key");
-        let method = Solver::Own(Method::named("MPM").expect("a method"));
+        let method = SolverName::Own(Method::named("MPM").expect("a method"));
         let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
         key("method").set(&mut case, Value::Method(method));
         let cells = |cells: usize| (key("cells"), Value::Count(cells));

@@ -196,7 +196,8 @@ fn add_wall(wall: &mut Vec<WallSample>, others: Vec<WallSample>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::record::record_of_attached;
+    use crate::case::outcome::Outcome;
+    use crate::measure::record::record_of;
     use crate::record::{AttachedRun, Status};
     use crate::study::file::StudySource;
 
@@ -244,7 +245,7 @@ mod tests {
 
     fn record(case: &Case, seconds: f64, change: Change) -> Record {
         let about = AttachedRun::default();
-        let record = record_of_attached(case, &[], Status::Ok, Vec::new(), 0.1, about).expect("a record");
+        let record = record_of(case, &[], Outcome::of_end(Status::Ok).made_by(about)).expect("a record");
         let wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }];
         let mut record = Record { wall, ..record };
         change(&mut record);

@@ -1,13 +1,15 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
-use crate::campaign::case_run::{Cores, run_case_within};
+use crate::campaign::case_run::{ThisProgram, all_cores};
 use crate::campaign::runner::LongestCase;
 use crate::case::Case;
+use crate::case::outcome::{Course, Solver};
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
 use crate::judge::soundness;
+use crate::measure::record::record_of;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::render::tables::measures;
@@ -68,8 +70,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
-    let (seconds, case, cores) = (study.case_seconds, &planned.case, Cores::all());
-    let record = run_case_within(seconds, case, &study.references, kernel, cores, &|_, _| true)?;
+    let case = &planned.case;
+    let course = Course { threads: all_cores(), seconds: study.case_seconds, ..Course::alone() };
+    let record = record_of(case, &study.references, ThisProgram { kernel }.solve(case, &course)?)?;
     match arguments.format {
         SolveFormat::Csv => {
             let errors = record.errors.iter().map(|row| row.csv_fields().to_vec());

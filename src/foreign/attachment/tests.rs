@@ -1,6 +1,7 @@
 use super::*;
 use crate::case::solver::Attached;
 use crate::foreign::identity::LONGEST_VERSION;
+use std::path::Path;
 
 /// A solver in a folder by a command, with the convention's mapping.
 pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
@@ -107,6 +108,9 @@ mod runs {
     use crate::case::Task;
     use crate::case::quantity::Norm;
     use crate::case::quantity::Quantity;
+    use crate::measure::record::record_of;
+    use crate::record::{Record, Status};
+    use oedometer_exact::reference::ReferenceKind;
     use oedometer_mpm::run::results::outcome::FailureKind;
     use oedometer_mpm::scene::SceneKind;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -114,7 +118,7 @@ mod runs {
     /// A case on two cells with one output.
     fn case(solver: &ExternalSolver) -> Case {
         Case {
-            method: crate::case::solver::Solver::Attached(solver.attached),
+            method: crate::case::solver::SolverName::Attached(solver.attached),
             cells: 2,
             time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
@@ -127,18 +131,19 @@ mod runs {
         let folder = tempfile::TempDir::new().expect("a folder");
         let mut solver = solver(folder.path(), &["sh", "-c", script]);
         change(&mut solver);
-        let wish = Wish {
-            references: &[ReferenceKind::Terzaghi],
-            place: Some(folder.path()),
-            alone: true,
-            is_wanted: &|| true,
-        };
-        let record =
-            Attachment::new(&solver, Axes::Column).run(&case(&solver), &wish).expect("a sound column");
+        let course = Course { place: Some(folder.path()), ..Course::alone() };
+        let record = recorded(&solver, &course);
         let kept = if record.status == Status::Ok { "solver" } else { "solver.failed" };
         let is_started = record.status.name() != "unreadable" || solver.mapping.is_none();
         assert!(folder.path().join(kept).join("case.json").is_file() || !is_started);
         record
+    }
+
+    /// The record of the case as its solver leaves it.
+    fn recorded(solver: &ExternalSolver, course: &Course<'_>) -> Record {
+        let case = case(solver);
+        let outcome = solver_of(solver, Axes::Column, true).solve(&case, course).expect("a sound column");
+        record_of(&case, &[ReferenceKind::Terzaghi], outcome).expect("a sound column")
     }
 
     /// Rows of the three nodes at an output of 8.175 s.
@@ -314,10 +319,9 @@ mod runs {
         ] {
             let mut solver = solver(folder.path(), &["true"]);
             solver.version = ["sh", "-c", script].map(str::to_owned).to_vec();
-            let found = Attachment::new(&solver, Axes::Column).version(&|| true).clone();
+            let found = Attachment::new(Reading::new(&solver, Axes::Column)).version(&|| true).clone();
             assert_eq!(found.map(|version| version.line), Ok(version.map(str::to_owned)), "{script}");
         }
-        let wish = Wish { references: &[], place: None, alone: true, is_wanted: &|| true };
         let solver = solver(folder.path(), &["true"]);
         let case = case(&solver);
         for (count, last) in [(6, "note 6"), (7, "and 1 note more"), (9, "and 3 notes more")] {
@@ -328,8 +332,8 @@ mod runs {
                 digest: "d".to_owned(),
             };
             let states = vec![state(&[[0.0, 0.0], [1.0, 0.0]], &[], None)];
-            let found = record(&case, &wish, Ok((states, result)), AttachedRun::default(), Vec::new());
-            let about = found.expect("sound").attached.expect("attached");
+            let found = outcome(&case, Ok((states, result)), AttachedRun::default(), Vec::new());
+            let about = found.foreign.expect("what made it");
             assert_eq!(
                 (about.taken.len(), about.taken.last().map(String::as_str)),
                 (7.min(count), Some(last))
@@ -346,8 +350,9 @@ mod runs {
             let solver = solver(folder.path(), &["sh", "-c", script]);
             let environment = vec![("NAME".to_owned(), "{cells} of {x}".to_owned())];
             let solver = ExternalSolver { environment, ..solver };
-            let wish = Wish { references: &[], place: Some(&place), alone: false, is_wanted };
-            Attachment::new(&solver, Axes::Column).run(&case(&solver), &wish).expect("a sound column")
+            let observe = |_, _| is_wanted();
+            let course = Course { place: Some(&place), alone: false, observe: &observe, ..Course::alone() };
+            recorded(&solver, &course)
         };
         let sound = run(&format!("echo $NAME; {ROWS} > result.csv"), &|| true);
         assert!(sound.status == Status::Ok && !sound.wall[0].alone);
@@ -395,7 +400,6 @@ mod runs {
             digest_of_program(solver, &version).ok()
         };
         let other = Some("0123456789abcdef".to_owned());
-        let record = run("exit 1", |_| {});
         for (number, (solver, digest, may_start, wanted)) in [
             // Without a declaration nothing is proven, whatever is the same.
             (&plain, of(&plain), true, Unproven),
@@ -418,12 +422,8 @@ mod runs {
         .enumerate()
         {
             let about = AttachedRun { program_digest: digest, ..AttachedRun::default() };
-            let record = Record { attached: Some(about), ..record.clone() };
-            assert_eq!(
-                Attachment::new(solver, Axes::Column).standing(&record, may_start),
-                wanted,
-                "row {number}"
-            );
+            let standing = solver_of(solver, Axes::Column, may_start).standing(Some(&about));
+            assert_eq!(standing, wanted, "row {number}");
         }
     }
 }

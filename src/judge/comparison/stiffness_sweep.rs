@@ -1,6 +1,6 @@
 //! Errors and oscillation of the methods over the stiffness of the water and of the skeleton, through consolidation.
 
-use crate::case::{Case, Quantity, Sample, Solver};
+use crate::case::{Case, Quantity, Sample, SolverName};
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
@@ -11,7 +11,7 @@ use oedometer_mpm::scene::SceneKind;
 use std::collections::BTreeSet;
 
 /// The methods of records, each once, in their order.
-fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Solver> {
+fn methods_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<SolverName> {
     let groups = grouped(records, |record| record.case.method.to_string());
     groups.into_iter().map(|(_, records)| records[0].case.method).collect()
 }
@@ -76,7 +76,7 @@ impl Showing {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepRow {
     /// The method.
-    pub method: Solver,
+    pub method: SolverName,
     /// Time factor of the output.
     pub time_factor: f64,
     /// What was found at each value of the sweep, in the order of [`Showing::ALL`].
@@ -193,13 +193,13 @@ impl StiffnessSweep {
         }
         let time_factors = hardest.case.time_factors.to_vec();
         let reference = study.references[0].name();
-        let found = |method: Solver, time_factor: f64, value: f64| {
+        let found = |method: SolverName, time_factor: f64, value: f64| {
             let record = alike
                 .iter()
                 .find(|record| record.case.method == method && stiffness.of(&record.case) == value);
             record.map_or(Ok([None; 3]), |record| found(record, time_factor, reference))
         };
-        let failure = |method: Solver, value: f64| {
+        let failure = |method: SolverName, value: f64| {
             let is_of =
                 |record: &&&Record| record.case.method == method && stiffness.of(&record.case) == value;
             failed.iter().find(is_of)?.status.failure().map(Failure::name_with_step)
@@ -301,7 +301,7 @@ mod tests {
             // A failed run is told with its reason, and is no lost result.
             let mut among = records.clone();
             among[1].case.method =
-                Solver::Own(oedometer_mpm::method::Method::named("MPM").expect("a method"));
+                SolverName::Own(oedometer_mpm::method::Method::named("MPM").expect("a method"));
             among[1].case.cells = 16;
             among[1].status =
                 failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();

@@ -1,7 +1,7 @@
 //! Situations, what makes a run hard, derived from its inputs; and runs that differ in one input alone: the cost and the
 //! benefit of the input in each situation.
 
-use crate::case::{Key, Quantity, Sample, Solver, Value};
+use crate::case::{Key, Quantity, Sample, SolverName, Value};
 use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::median;
 use crate::record::{Record, Status};
@@ -42,7 +42,7 @@ pub struct TwinsOfSituation {
     /// The situation.
     pub situation: Situation,
     /// The method; `None` for all methods that have equal errors on both sides.
-    pub method: Option<Solver>,
+    pub method: Option<SolverName>,
     /// Number of pairs.
     pub pairs: usize,
     /// Error of the pressure at the points of the second over that of the first: least, median and largest of the pairs
@@ -76,7 +76,7 @@ fn by_method(situation: Situation, pairs: Vec<&Twins<'_>>) -> Vec<TwinsOfSituati
     differing.chain(alike).collect()
 }
 
-fn in_numbers(situation: Situation, method: Option<Solver>, own: &[&Twins<'_>]) -> TwinsOfSituation {
+fn in_numbers(situation: Situation, method: Option<SolverName>, own: &[&Twins<'_>]) -> TwinsOfSituation {
     let mut ratios: Vec<f64> = own.iter().flat_map(|pair| ratios_of(pair)).collect();
     ratios.sort_by(f64::total_cmp);
     let failed = |status: for<'a> fn(&'a Twins<'_>) -> &'a Status| {

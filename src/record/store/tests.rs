@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::case::Task;
-use crate::measure::record::record_of_attached;
+use crate::case::outcome::Outcome;
+use crate::measure::record::record_of;
 use crate::record::pack::HEADER;
 use crate::record::{AttachedRun, Status};
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
@@ -95,7 +96,7 @@ fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {
         notes: vec!["x".repeat(tag * 37 % 300)],
         ..AttachedRun::default()
     };
-    let record = record_of_attached(case, &[], status, Vec::new(), 0.1, about).expect("a record");
+    let record = record_of(case, &[], Outcome::of_end(status).made_by(about)).expect("a record");
     let wall =
         wall.iter().map(|seconds| WallSample { seconds: *seconds, alone: true, ..WallSample::default() });
     Record { wall: wall.collect(), ..record }

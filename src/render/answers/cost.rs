@@ -85,7 +85,7 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> Option<String> {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::case::Solver;
+    use crate::case::SolverName;
     use crate::judge::comparison::work_precision::Cheapest;
     use crate::measure::statistics::spread;
     use crate::record::Record;
@@ -112,7 +112,7 @@ mod tests {
             record.errors.iter_mut().for_each(|row| row.value = error);
             record
         };
-        let mpm = Solver::Own(Method::named("MPM").expect("a method"));
+        let mpm = SolverName::Own(Method::named("MPM").expect("a method"));
         // The smaller the error, the less it may be taken.
         let others = [
             with(&|one| one.case.integrator = IntegratorKind::Explicit, 1e-5),

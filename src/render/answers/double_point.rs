@@ -126,7 +126,7 @@ fn sentence(told: &[TwinsOfSituation], bursts: usize) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::solved;
-    use crate::case::Solver;
+    use crate::case::SolverName;
     use crate::case::planned::Tier;
     use crate::judge::comparison::twins::Situation;
     use oedometer_mpm::method::Method;
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(burst_note(&bursts), "2 double-point runs had a pressure burst: a; b");
         let row = |situation: Situation, method: Option<&str>| TwinsOfSituation {
             situation,
-            method: method.map(|name| Solver::Own(Method::named(name).expect("a method"))),
+            method: method.map(|name| SolverName::Own(Method::named(name).expect("a method"))),
             pairs: 1,
             ratios: None,
             failed: [0; 2],

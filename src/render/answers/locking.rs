@@ -128,13 +128,13 @@ fn table(sweep: &StiffnessSweep, rows: &[&SweepRow]) -> Table {
 mod tests {
     use super::*;
     use crate::campaign::runner::solved;
-    use crate::case::Solver;
+    use crate::case::SolverName;
     use crate::case::planned::Tier;
     use oedometer_mpm::method::Method;
 
     #[test]
     fn every_error_of_the_table_stands_under_its_quantity_and_stiffness() {
-        let method = |name: &str| Solver::Own(Method::named(name).expect("a method"));
+        let method = |name: &str| SolverName::Own(Method::named(name).expect("a method"));
         let row = |name: &str, first: f64| SweepRow {
             method: method(name),
             time_factor: 0.1,
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_result_is_lost_with_either_quantity_from_the_first_value_on() {
-        let method = |name: &str| Solver::Own(Method::named(name).expect("a method"));
+        let method = |name: &str| SolverName::Own(Method::named(name).expect("a method"));
         // Oscillation does not count.
         let row = |name: &str, errors: [[Option<f64>; 2]; 3]| SweepRow {
             method: method(name),

@@ -259,7 +259,7 @@ pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
 mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, records_of, solved, study_of};
-    use crate::case::Solver;
+    use crate::case::SolverName;
     use crate::case::planned::Tier;
     use crate::judge::comparison::stiffness_sweep::SweepRow;
     use crate::record::HistoryRow;
@@ -320,7 +320,7 @@ mod tests {
         let study = study_of("s", text);
         let results = StudyResults::new(&study, &[], Tier::Full);
         let row = |time_factor: f64, off: f64| SweepRow {
-            method: Solver::Own(Method::named("GIMP").expect("a method")),
+            method: SolverName::Own(Method::named("GIMP").expect("a method")),
             time_factor,
             found: vec![[Some(0.1 + off), Some(0.2 + off), Some(0.3 + off)], [None; 3]],
             failed: vec![None; 2],

@@ -2,7 +2,7 @@
 
 use crate::case::keys::MOST_CELLS;
 use crate::case::solver::DIGEST_DIGITS;
-use crate::case::{Attached, Case, Solver, Tier};
+use crate::case::{Attached, Case, SolverName, Tier};
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::file::{ResultTable, SolverTable, StudyFile};
@@ -27,7 +27,7 @@ const MESH: &str = "cells";
 
 /// The meshes of a result that is there.
 pub(super) struct GivenMeshes {
-    method: Solver,
+    method: SolverName,
     cells: Vec<usize>,
     /// Smallest tier that includes it.
     pub(super) tier: Tier,
@@ -203,7 +203,7 @@ impl Checker<'_> {
             solve_seconds: None,
             solve_unit: 1.0,
         });
-        Some(GivenMeshes { method: Solver::Attached(attached), cells, tier: table.tier })
+        Some(GivenMeshes { method: SolverName::Attached(attached), cells, tier: table.tier })
     }
 
     /// No system passes on a zero letter, nor a variable's name with `=` in it: it would set another variable.

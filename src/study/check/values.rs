@@ -1,7 +1,7 @@
 //! Checks of single values: inputs by the table of keys, methods, step rules, numbers in their range.
 
 use crate::case::keys::Range;
-use crate::case::{Case, Key, Kind, Solver, Value};
+use crate::case::{Case, Key, Kind, SolverName, Value};
 use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
@@ -71,10 +71,10 @@ impl Checker<'_> {
         index
     }
 
-    fn method_named(&mut self, name: &str, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+    fn method_named(&mut self, name: &str, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
         let attached = self.solvers.iter().find(|solver| solver.name() == name);
-        let attached = attached.map(|solver| Solver::Attached(solver.attached));
-        let Some(method) = Method::named(name).map(Solver::Own).or(attached) else {
+        let attached = attached.map(|solver| SolverName::Attached(solver.attached));
+        let Some(method) = Method::named(name).map(SolverName::Own).or(attached) else {
             let mut names = Method::names();
             names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -84,7 +84,7 @@ impl Checker<'_> {
         self.method_fits(method, span, scene)
     }
 
-    fn method_of(&mut self, table: &MethodTable, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+    fn method_of(&mut self, table: &MethodTable, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
         let MethodTable { basis, strain, pressure, memory, quadrature, .. } = *table;
         let recovery = match &table.recovery {
             Some(word) => **word,
@@ -108,7 +108,7 @@ impl Checker<'_> {
         let place = table.configuration.as_ref().map_or(span, Placed::span);
         let method =
             Method { basis, strain, pressure, recovery, memory, quadrature, projection, configuration };
-        self.method_fits(Solver::Own(method), place, scene)
+        self.method_fits(SolverName::Own(method), place, scene)
     }
 
     /// An input of a contender, where the scene allows it.
@@ -140,7 +140,7 @@ impl Checker<'_> {
     }
 
     /// The method, where its scene allows it.
-    fn method_fits(&mut self, method: Solver, span: TextSpan, scene: SceneKind) -> Option<Solver> {
+    fn method_fits(&mut self, method: SolverName, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
         let configuration = method.own().and_then(|method| method.configuration);
         let refusal = if let Some(why) = configuration.and_then(|kind| scene.refuses_configuration(kind)) {
             (why, "take \"updated\" or \"total\", or leave the key out")
