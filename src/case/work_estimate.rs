@@ -133,6 +133,8 @@ const PLANE_FIT_FACTOR: f64 = 1.3;
 const MEMORY_FACTOR: f64 = 1.8;
 /// Factor of a point-wise step that assembles and factors the projection of its pressure anew.
 const PROJECTION_FACTOR: f64 = 4.5;
+/// Factors of a linear step whose soil yields, by dimensions: it takes iterations, most of them with a tangent of their own.
+const YIELDING_FACTORS: [f64; 2] = [7.0, 25.0];
 /// Factor for a scene whose body forces and sources are evaluated at every point.
 const FORCED_FACTOR: f64 = 2.0;
 
@@ -189,6 +191,9 @@ pub fn seconds_per_step(case: &Case) -> f64 {
     }
     if case.scene.is_manufactured() {
         factor *= FORCED_FACTOR;
+    }
+    if kind == StepKind::Linear && case.soils().iter().any(|(_, soil)| soil.law.has_history()) {
+        factor *= YIELDING_FACTORS[case.column.dimensions - 1];
     }
     1e-9 * factor * (cost.fixed + points * (cost.point + cost.front * width))
 }

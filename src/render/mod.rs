@@ -7,7 +7,7 @@ pub mod checks;
 pub mod escape;
 pub(crate) mod history_tables;
 pub(crate) mod marked_text;
-mod number;
+pub(crate) mod number;
 pub mod page;
 pub mod report;
 mod script;

@@ -4,7 +4,7 @@
 use crate::case::contender::PAPERS;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
-use crate::render::answers::{Answer, Question, short, study_with_most};
+use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::{StudyResults, cost};
@@ -22,7 +22,6 @@ pub fn answer(results: &[StudyResults<'_>]) -> Answer {
     let mut blocks = vec![Block::Figure(figure)];
     if peers::solve_their_column(&precision.runs) {
         blocks.extend(equal_cells(&precision).map(Block::Paragraph));
-        blocks.push(Block::Table(short(cost::peers_table(&precision), "on the page of the study")));
     }
     Some(QUESTION.told(&sentence(&precision), [one.study.name.as_str()], blocks))
 }
@@ -58,13 +57,11 @@ fn equal_cells(precision: &WorkPrecision<'_>) -> Option<String> {
         let pairs = peer.errors().into_iter().zip(own).zip(peers::TIME_FACTORS);
         let pairs: Vec<_> = pairs.filter_map(|((theirs, own), time)| Some((theirs, own?, time))).collect();
         compared += pairs.len();
-        let better = pairs.iter().filter(|(theirs, own, _)| theirs < own).map(|(theirs, own, time)| {
-            format!("{} against {} at T_v = {time}", number::error(*theirs), number::error(*own))
-        });
-        let better = better.collect::<Vec<_>>().join(", ");
-        if !better.is_empty() {
-            ahead.push(format!("{}, {} on {} cells: {better}", peer.name, peer.kind, peer.cells));
-        }
+        // One time of each shows it; the page of the study has the others.
+        ahead.extend(pairs.iter().find(|(theirs, own, _)| theirs < own).map(|(theirs, own, time)| {
+            let (theirs, own) = (number::error(*theirs), number::error(*own));
+            format!("{} on {} cells {theirs} against {own} at T_v = {time}", peer.name, peer.cells)
+        }));
     }
     if compared == 0 {
         return None;

@@ -114,10 +114,6 @@ pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
         Block::Figures(panels),
         Block::Paragraph(limits),
         Block::Table(trade_table(findings)),
-        Block::Details {
-            summary: "The choice in each family, and when the race is changed".to_owned(),
-            blocks: vec![Block::Table(family_table(findings)), Block::Table(change_table(findings))],
-        },
     ];
     let link = format!(
         "[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
@@ -178,11 +174,14 @@ fn profile_figure(
             chart.series.push(Series::new(name.clone(), staircase(&one.steps)).style(Style::Line).slot(slot));
         }
     }
-    let caption = match question {
-        RaceQuestion::Moving => {
+    let caption = match (question, quantity) {
+        (RaceQuestion::Moving, RaceQuantity::All) => {
             "Grey: the other methods. At the left end how often a method is the fastest, at the right end how often it arrives."
         }
-        RaceQuestion::Total => "Total Lagrangian methods alone: each profile is over the fastest of them.",
+        (RaceQuestion::Moving, _) => "",
+        (RaceQuestion::Total, _) => {
+            "Total Lagrangian methods alone: each profile is over the fastest of them."
+        }
     };
     Figure::new(format!("race-profile-{}-{}", question.name(), quantity.name()), chart, caption)
 }
@@ -337,6 +336,11 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
             ),
         ],
     )];
+    sections.push(Section::new(
+        "The choice in each family, and when the race is changed",
+        "choices",
+        vec![Block::Table(family_table(findings)), Block::Table(change_table(findings))],
+    ));
     if !findings.properties.is_empty() {
         sections.push(Section::new(
             "Properties that are no errors",

@@ -6,10 +6,8 @@ use crate::case::keys::{Key, Kind, Value};
 use crate::case::quantity::Quantity;
 use crate::judge::paths::{first_error, grouped};
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question, short, study_with_most};
-use crate::render::page::Block;
+use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::report::{StudyResults, setting};
-use crate::render::table::{Cell, Table, columns};
 use oedometer_soil::wording;
 
 const QUESTION: Question = Question { heading: "What does the soil change?", id: "soil" };
@@ -44,8 +42,7 @@ pub fn answer(results: &[StudyResults<'_>]) -> Answer {
         return None;
     }
     let sentence = format!("From the smallest value to the largest, all else equal: {}.", told.join("; "));
-    let table = short(table(&keys, reference), "on the page of the study");
-    Some(QUESTION.told(&sentence, [one.study.name.as_str()], vec![Block::Table(table)]))
+    Some(QUESTION.told(&sentence, [one.study.name.as_str()], Vec::new()))
 }
 
 /// The numbers of soil and body that differ between runs which are alike in everything else.
@@ -119,38 +116,6 @@ fn sentence(varied: &Varied<'_>, reference: &str) -> Option<String> {
 /// A factor this near to one is no change.
 const CHANGES: f64 = 0.01;
 
-/// A row for each key and method.
-fn table(keys: &[Varied<'_>], reference: &str) -> Table {
-    let rows = keys.iter().flat_map(|varied| {
-        let by_method = grouped(varied.pairs.iter().copied(), |pair| pair[0].case.method.to_string());
-        by_method.into_iter().map(move |(method, pairs)| {
-            let [first, last] = pairs[0];
-            let value = |record| {
-                number(varied.key, record)
-                    .map_or(String::new(), |value| setting::with_unit(value, varied.key.unit))
-            };
-            let mut row = vec![
-                Cell::Code(varied.key.name.to_owned()),
-                Cell::Code(method),
-                format!("{} → {}", value(first), value(last)).into(),
-            ];
-            row.extend(COMPARED.iter().map(|(_, value)| {
-                factors(&pairs, |record| value(record, reference)).map_or_else(
-                    || Cell::missing("not measured in this scene"),
-                    |found| in_words(found).into(),
-                )
-            }));
-            row
-        })
-    });
-    let [error, settlement, time] = COMPARED.map(|(words, _)| words);
-    let header = format!("input | method | values | {error} | {settlement} | {time}");
-    Table::of("Factors from the smallest value to the largest", columns(&header), rows).note(format!(
-        "the error is the relative L_2 error at the last output, against {reference}; settlement and time by theory; two \
-         numbers are the least and the largest over the runs that are alike in everything else"
-    ))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,13 +154,6 @@ mod tests {
         }
         let ends = "`hydraulic_conductivity` multiplies the error of the pressure by 3 … 4, the time of consolidation by 0.01";
         assert_eq!(told(&records), [ends]);
-        let keys = varied(&records);
-        let rows = table(&keys, "terzaghi").rows;
-        assert_eq!(rows.len(), 2, "a row of each method");
-        for row in &rows {
-            let error = if row[1] == Cell::Code("MPM".to_owned()) { "4" } else { "3" };
-            assert_eq!(row[3..], [error, "1", "0.01"].map(Cell::from), "{row:?}");
-        }
         records.reverse();
         assert_eq!(told(&records), [ends], "in any order");
         // A run that failed is no end.

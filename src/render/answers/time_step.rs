@@ -3,15 +3,13 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question, short, study_with_most};
+use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::number;
-use crate::render::page::Block;
 use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, first_measure, grouped, order_or_class, path_labels};
 use crate::render::report::refinement::{longest_paths, shown_time};
-use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, NEXT_FINER};
-use oedometer_convergence::{Class, WINDOW};
+use oedometer_convergence::Class;
 
 const QUESTION: Question = Question { heading: "What does the time step change?", id: "time-step" };
 
@@ -31,11 +29,8 @@ struct Row<'a> {
 
 /// A study along the step.
 struct Steps<'a> {
-    reference: &'static str,
     time: f64,
     rows: Vec<Row<'a>>,
-    /// What all rows share.
-    shared: String,
 }
 
 impl<'a> Steps<'a> {
@@ -47,7 +42,7 @@ impl<'a> Steps<'a> {
         let labels = path_labels(&paths);
         let rows = paths.iter().zip(&labels.each);
         let rows: Vec<_> = rows.filter_map(|(path, label)| row(path, label, reference, time)).collect();
-        (!rows.is_empty()).then_some(Self { reference, time, rows, shared: labels.shared })
+        (!rows.is_empty()).then_some(Self { time, rows })
     }
 }
 
@@ -58,10 +53,7 @@ pub fn answer(results: &[StudyResults<'_>]) -> Answer {
         let with_order = steps.rows.iter().filter(|row| row.order.is_some()).count();
         Some(((with_order, steps.rows.len()), steps))
     })?;
-    let table = table(&steps.rows, steps.reference, steps.time)
-        .notes((!steps.shared.is_empty()).then(|| format!("all with {}", steps.shared)));
-    let blocks = vec![Block::Table(short(table, "on the page of the study"))];
-    Some(QUESTION.told(&sentence(&steps.rows, steps.time), [one.study.name.as_str()], blocks))
+    Some(QUESTION.told(&sentence(&steps.rows, steps.time), [one.study.name.as_str()], Vec::new()))
 }
 
 fn row<'a>(path: &Path<'a>, label: &str, own: &str, time: f64) -> Option<Row<'a>> {
@@ -137,28 +129,6 @@ fn left(rows: &[Row<'_>]) -> Option<String> {
 /// An error that a smaller step reduces by less than this factor is not the step's.
 const STEP_COUNTS: f64 = 1.1;
 
-fn table(rows: &[Row<'_>], own: &str, time: f64) -> Table {
-    let header = "method | order in the step | largest step that ends | > error with it | smallest step | > error with it | \
-                  unstable from";
-    let cells = rows.iter().map(|row| {
-        let error = |place: usize| Cell::of(row.errors[place], Cell::Error, "no error was measured");
-        let stable = || Cell::missing("every step that was tried is stable");
-        vec![
-            Cell::Code(row.label.clone()),
-            row.order.as_deref().unwrap_or(NO_ORDER).into(),
-            labels::step(row.largest).into(),
-            error(0),
-            labels::step(row.smallest).into(),
-            error(1),
-            row.unstable.map_or_else(stable, |record| labels::step(record).into()),
-        ]
-    });
-    Table::of("Errors over the time step", columns(header), cells).note(format!(
-        "relative L_2 error of the pressure at T_v = {time} against {own}; the order is that of the differences between \
-         neighbouring steps, on the finest {WINDOW}"
-    ))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,13 +195,5 @@ mod tests {
         let unknown = [row("a", Some("1.00"), [None; 2]), row("c", Some("2.00"), [None; 2])];
         let told = sentence(&unknown, 0.1);
         assert!(told.ends_with(": 1.00 for `a`; 2.00 for `c`. All steps tried are stable."), "{told}");
-        let table = table(&of([Some(0.3), None]), "terzaghi", 0.1);
-        let cells: Vec<Vec<String>> =
-            table.rows[..2].iter().map(|row| row.iter().map(Cell::show).collect()).collect();
-        assert_eq!(cells[0], ["a", "2.00", "Δt = 0.04 s", "1.20e-1", "Δt = 0.02 s", "1.10e-1", "–"]);
-        assert_eq!(
-            cells[1],
-            ["b", "too few steps for an order", "Δt = 0.04 s", "3.00e-1", "Δt = 0.02 s", "–", "Δt = 0.04 s"]
-        );
     }
 }

@@ -12,11 +12,24 @@ use oedometer_convergence::{Class, Classification};
 use oedometer_mpm::run::TimeStepRule;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The meaning of the words beside an order, or instead of one.
-pub const CLASSES: &str = "Words beside an order say that it is not settled: pre-asymptotic, it still changes from mesh to \
-                           mesh; contaminated, a term of lower order takes over on fine meshes; superconvergent, higher \
-                           than promised. Words instead of one: oscillatory, the error goes up and down; divergent, it \
-                           grows; floor-limited, something else than the mesh limits it; locked, the body hardly moves";
+/// The words beside an order that is not settled, or instead of one, with their meanings.
+const CLASSES: [(&str, &str); 8] = [
+    ("pre-asymptotic", "the order still changes from mesh to mesh"),
+    ("contaminated", "a term of lower order takes over on fine meshes"),
+    ("superconvergent", "higher than promised"),
+    ("oscillatory", "the error goes up and down"),
+    ("divergent", "the error grows"),
+    ("floor-limited", "something else than the mesh limits the error"),
+    ("exact", "round-off is all the error there is"),
+    ("locked", "the body hardly moves"),
+];
+
+/// The meaning of the words for classes that stand in some rows of a table.
+pub fn class_meanings(rows: &[Vec<Cell>]) -> String {
+    let is_met = |class: &str| rows.iter().flatten().any(|cell| cell.show().contains(class));
+    let met = CLASSES.iter().filter(|(class, _)| is_met(class));
+    met.map(|(class, meaning)| format!("{class}: {meaning}")).collect::<Vec<_>>().join("; ")
+}
 
 /// Cells of the mesh on which errors are quoted: the paper's.
 pub const QUOTED_CELLS: usize = 10;

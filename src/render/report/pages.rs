@@ -163,7 +163,7 @@ const MOST_OPEN: usize = 4;
 /// When a reference refuses a case.
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
-    let mut blocks: Vec<Block> = unmet(results).map(Block::Table).into_iter().collect();
+    let mut blocks = unmet(results);
     let told = diagnoses(study, results.records);
     if study.is_race {
         blocks.extend(race::blocks(results));
@@ -176,6 +176,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
             blocks.extend(refinement::blocks(results, axis));
         }
     }
+    blocks.push(Block::Heading("Runs".to_owned()));
     blocks.extend(checks::survival(results).map(|table| Block::Details {
         summary: "How each case ended".to_owned(),
         blocks: vec![Block::Table(table)],
@@ -241,10 +242,14 @@ fn failing<'b>(results: &'b StudyResults<'_>) -> Vec<&'b Judgement> {
     results.judgements.iter().filter(|judgement| !judgement.verdict.pass).collect()
 }
 
-/// The expectations that are not met; none where all are.
-fn unmet(results: &StudyResults<'_>) -> Option<Table> {
+/// The expectations that are not met, under a heading; nothing where all are.
+fn unmet(results: &StudyResults<'_>) -> Vec<Block> {
     let failing = failing(results);
-    (!failing.is_empty()).then(|| judgements_table("Expectations that are not met", &failing))
+    if failing.is_empty() {
+        return Vec::new();
+    }
+    let table = judgements_table("Expectations that are not met", &failing);
+    vec![Block::Heading("Not as expected".to_owned()), Block::Table(table)]
 }
 
 /// The expectations that a study could have, and every one that it has behind a click.
@@ -270,12 +275,12 @@ fn expectations(results: &StudyResults<'_>) -> Vec<Block> {
     blocks
 }
 
-/// A section from every heading on; the blocks before the first are what is not as expected.
+/// A section from every heading on; the first block is one.
 fn sections(blocks: Vec<Block>) -> Vec<Section> {
-    let mut sections = vec![Section::new("Not as expected", "unmet", Vec::new())];
+    let mut sections: Vec<Section> = Vec::new();
     for block in blocks {
         if let Block::Heading(heading) = block {
-            let id = format!("{}-{}", slug(&heading), sections.len());
+            let id = format!("{}-{}", slug(&heading), sections.len() + 1);
             sections.push(Section::new(heading, id, Vec::new()));
         } else if let Some(last) = sections.last_mut() {
             last.blocks.push(block);
