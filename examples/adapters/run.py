@@ -69,20 +69,21 @@ def solved(study, programs, arguments):
     return checked.returncode == 0, checked.stdout
 
 
-def rows_of(study, out):
+def rows_of(study, arguments):
     """A row for each solver and mesh of a study."""
-    folder = out / "out" / study
+    folder = arguments.out / "out" / study
     coarser = None
+    printed = subprocess.run([arguments.oedometer, "records", folder, "--format", "json"], stdout=subprocess.PIPE, check=True)
+    records = {record["hash"]: record for record in json.loads(printed.stdout)}
     for (solver, cells), case in sorted(cases_of(folder / f"{study}.csv").items()):
-        kept = folder / "cases" / case["hash"]
-        wall = json.loads((kept / "wall.json").read_text())
+        record = records[case["hash"]]
         errors = {time: case["pressure", time] for time in TIMES}
         order = ""
         if coarser and coarser[0] == solver:
             order = f"{math.log(coarser[2] / errors[0.05]) / math.log(cells / coarser[1]):.2f}"
         coarser = solver, cells, errors[0.05]
         yield {
-            "program": json.loads((kept / "record.json").read_text())["attached"]["version"],
+            "program": record["attached"]["version"],
             "what it is": SOLVERS[solver][0],
             "cells": cells,
             "samples": SOLVERS[solver][1],
@@ -91,7 +92,7 @@ def rows_of(study, out):
             "order at T_v=0.05": order,
             "settlement error at T_v=0.05": f"{case['settlement', 0.05]:+.2e}",
             # Processor time counts the start of the program too, its own time grows with the load of the machine.
-            "seconds": f"{min(min(one['cpu_seconds'], one['own_seconds']) for one in wall):.3g}",
+            "seconds": f"{min(min(one['cpu_seconds'], one['own_seconds']) for one in record['wall']):.3g}",
             "measured on": datetime.date.today().isoformat(),
         }
 
@@ -146,7 +147,7 @@ def main():
             all_met &= is_met
             print(f"{study}: {'met' if is_met else told}", flush=True)
             if study != "layers":
-                rows += rows_of(study, arguments.out)
+                rows += rows_of(study, arguments)
     print(*rows[0], sep=" | ")
     for row in rows:
         print(*row.values(), sep=" | ")

@@ -14,6 +14,7 @@ use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::run::Kernel;
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use std::collections::BTreeSet;
 
 /// Repeats of a case that takes long end here: their spread is small, and they would make the study
 /// wait for what it knows.
@@ -193,9 +194,9 @@ pub fn time_study(
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Result<(), RunError> {
     let runner = CaseRunner::of(study);
-    let mut is_timed = false;
+    let mut timed_ones = BTreeSet::new();
     for _ in 0..study.timing_repeats {
-        for record in &mut *records {
+        for (place, record) in records.iter_mut().enumerate() {
             if stop::is_asked() || !wants_timing(record, study.timing_repeats) {
                 continue;
             }
@@ -206,13 +207,14 @@ pub fn time_study(
                 continue;
             }
             record.wall.extend(timed);
-            is_timed = true;
+            timed_ones.insert(place);
             tell(Progress::Advanced(estimated_work(&record.case)));
         }
     }
-    if let Some(store) = store.filter(|_| is_timed) {
-        for record in &*records {
-            store.write_wall(record)?;
+    // Once for all rounds: a record is kept whole with its times.
+    if let Some(store) = store {
+        for place in timed_ones {
+            store.write(&records[place])?;
         }
     }
     Ok(())

@@ -106,7 +106,7 @@ impl JobList {
 
 /// The cases that have no finished record of this program.
 pub fn missing_of<'a>(study: &Study, cases: &[&'a Case], folder: &Path) -> Vec<&'a Case> {
-    let store = RecordStore::for_cases(folder, &study.name, study.planned.len());
+    let store = RecordStore::new(folder, &study.name);
     let missing: Vec<&Case> = cases.iter().filter(|case| !store.is_done(case)).copied().collect();
     if !study.is_race {
         return missing;

@@ -108,31 +108,42 @@ fn read_stream(path: &Path) -> std::io::Result<String> {
     Ok(text)
 }
 
+/// Cases up to which a study is small: its records are held in memory while it runs, and all its tables are written, by
+/// every share too. Of more cases the tables of profiles and of settlement are long.
+const MOST_CASES_OF_SMALL: usize = 64;
 /// Cases up to which a table is plain CSV; that of more is compressed, to a fifteenth.
 const MOST_PLAIN_CASES: usize = 2000;
 
+/// Whether a study has few cases.
+pub fn is_small(study: &Study) -> bool {
+    study.planned.len() <= MOST_CASES_OF_SMALL
+}
+
 /// Whether the tables of a study are compressed, whatever was asked for.
-pub fn is_compressed(study: &Study, store: &RecordStore) -> bool {
-    store.is_packed() && study.planned.len() > MOST_PLAIN_CASES
+pub fn is_compressed(study: &Study) -> bool {
+    study.planned.len() > MOST_PLAIN_CASES
+}
+
+/// Says what lies in the store of a study and is not read.
+pub fn tell_of_passed_over(study: &Study, store: &RecordStore) {
+    for sentence in store.passed_over() {
+        say!("{}: {sentence}", study.name);
+    }
 }
 
 /// Writes the CSV of every record that a store keeps of a study, whichever run made it: a run of one tier or shard takes
-/// nothing away from what others found. Those that are at hand are not read again. With a form for the tables beside it
-/// those of profiles, of settlement over time, and of what every column means are written too; of a packed study the
-/// last alone: `oedometer records` prints the others.
-pub fn write_table(
+/// nothing away from what others found. Those that are at hand are not read again. Beside it stands the table of what
+/// every column means, and of a small study those of profiles and of settlement over time: of a larger one `oedometer
+/// records` prints them.
+pub fn write_tables(
     study: &Study,
     store: &RecordStore,
     at_hand: &[Record],
-    beside: Option<TableForm>,
+    asked: TableForm,
 ) -> anyhow::Result<PathBuf> {
     store.refresh();
-    for damage in store.damages() {
-        say!("{}: {damage}", study.name);
-    }
     let cases = study.cases(Tier::Full);
-    let asked = beside.unwrap_or(TableForm::Plain);
-    let form = if is_compressed(study, store) { TableForm::Compressed } else { asked };
+    let form = if is_compressed(study) { TableForm::Compressed } else { asked };
     let at_hand: HashMap<&str, &Record> =
         at_hand.iter().map(|record| (record.hash.as_str(), record)).collect();
     let record_of = |case: &Case| match at_hand.get(case.hash().as_str()) {
@@ -155,11 +166,9 @@ pub fn write_table(
     if foreign > 0 {
         say!("{}: {foreign} older records in the table are of other sources", study.name);
     }
-    if beside.is_some() {
-        for long in LongTable::ALL.into_iter().filter(|_| !store.is_packed()) {
-            write(long.name(), long.header_line(), &|record| long.rows_of(record))?;
-        }
-        write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
+    for long in LongTable::ALL.into_iter().filter(|_| is_small(study)) {
+        write(long.name(), long.header_line(), &|record| long.rows_of(record))?;
     }
+    write_whole(&store.folder().join("columns.csv"), columns_csv()?.as_bytes())?;
     Ok(table)
 }

@@ -67,7 +67,7 @@ impl State {
         for name in entries.filter(|entry| entry.path().is_dir()).map(|entry| entry.file_name()) {
             let name = name.to_string_lossy().into_owned();
             let store = RecordStore::new(folder, &name);
-            state.notes.extend(store.damages().iter().map(ToString::to_string));
+            state.notes.extend(store.passed_over());
             let hashes = store.hashes();
             let records: Vec<Record> = hashes.iter().filter_map(|hash| store.read(hash)).collect();
             if records.len() < hashes.len() {

@@ -1,4 +1,4 @@
-//! Packs: the records of a large study, many to a file.
+//! Packs: the records of a study, many to a file.
 //!
 //! A pack is a file of gzip members (RFC 1952), one behind the other, one member a record, and in it two lines of JSON:
 //! the record, and its wall times. `zcat STUDY/records/*.jsonl.gz` shows them all. The extra field of a member's header

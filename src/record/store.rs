@@ -1,8 +1,8 @@
-//! Records on disk: one folder per case in a small study, packs in a large one.
+//! The records of a study on disk: all of them in packs, whatever the size of the study.
 
 use crate::case::Case;
-use crate::record::pack::{Damage, Entry, Packs};
-use crate::record::whole_file::{Layout, StoreError, is_whole, sealed, write_rebuildable};
+use crate::record::pack::{Entry, Packs};
+use crate::record::whole_file::{StoreError, sealed};
 use crate::record::{Origins, Provenance, Record, SCHEMA, WallSample};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -10,14 +10,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Cases up to which each has files of its own: a person looks at them one by one, and a folder lists them.
-pub const MOST_SINGLE_CASES: usize = 64;
-/// Folder of the cases of a small study, within that of its results.
+/// Working folders of attached programs, within that of a study's results.
 const CASES: &str = "cases";
-/// File of a record in the folder of its case.
-const RECORD: &str = "record.json";
-/// File of its wall times, beside it.
-const WALL: &str = "wall.json";
+/// File of a record in a folder of its case, in the layout of version 0.2.
+const RECORD_OF_OLD: &str = "record.json";
 
 /// What there is of a case to take up.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,27 +42,18 @@ struct WallLine {
 }
 
 /// The records of one study.
-///
-/// Where there are packs every record goes there, and one in a pack is newer than a file of its own.
 #[derive(Clone, Debug)]
 pub struct RecordStore {
     folder: PathBuf,
     packs: Arc<Packs>,
-    is_packed: bool,
 }
 
 impl RecordStore {
-    /// The store of a study below a folder of results; a new one has a folder a case.
+    /// The store of a study below a folder of results.
     pub fn new(results: &Path, study: &str) -> Self {
-        Self::for_cases(results, study, 0)
-    }
-
-    /// The store of a study of so many cases below a folder of results; that of many is packed.
-    pub fn for_cases(results: &Path, study: &str, cases: usize) -> Self {
         let folder = results.join(study);
         let packs = Arc::new(Packs::new(&folder));
-        let is_packed = cases > MOST_SINGLE_CASES || !packs.entries().is_empty();
-        Self { folder, packs, is_packed }
+        Self { folder, packs }
     }
 
     /// Folder of the study's results.
@@ -74,19 +61,27 @@ impl RecordStore {
         &self.folder
     }
 
-    /// Folder of a case, by its hash.
+    /// Folder in which the attached program of a case works, by the hash of the case.
     pub fn folder_of(&self, hash: &str) -> PathBuf {
         self.folder.join(CASES).join(hash)
     }
 
-    /// Whether records go into packs.
-    pub fn is_packed(&self) -> bool {
-        self.is_packed
+    /// What lies in the store and is no record of it, a sentence each: damaged bytes of the packs, and a folder of an older
+    /// layout.
+    pub fn passed_over(&self) -> Vec<String> {
+        let damages = self.packs.damages();
+        damages.iter().map(ToString::to_string).chain(self.older_layout()).collect()
     }
 
-    /// Damaged bytes of the packs.
-    pub fn damages(&self) -> Vec<Damage> {
-        self.packs.damages()
+    /// The sentence about records of an older layout, where there are any.
+    fn older_layout(&self) -> Option<String> {
+        let cases = self.folder.join(CASES);
+        let mut folders = fs::read_dir(&cases).into_iter().flatten().flatten();
+        let is_there = folders.any(|case| case.path().join(RECORD_OF_OLD).is_file());
+        is_there.then(|| {
+            let cases = cases.display();
+            format!("{cases} has records in the layout of version 0.2: they are not read, and the folder can be deleted")
+        })
     }
 
     /// Takes note of what other writers appended since the store was opened.
@@ -96,10 +91,8 @@ impl RecordStore {
 
     /// Whether a program of these sources finished a case, as far as the packs tell without unpacking.
     pub fn is_done(&self, case: &Case) -> bool {
-        match self.packs.entry(case.number()) {
-            Some(entry) => entry.is_taken_up_by(&Provenance::of_this_program()),
-            None => self.finished(case).is_some(),
-        }
+        let entry = self.packs.entry(case.number());
+        entry.is_some_and(|entry| entry.is_taken_up_by(&Provenance::of_this_program()))
     }
 
     /// Whether there is a whole record of a case.
@@ -107,14 +100,13 @@ impl RecordStore {
         self.texts(&case.hash()).is_some()
     }
 
-    /// What made the records of some cases; of packed ones that one build made only the first is read.
+    /// What made the records of some cases; of those that one build made only the first is read.
     pub fn origins(&self, cases: &[&Case]) -> Origins {
         let mut origins = Origins::default();
         let mut by_tags: HashMap<(u64, u64), (&Case, usize)> = HashMap::new();
         for case in cases {
-            match self.packs.entry(case.number()) {
-                Some(entry) => by_tags.entry((entry.program, entry.build)).or_insert((case, 0)).1 += 1,
-                None => self.origin(case).iter().for_each(|origin| origins.add(origin)),
+            if let Some(entry) = self.packs.entry(case.number()) {
+                by_tags.entry((entry.program, entry.build)).or_insert((case, 0)).1 += 1;
             }
         }
         for (case, records) in by_tags.into_values() {
@@ -176,12 +168,9 @@ impl RecordStore {
 
     /// The hash of every case with a record, in their order.
     pub fn hashes(&self) -> Vec<String> {
-        let packed = self.packs.entries().into_iter().map(|entry| format!("{:016x}", entry.case));
-        let folders = fs::read_dir(self.folder.join(CASES)).into_iter().flatten().flatten();
-        let single = folders.filter_map(|folder| folder.file_name().into_string().ok());
-        let mut hashes: Vec<String> = packed.chain(single).collect();
+        let mut hashes: Vec<String> =
+            self.packs.entries().into_iter().map(|entry| format!("{:016x}", entry.case)).collect();
         hashes.sort_unstable();
-        hashes.dedup();
         hashes
     }
 
@@ -196,22 +185,17 @@ impl RecordStore {
     /// The text of the record of a case, where it is whole, and its wall times. Without readable ones the case is done
     /// all the same, only not timed.
     fn texts(&self, hash: &str) -> Option<(String, Vec<WallSample>)> {
-        if let Some((text, wall)) = self.packs.texts(number_of(hash)) {
-            let wall = serde_json::from_str::<WallLine>(&wall).map(|line| line.wall).unwrap_or_default();
-            return Some((text, wall));
-        }
-        let read = |file| fs::read_to_string(self.folder_of(hash).join(file)).ok();
-        let text = read(RECORD).filter(|text| is_whole(text))?;
-        let wall = read(WALL).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        let (text, wall) = self.packs.texts(number_of(hash))?;
+        let wall = serde_json::from_str::<WallLine>(&wall).map(|line| line.wall).unwrap_or_default();
         Some((text, wall))
     }
 
-    /// Writes a record so that a reader sees the whole of it or nothing.
+    /// Appends a record with its wall times; the older one of the case counts no more.
     ///
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
-        // One that was read has the seal of its file.
+        // One that was read has the seal of its text.
         let unsealed;
         let record = if record.digest.is_empty() {
             record
@@ -219,42 +203,13 @@ impl RecordStore {
             unsealed = Record { digest: String::new(), ..record.clone() };
             &unsealed
         };
-        if self.is_packed { self.append(record) } else { self.write_files(record) }
-    }
-
-    fn append(&self, record: &Record) -> Result<(), StoreError> {
         let json = |source| StoreError::Json { path: self.folder.clone(), source };
         let line = WallLine { hash: record.hash.clone(), wall: record.wall.clone() };
         let wall = serde_json::to_string(&line).map_err(json)?;
-        let text = sealed(record, Layout::OneLine).map_err(json)? + "\n" + &wall + "\n";
-        self.packs.append(
-            Entry::new(number_of(&record.hash), record.status.is_worth_another_run(), &record.provenance),
-            &text,
-        )
-    }
-
-    fn write_files(&self, record: &Record) -> Result<(), StoreError> {
-        let path = self.folder_of(&record.hash).join(RECORD);
-        self.write_wall(record)?;
-        let text = sealed(record, Layout::Lines)
-            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
-        // Not forced to the disk, which costs more than a small case: after a loss of power an unreadable record
-        // counts as none, and the case runs again.
-        write_rebuildable(&path, text.as_bytes())
-    }
-
-    /// Writes the wall times of a record that is kept already: alone where they have a file of their own.
-    ///
-    /// # Errors
-    /// When the file system refuses.
-    pub fn write_wall(&self, record: &Record) -> Result<(), StoreError> {
-        if self.is_packed {
-            return self.write(record);
-        }
-        let path = self.folder_of(&record.hash).join(WALL);
-        let text = serde_json::to_string_pretty(&record.wall)
-            .map_err(|source| StoreError::Json { path: path.clone(), source })?;
-        write_rebuildable(&path, text.as_bytes())
+        let text = sealed(record).map_err(json)? + "\n" + &wall + "\n";
+        let entry =
+            Entry::new(number_of(&record.hash), record.status.is_worth_another_run(), &record.provenance);
+        self.packs.append(entry, &text)
     }
 }
 

@@ -151,7 +151,7 @@ static REPORTED: LazyLock<Reported> = LazyLock::new(|| {
     let (records, steps) = (distinct_records(), step_records());
     for (name, text, records) in [("distinct", STUDY, &records), ("steps", STEPS, &steps)] {
         fs::write(at.join(format!("{name}.toml")), text).expect("a file");
-        let store = RecordStore::for_cases(&at.join("res"), name, records.len());
+        let store = RecordStore::new(&at.join("res"), name);
         for record in records {
             store.write(record).expect("written");
         }

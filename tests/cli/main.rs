@@ -23,6 +23,7 @@ mod mapping;
 mod over_time;
 mod over_time_attached;
 mod own_answers;
+mod packs;
 mod place;
 mod planted_bug;
 mod planted_damage;

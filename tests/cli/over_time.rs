@@ -1,6 +1,7 @@
 //! `compare`, `history` and `bisect` on a repository of ten commits: one makes results worse, one does not build, one
 //! crashes, one only renames.
 
+use crate::packs::change_records;
 use crate::program::{PROGRAM, Told, call, call_with};
 use std::fmt::Write;
 use std::fs;
@@ -326,9 +327,7 @@ fn states_that_are_not_whole_are_told_in_sentences() {
     git(at, &["checkout", "-q", "--", "golden/gate.csv"]);
     // Records of another layout.
     assert_eq!(call(at, &["run", "studies/gate.toml", "--out", "a"]).code, 0);
-    let records = fs::read_dir(at.join("a/gate/cases")).expect("records");
-    let record = records.flatten().map(|entry| entry.path()).next().expect("a record").join("record.json");
-    fs::write(&record, "{\"schema\": 999}\n").expect("written");
+    change_records(&at.join("a"), "gate", |number, record| record.schema += u32::from(number == 0));
     let told = call(at, &["compare", "a", "a"]);
     assert!(told.err.contains("1 record of `gate`") && told.err.contains("passed over"), "{}", told.err);
     // A shallow clone, and no git at all.

@@ -1,6 +1,7 @@
 //! Faults around a run: killed, out of space, two at once, damaged records, a clock that jumps.
 //! Nothing finished is lost, and nothing wrong is taken for a result.
 
+use crate::packs::{only_pack, records, tampered};
 use crate::program::{PROGRAM, table_without_times};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -39,44 +40,31 @@ fn run_in(folder: &Path, arguments: &[&str]) -> (i32, String) {
     (told.code, told.err)
 }
 
-/// Every file of the results but wall times, which differ from day to day.
-fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    fn collect(folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
-        for entry in fs::read_dir(folder).expect("a folder").flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                collect(&path, files);
-            } else if path.file_name().is_some_and(|name| name != "wall.json") {
-                // Wall and CPU times are the machine's business.
-                let is_table = fs::read_to_string(&path).is_ok_and(|text| {
-                    text.lines().next().is_some_and(|header| header.ends_with(",cpu_seconds"))
-                });
-                let kept = if is_table {
-                    table_without_times(&path).into_bytes()
-                } else {
-                    fs::read(&path).expect("a file")
-                };
-                files.insert(path.clone(), kept);
-            }
+/// The tables of the results and every record as text, without wall times, which differ from day to day.
+fn results(folder: &Path) -> BTreeMap<String, String> {
+    let out = folder.join("out");
+    let mut results = records(&out, "short");
+    for table in fs::read_dir(out.join("short")).expect("a folder").flatten() {
+        let name = table.file_name().to_string_lossy().into_owned();
+        if name == "short.csv" {
+            results.insert(name, table_without_times(&table.path()));
+        } else if table.path().is_file() && table.path().extension().is_none_or(|end| end != "part") {
+            // What a kill left half written has a name of its own, and is nobody's result.
+            results.insert(name, fs::read_to_string(table.path()).expect("a table"));
         }
     }
-    let mut files = BTreeMap::new();
-    collect(folder, &mut files);
-    files
-        .into_iter()
-        .map(|(path, bytes)| (path.strip_prefix(folder).expect("within").to_owned(), bytes))
-        .collect()
+    results
 }
 
-fn whole_run() -> (BTreeMap<PathBuf, Vec<u8>>, Duration) {
+fn whole_run() -> (BTreeMap<String, String>, Duration) {
     let folder = folder_with_study();
     let start = Instant::now();
     assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
-    (results(&folder.path().join("out")), start.elapsed())
+    (results(folder.path()), start.elapsed())
 }
 
 #[test]
-fn a_run_killed_at_any_moment_resumes_to_the_same_bytes() {
+fn a_run_killed_at_any_moment_resumes_to_the_same_records_and_tables() {
     let (expected, duration) = whole_run();
     let mut interrupted = 0;
     for kill in 0..KILLS {
@@ -93,18 +81,16 @@ fn a_run_killed_at_any_moment_resumes_to_the_same_bytes() {
         let ended = child.wait().expect("it is over");
         interrupted += u32::from(!ended.success());
         assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]).0, 0);
-        let mut found = results(&folder.path().join("out"));
-        // What a kill left half written has a name of its own, and is nobody's result.
-        found.retain(|path, _| !path.to_string_lossy().ends_with(".part"));
+        let found = results(folder.path());
         assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "kill {kill}");
-        assert!(found == expected, "other bytes after kill {kill}");
+        assert!(found == expected, "other results after kill {kill}");
     }
     // On a busy machine the first run took longer than these.
     assert!(interrupted >= KILLS / 10, "only {interrupted} of {KILLS} runs were interrupted");
 }
 
 #[test]
-fn two_runs_in_one_folder_leave_the_same_bytes_as_one() {
+fn two_runs_in_one_folder_leave_the_same_records_and_tables_as_one() {
     let (expected, _) = whole_run();
     let folder = folder_with_study();
     let start = || {
@@ -119,7 +105,7 @@ fn two_runs_in_one_folder_leave_the_same_bytes_as_one() {
     for mut one in both {
         assert!(one.wait().expect("it is over").success());
     }
-    assert!(results(&folder.path().join("out")) == expected);
+    assert!(results(folder.path()) == expected);
 }
 
 /// Runs under a limit on the size of any file, which is what a full disk looks like to a writer.
@@ -128,18 +114,17 @@ fn two_runs_in_one_folder_leave_the_same_bytes_as_one() {
 fn a_full_disk_is_told_and_leaves_no_half_record() {
     let (expected, _) = whole_run();
     let folder = folder_with_study();
-    // Blocks of 1024 bytes; a record has more, its wall times fewer.
+    // Blocks of 1024 bytes; a record has more.
     let script = format!("trap '' XFSZ; ulimit -f 2; exec {PROGRAM} run short.toml --out out");
     let output =
         Command::new("bash").current_dir(folder.path()).args(["-c", &script]).output().expect("bash");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(3), "{told}");
-    assert!(told.contains("cannot write") && !told.contains("panicked"), "{told}");
-    let left = results(&folder.path().join("out"));
-    assert!(left.keys().all(|path| !path.to_string_lossy().ends_with("record.json")), "{:?}", left.keys());
+    assert!(told.starts_with("error: cannot write ") && told.lines().count() == 1, "{told}");
+    assert_eq!(only_pack(&folder.path().join("out"), "short").1, b"", "nothing half written stays");
     // There is room again.
     assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]).0, 0);
-    assert!(results(&folder.path().join("out")) == expected);
+    assert!(results(folder.path()) == expected);
 }
 
 #[test]
@@ -157,20 +142,18 @@ fn a_clock_that_jumps_changes_no_result() {
     let folder = folder_with_study();
     assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
     // Records from the future and from long ago are taken up alike: nothing looks at dates.
-    let cases = folder.path().join("out/short/cases");
-    for (i, case) in fs::read_dir(cases).expect("cases").flatten().enumerate() {
-        let record = fs::File::options().write(true).open(case.path().join("record.json")).expect("a record");
-        let jump = Duration::from_secs(3_000_000_000);
-        let now = std::time::SystemTime::now();
-        let time = if i % 2 == 0 { now + jump } else { std::time::UNIX_EPOCH + Duration::from_secs(1) };
-        record.set_modified(time).expect("a date");
+    let (path, _) = only_pack(&folder.path().join("out"), "short");
+    let long_ago = std::time::UNIX_EPOCH + Duration::from_secs(1);
+    for time in [std::time::SystemTime::now() + Duration::from_secs(3_000_000_000), long_ago] {
+        let pack = fs::File::options().write(true).open(&path).expect("a pack");
+        pack.set_modified(time).expect("a date");
+        let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
+        assert!(code == 0 && told.contains("9 from disk"), "{told}");
     }
-    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
-    assert!(code == 0 && told.contains("9 from disk"), "{told}");
-    assert!(results(&folder.path().join("out")) == expected);
+    assert!(results(folder.path()) == expected);
 }
 
-/// The record of one case with its file.
+/// A folder with the record of one case: its pack, and the bytes of that.
 fn one_record() -> (TempDir, PathBuf, Vec<u8>) {
     let folder = TempDir::new().expect("a folder");
     let study = STUDY
@@ -178,46 +161,37 @@ fn one_record() -> (TempDir, PathBuf, Vec<u8>) {
         .replace("[\"MPM\", \"GIMP-SRI-patch\", \"GC-SRI-patch\"]", "[\"MPM\"]");
     fs::write(folder.path().join("short.toml"), study).expect("a file");
     assert_eq!(run_in(folder.path(), &["run", "short.toml", "--out", "out"]).0, 0);
-    let case =
-        fs::read_dir(folder.path().join("out/short/cases")).expect("cases").flatten().next().expect("one");
-    let file = case.path().join("record.json");
-    let bytes = fs::read(&file).expect("a record");
-    (folder, file, bytes)
+    let (pack, bytes) = only_pack(&folder.path().join("out"), "short");
+    (folder, pack, bytes)
 }
 
 #[test]
-fn a_damaged_record_is_run_again_to_the_same_bytes() {
-    let (folder, file, sound) = one_record();
+fn a_record_that_is_damaged_or_was_tampered_with_is_run_again_to_the_same_values() {
+    let (folder, pack, sound) = one_record();
+    let expected = results(folder.path());
     let middle = sound.len() / 2;
     let cut = sound[..middle].to_vec();
-    let mut flipped = sound.clone();
-    flipped[middle] = b'#';
     let mut zeroed = sound.clone();
     zeroed[middle..middle + 512].fill(0);
-    let other_case = String::from_utf8_lossy(&sound).replace("\"cells\": 3", "\"cells\": 4").into_bytes();
-    let no_number =
-        String::from_utf8_lossy(&sound).replacen("\"value\": ", "\"value\": NaN, \"v\": ", 1).into_bytes();
-    for damaged in [cut, flipped, zeroed, other_case, no_number, Vec::new()] {
-        fs::write(&file, &damaged).expect("a file");
+    // Sound JSON in a sound member, of the right case: one digit of one result, another input, no number.
+    let changed = |what: &str, by: &str| tampered(&sound, |text| text.replacen(what, by, 1), None);
+    let digit = tampered(
+        &sound,
+        |text| {
+            let place = text.find("\"pressure\":[").expect("a field") + 20;
+            let digit = text[place..].find(|letter: char| letter.is_ascii_digit()).expect("a digit") + place;
+            let other = if text.as_bytes()[digit] == b'7' { "3" } else { "7" };
+            text[..digit].to_owned() + other + &text[digit + 1..]
+        },
+        None,
+    );
+    let no_number = changed("\"value\":", "\"value\":NaN,\"v\":");
+    for damaged in [cut, zeroed, digit, changed("\"cells\":3", "\"cells\":4"), no_number, Vec::new()] {
+        fs::write(&pack, &damaged).expect("a file");
         let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
         assert!(code == 0 && told.contains("0 from disk"), "{told}");
-        assert_eq!(fs::read(&file).expect("a record"), sound);
+        assert!(results(folder.path()) == expected);
     }
-}
-
-#[test]
-fn a_record_that_was_tampered_with_is_not_taken_up() {
-    // One digit of one result, in a file that is sound JSON and of the right case.
-    let (folder, file, sound) = one_record();
-    let text = String::from_utf8(sound.clone()).expect("words");
-    let place = text.find("\"pressure\": [").expect("a field") + 40;
-    let digit = text[place..].find(|letter: char| letter.is_ascii_digit()).expect("a digit") + place;
-    let mut tampered = text.into_bytes();
-    tampered[digit] = if tampered[digit] == b'7' { b'3' } else { b'7' };
-    fs::write(&file, &tampered).expect("a file");
-    let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
-    assert!(code == 0 && told.contains("0 from disk"), "{told}");
-    assert_eq!(fs::read(&file).expect("a record"), sound);
 }
 
 #[test]
@@ -271,32 +245,17 @@ proptest! {
 
 #[test]
 fn any_damage_to_a_record_leaves_it_whole_or_unread() {
-    use oedometer::RecordStore;
-    let (folder, file, sound) = one_record();
-    let text = String::from_utf8(sound.clone()).expect("words");
-    let mut record = oedometer::Record::from_json(&text).expect("a record");
-    record.digest.clear();
-    let store = RecordStore::new(&folder.path().join("out"), "short");
+    let (folder, pack, sound) = one_record();
+    let out = folder.path().join("out");
+    let expected = records(&out, "short");
     let mut seed = 7_u64;
     for _ in 0..400 {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let mut damaged = sound.clone();
         let at = usize::try_from(seed >> 33).expect("small") % damaged.len();
         damaged[at] ^= 1 << (seed >> 29 & 7);
-        if damaged == sound {
-            continue;
-        }
-        fs::write(&file, &damaged).expect("a file");
-        // Another program's record is not taken up by this library either: only damage is looked at.
-        if let Some(read) = store.kept(&record.case) {
-            assert_same(&read, &record, at);
-        }
+        fs::write(&pack, &damaged).expect("a file");
+        let read = records(&out, "short");
+        assert!(read.is_empty() || read == expected, "a flipped bit at byte {at} was taken for a result");
     }
-}
-
-/// What was read is the record to the last number, or the damage went unseen.
-fn assert_same(read: &oedometer::Record, record: &oedometer::Record, at: usize) {
-    let mut read = read.clone();
-    read.wall.clone_from(&record.wall);
-    assert!(read == *record, "a flipped bit at byte {at} was taken for a result");
 }

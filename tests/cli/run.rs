@@ -1,10 +1,11 @@
 //! `run` and `plan`: records and tidy CSV, resuming, shards, exit codes; the same bytes whatever
 //! the number of jobs.
 
+use crate::packs::{change_records, members, only_pack, records, tampered};
 use crate::program::{Told, call, folder_with, table_without_times};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::TempDir;
 
 /// Eight short cases.
@@ -57,20 +58,9 @@ impl Place {
         reader.records().map(|row| row.expect("a row")[1].to_owned()).collect()
     }
 
-    fn records(&self, out: &str) -> PathBuf {
-        self.path().join(out).join("short").join("cases")
-    }
-
-    /// Every record by its hash, as bytes.
-    fn record_bytes(&self, out: &str) -> BTreeMap<String, Vec<u8>> {
-        let Ok(entries) = fs::read_dir(self.records(out)) else { return BTreeMap::new() };
-        entries
-            .map(|entry| {
-                let entry = entry.expect("an entry");
-                let name = entry.file_name().into_string().expect("a hash");
-                (name, fs::read(entry.path().join("record.json")).expect("a record"))
-            })
-            .collect()
+    /// Every record by its hash, as text without wall times.
+    fn records(&self, out: &str) -> BTreeMap<String, String> {
+        records(&self.path().join(out), "short")
     }
 
     fn table(&self, out: &str) -> String {
@@ -101,11 +91,11 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
     assert!(told.err.contains("short: 8 cases (0 from disk, 0 failed)"), "{}", told.err);
     let planned = place.hashes_planned();
     assert_eq!(planned.len(), 8);
-    let records = place.record_bytes("out");
+    let records = place.records("out");
     let stored: Vec<String> = records.keys().cloned().collect();
     assert_eq!(stored, sorted(planned.clone()), "`plan` and `run` agree on the hashes");
-    for (hash, bytes) in &records {
-        let record: serde_json::Value = serde_json::from_slice(bytes).expect("JSON");
+    for (hash, text) in &records {
+        let record: serde_json::Value = serde_json::from_str(text).expect("JSON");
         assert_eq!(record["hash"], hash.as_str());
         assert_eq!(record["status"], "ok");
         for key in
@@ -113,7 +103,6 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
         {
             assert!(!record[key].is_null(), "`{key}` is missing");
         }
-        let text = String::from_utf8_lossy(bytes);
         let folder = place.path().to_string_lossy();
         assert!(!text.contains(folder.as_ref()), "no absolute path in a record");
         assert!(!text.contains("wall"), "wall times change from day to day, a record does not");
@@ -125,14 +114,8 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
     // 8 cases × 2 times × 2 references × (27 errors of fields + the settlement).
     assert_eq!(order.len(), 8 * 2 * 2 * 28);
     assert!(place.column("out", "value").iter().all(|value| value.parse::<f64>().is_ok_and(f64::is_finite)));
-    assert!(
-        !place
-            .path()
-            .join("out/short/cases")
-            .read_dir()
-            .expect("cases")
-            .any(|entry| { entry.expect("an entry").file_name().to_string_lossy().contains(".part") })
-    );
+    let files = fs::read_dir(place.path().join("out/short")).expect("a folder").flatten();
+    assert!(!files.map(|file| file.file_name()).any(|name| name.to_string_lossy().contains(".part")));
 }
 
 #[test]
@@ -142,7 +125,7 @@ fn results_do_not_depend_on_the_number_of_jobs() {
     assert_eq!(place.run(&["--jobs", "2", "--out", "two"]).code, 0);
     assert_eq!(place.run(&["--jobs", "64", "--out", "many"]).code, 0);
     for out in ["two", "many"] {
-        assert_eq!(place.record_bytes("one"), place.record_bytes(out), "{out}");
+        assert_eq!(place.records("one"), place.records(out), "{out}");
         assert_eq!(place.table("one"), place.table(out), "{out}");
     }
 }
@@ -151,24 +134,26 @@ fn results_do_not_depend_on_the_number_of_jobs() {
 fn resuming_takes_finished_records_and_runs_the_rest() {
     let place = Place::with(STUDY);
     assert_eq!(place.run(&[]).code, 0);
-    let (records, table) = (place.record_bytes("out"), place.table("out"));
+    let (records, table) = (place.records("out"), place.table("out"));
     let told = place.run(&["--resume"]);
     assert_eq!(told.code, 0);
     assert!(told.err.contains("8 cases (8 from disk, 0 failed)"), "{}", told.err);
-    assert_eq!(place.record_bytes("out"), records);
-    // What is spoilt in any way is run again.
-    let hashes: Vec<String> = records.keys().cloned().collect();
-    let record = |index: usize| place.records("out").join(&hashes[index]).join("record.json");
-    fs::remove_file(record(0)).expect("removed");
-    fs::write(record(1), b"\x00\xff no record").expect("written");
-    let half = &records[&hashes[2]][..records[&hashes[2]].len() / 2];
-    fs::write(record(2), half).expect("written");
-    fs::write(record(3), b"").expect("written");
-    fs::copy(record(5), record(4)).expect("a record of another case");
+    assert_eq!(place.records("out"), records);
+    // What is spoilt in any way is run again: one that is gone, garbage, half a record, nothing, that of another case.
+    let (path, pack) = only_pack(&place.path().join("out"), "short");
+    let all = members(&pack);
+    let member = |number: usize| &pack[all[number].clone()];
+    let mut garbage = member(1).to_vec();
+    garbage[60..].fill(0xff);
+    let half = &member(2)[..member(2).len() / 2];
+    let (nothing, other) =
+        (tampered(member(3), |_| String::new(), None), tampered(member(5), |text| text, Some(member(4))));
+    let rest = &pack[all[5].start..];
+    fs::write(path, [&garbage, half, &nothing, &other, rest].concat()).expect("written");
     let told = place.run(&["--resume"]);
     assert_eq!(told.code, 0);
     assert!(told.err.contains("8 cases (3 from disk, 0 failed)"), "{}", told.err);
-    assert_eq!(place.record_bytes("out"), records);
+    assert_eq!(place.records("out"), records);
     assert_eq!(place.table("out"), table);
     // Without being asked to, nothing is taken up.
     let told = place.run(&[]);
@@ -179,19 +164,15 @@ fn resuming_takes_finished_records_and_runs_the_rest() {
 fn a_record_of_other_sources_or_of_an_older_layout_is_run_again() {
     let place = Place::with(STUDY);
     assert_eq!(place.run(&[]).code, 0);
-    let records = place.record_bytes("out");
-    let hashes: Vec<&String> = records.keys().collect();
-    for (hash, (key, value)) in hashes
-        .iter()
-        .zip([("/provenance/sources", serde_json::json!("other")), ("/schema", serde_json::json!(0))])
-    {
-        let mut record: serde_json::Value = serde_json::from_slice(&records[*hash]).expect("JSON");
-        *record.pointer_mut(key).expect("the key") = value;
-        fs::write(place.records("out").join(hash).join("record.json"), record.to_string()).expect("written");
-    }
+    let records = place.records("out");
+    change_records(&place.path().join("out"), "short", |number, record| match number {
+        0 => record.provenance.sources = "other".to_owned(),
+        1 => record.schema = 0,
+        _ => {}
+    });
     let told = place.run(&["--resume"]);
     assert!(told.err.contains("(6 from disk"), "{}", told.err);
-    assert_eq!(place.record_bytes("out"), records);
+    assert_eq!(place.records("out"), records);
 }
 
 #[test]
@@ -217,7 +198,7 @@ fn shards_part_the_cases_exactly() {
         for index in 1..=count {
             let out = format!("shard-{index}-of-{count}");
             let told = place.run(&["--shard", &format!("{index}/{count}"), "--out", &out]);
-            let hashes: Vec<String> = place.record_bytes(&out).into_keys().collect();
+            let hashes: Vec<String> = place.records(&out).into_keys().collect();
             assert_eq!(told.code, 0, "an empty share is no failure: {}", told.err);
             seen.extend(hashes);
         }
@@ -237,7 +218,7 @@ fn a_failed_case_is_told_and_the_others_go_on() {
     let failures: Vec<&str> = told.err.lines().filter(|line| line.contains("unstable at step")).collect();
     assert_eq!(failures.len(), 4, "{}", told.err);
     assert!(failures.iter().all(|line| line.contains("stable=1.2") && line.contains("t = ")), "{}", told.err);
-    assert_eq!(place.record_bytes("out").len(), 8, "a failed case has its record too");
+    assert_eq!(place.records("out").len(), 8, "a failed case has its record too");
     let (cases, statuses) = (place.column("out", "case"), place.column("out", "status"));
     let by_case: BTreeMap<&String, &String> = cases.iter().zip(&statuses).collect();
     assert_eq!(by_case.len(), 8);
@@ -267,25 +248,6 @@ fn results_that_cannot_be_written_are_told() {
     assert!(told.code == 2 || told.code == 3, "exit code {}: {}", told.code, told.err);
     assert!(told.err.contains("error: cannot ") && told.err.contains("out"), "{}", told.err);
     assert_eq!(fs::read_to_string(place.path().join("out")).expect("the file"), "a file in the way");
-}
-
-#[test]
-fn one_record_that_cannot_be_written_ends_the_run_and_the_others_stay() {
-    let place = Place::with(STUDY);
-    let hash = place.hashes_planned()[3].clone();
-    fs::create_dir_all(place.records("out")).expect("a folder");
-    fs::write(place.records("out").join(&hash), "a file in the way").expect("written");
-    let told = place.run(&["--jobs", "2"]);
-    assert_eq!(told.code, 3, "{}", told.err);
-    assert!(told.err.contains(&hash), "the place is named: {}", told.err);
-    let kept = fs::read_dir(place.records("out"))
-        .expect("cases")
-        .filter(|entry| entry.as_ref().is_ok_and(|entry| entry.path().join("record.json").is_file()));
-    let kept = kept.count();
-    assert!(kept <= 7, "the others that were done by then");
-    fs::remove_file(place.records("out").join(&hash)).expect("removed");
-    let told = place.run(&["--resume"]);
-    assert!(told.code == 0 && told.err.contains(&format!("8 cases ({kept} from disk")), "{}", told.err);
 }
 
 #[test]

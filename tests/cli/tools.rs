@@ -1,12 +1,13 @@
 //! `score`, `explain`, `merge`, `schema`, `completions` and `run --case` through the
 //! program, and the list of faults that `check` is held against.
 
+use crate::packs::{change_records, members, only_pack, tampered};
 use crate::program::{assert_snapshot, assert_words, call, folder_with, table_without_times};
-use oedometer::{Record, RecordStore};
+use oedometer::Record;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 const STUDY: &str = r#"title = "Short"
@@ -132,34 +133,18 @@ fn merged_shards_are_the_whole_and_holes_are_told() {
     assert_eq!(call(at, &merge).code, 0);
     let table = |folder: &str| table_without_times(&at.join(folder).join("short/short.csv"));
     assert_eq!(table("merged"), table("whole"));
-    let modified = || {
-        let record =
-            fs::read_dir(at.join("merged/short/cases")).expect("cases").next().expect("one").expect("one");
-        fs::metadata(record.path().join("record.json")).expect("a record").modified().expect("a time")
-    };
-    let before = modified();
+    let merged = || only_pack(&at.join("merged"), "short");
+    let before = merged();
     assert_eq!(call(at, &merge).code, 0, "merging again changes nothing");
-    assert_eq!((table("merged"), modified()), (table("whole"), before));
+    assert!((table("merged"), merged()) == (table("whole"), before));
     assert_eq!(call(at, &["merge", "short.toml", "nowhere"]).code, 2);
     // A record that was changed by hand is no result, and takes nothing from those that are.
-    let case = fs::read_dir(at.join("part-1/short/cases")).expect("cases").next().expect("one").expect("one");
-    let path = case.path().join("record.json");
-    let text = fs::read_to_string(&path).expect("a record").replacen("\"steps\": ", "\"steps\": 1", 1);
-    fs::write(&path, text).expect("written");
+    let (path, pack) = only_pack(&at.join("part-1"), "short");
+    let first = members(&pack).remove(0);
+    let by_hand = tampered(&pack[first.clone()], |text| text.replacen("\"steps\":", "\"steps\":1", 1), None);
+    fs::write(path, [&by_hand, &pack[first.end..]].concat()).expect("written");
     assert_eq!(call(at, &merge).code, 0);
     assert_eq!(table("merged"), table("whole"));
-}
-
-/// Every record of a study as if another program had made it, signed as that program would.
-fn change_records(results: &Path, change: impl Fn(&mut Record)) {
-    let store = RecordStore::new(results, "short");
-    for case in fs::read_dir(results.join("short/cases")).expect("cases") {
-        let path = case.expect("a case").path().join("record.json");
-        let text = fs::read_to_string(path).expect("a record");
-        let mut record = Record::from_json(&text).expect("a record");
-        change(&mut record);
-        store.write(&record).expect("written");
-    }
 }
 
 #[test]
@@ -172,14 +157,16 @@ fn sound_records_that_disagree_are_no_merge() {
     let merge = |out: &str| call(at, &["merge", "short.toml", "one", "other", "--out", out]);
     assert_eq!(merge("agreed").code, 0, "equal records from two folders are one record");
     // An error in the last digit, from a build that is not told apart by anything else.
-    change_records(&at.join("other"), |record| record.errors[0].value = record.errors[0].value.next_up());
+    change_records(&at.join("other"), "short", |_, record| {
+        record.errors[0].value = record.errors[0].value.next_up();
+    });
     let told = merge("disagreed");
     assert_eq!(told.code, 6, "{}", told.err);
     assert!(told.err.contains("one/short and other/short have different results of"), "{}", told.err);
     assert!(told.err.contains("though one program is said to have made both"), "{}", told.err);
     assert!(!at.join("disagreed/short/short.csv").exists(), "no table of results that nobody can trust");
     // The same numbers from other sources are another program's all the same.
-    change_records(&at.join("other"), |record| {
+    change_records(&at.join("other"), "short", |_, record| {
         record.errors[0].value = record.errors[0].value.next_down();
         record.provenance.sources = "0123456789abcdef".to_owned();
     });

@@ -1,16 +1,16 @@
 //! Many cases: packed records, shares, tables that are made without reading everything again.
 
+use crate::packs::{lines, members, only_pack, packs};
 use crate::program::{PROGRAM, Told, call, call_with, folder_with, table_without_times};
 use oedometer::{Case, Failure, FailureKind, Record, RecordStore, Status, Study, StudySource, Tier};
-use std::collections::BTreeSet;
 use std::fs;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// More cases than have files of their own.
+/// More cases than a small study has.
 const STUDY: &str = r#"title = "Seventy-two short cases"
 scene = "terzaghi"
 
@@ -28,23 +28,6 @@ const CASES: usize = 72;
 
 fn study() -> Study {
     Study::check(&StudySource { name: "short.toml".to_owned(), text: STUDY.to_owned() }).expect("sound")
-}
-
-fn packs(folder: &Path, out: &str) -> Vec<PathBuf> {
-    let Ok(entries) = fs::read_dir(folder.join(out).join("short/records")) else { return Vec::new() };
-    let mut packs: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    packs.sort();
-    packs
-}
-
-/// Every line of the packs, as `zcat` shows them.
-fn lines(folder: &Path, out: &str) -> Vec<String> {
-    let mut text = String::new();
-    for pack in packs(folder, out) {
-        let file = fs::File::open(pack).expect("a pack");
-        flate2::read::MultiGzDecoder::new(file).read_to_string(&mut text).expect("gzip");
-    }
-    text.lines().map(str::to_owned).collect()
 }
 
 fn table(folder: &Path, out: &str) -> String {
@@ -68,16 +51,16 @@ fn whole() -> (TempDir, String) {
 fn many_cases_are_few_files_and_every_record_is_a_line_that_anyone_can_read() {
     let (folder, table) = whole();
     let at = folder.path();
-    assert_eq!(packs(at, "out").len(), 1);
+    assert_eq!(packs(&at.join("out"), "short").len(), 1);
     assert!(!at.join("out/short/cases").exists());
-    let lines = lines(at, "out");
+    let lines = lines(&at.join("out"), "short");
     let records: Vec<serde_json::Value> = lines
         .iter()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .filter(|line: &serde_json::Value| !line["schema"].is_null())
         .collect();
     assert_eq!((lines.len(), records.len()), (2 * CASES, CASES));
-    let size = fs::metadata(&packs(at, "out")[0]).expect("a pack").len();
+    let size = fs::metadata(&packs(&at.join("out"), "short")[0]).expect("a pack").len();
     assert!(size < 15_000 * CASES as u64, "{size} bytes of {CASES} records");
     // In the order of the study, every case once.
     let rows: Vec<&str> = table.lines().skip(1).map(|row| row.split(',').nth(1).expect("a hash")).collect();
@@ -90,6 +73,15 @@ fn many_cases_are_few_files_and_every_record_is_a_line_that_anyone_can_read() {
     // What a study sweeps is its own business, and no part of a record.
     let case = Case { swept: std::sync::Arc::default(), ..study().planned[7].case.clone() };
     assert_eq!((told.code, &record.hash, &record.case), (0, &planned[7], &case));
+    let whole = |words: &[&str]| -> serde_json::Value {
+        let told = call(at, &[&["records", "out/short", "--format", "json"], words].concat());
+        serde_json::from_str(&told.out).expect("JSON")
+    };
+    let (all, single) = (whole(&[]), whole(&[&planned[7]]));
+    assert_eq!(all.as_array().map(Vec::len), Some(CASES));
+    assert!(single["wall"][0]["seconds"].is_f64() && all.as_array().is_some_and(|all| all.contains(&single)));
+    let told = call(at, &["records", "out/short", &planned[7], "--format", "table"]);
+    assert!(told.out.lines().count() == 3 && told.out.contains(&planned[7]), "{}", told.out);
     let told = call(at, &["records", "out/short"]);
     assert_eq!((told.code, told.out.lines().count()), (0, CASES + 1));
     assert_eq!(call(at, &["records", "out/short", "zzzz"]).code, 4);
@@ -105,8 +97,7 @@ fn packed_records_are_taken_up_and_what_is_missing_runs() {
     let told = run(at, &["--resume"]);
     assert!(told.err.contains("72 cases (72 from disk, 0 failed)"), "{}", told.err);
     // Cut in its last third, as a kill would leave it, and once more in the middle of a record.
-    let pack = packs(at, "out").remove(0);
-    let bytes = fs::read(&pack).expect("a pack");
+    let (pack, bytes) = only_pack(&at.join("out"), "short");
     fs::write(&pack, &bytes[..bytes.len() * 2 / 3]).expect("written");
     let told = call(at, &["plan", "short.toml", "--missing", "out"]);
     let missing = told.out.lines().count() - 1;
@@ -120,30 +111,18 @@ fn packed_records_are_taken_up_and_what_is_missing_runs() {
     let from_disk = CASES - missing;
     assert!(told.err.contains(&format!("72 cases ({from_disk} from disk, 0 failed)")), "{}", told.err);
     assert_eq!(table(at, "out"), table_of_whole);
-    assert_eq!(packs(at, "out").len(), 1, "the pack was taken up");
+    assert_eq!(packs(&at.join("out"), "short").len(), 1, "the pack was taken up");
     assert!(!call(at, &["records", "out/short"]).err.contains("cut"), "and its end mended");
-}
-
-/// Where the members of a pack begin: each says at its byte 45 how long it is.
-fn starts(pack: &[u8]) -> Vec<usize> {
-    let mut starts = vec![0];
-    while let Some(length) = starts.last().and_then(|start| pack.get(start + 45..start + 49)) {
-        let length = u32::from_le_bytes(length.try_into().expect("four bytes"));
-        starts.push(starts[starts.len() - 1] + usize::try_from(length).expect("short"));
-    }
-    assert_eq!(starts.pop(), Some(pack.len()), "members up to the end");
-    starts
 }
 
 #[test]
 fn a_packed_record_with_any_damaged_part_is_run_again_and_no_other_is() {
     let (folder, table_of_whole) = whole();
     let at = folder.path();
-    let pack = packs(at, "out").remove(0);
-    let bytes = fs::read(&pack).expect("a pack");
-    let starts = starts(&bytes);
-    assert_eq!(starts.len(), CASES);
-    let (start, end) = (starts[CASES / 2], starts[CASES / 2 + 1]);
+    let (pack, bytes) = only_pack(&at.join("out"), "short");
+    let members = members(&bytes);
+    assert_eq!(members.len(), CASES);
+    let Range { start, end } = members[CASES / 2];
     // Its length by any bit: too short, past the next record and past many.
     let lengths = (0..16).map(|bit| ("its length", start + 45 + bit / 8, 1 << (bit % 8), 71));
     let parts = [
@@ -175,55 +154,25 @@ fn a_packed_record_with_any_damaged_part_is_run_again_and_no_other_is() {
 }
 
 #[test]
-fn a_packed_run_that_is_killed_at_any_moment_goes_on_to_the_same_table() {
-    let (_, expected) = whole();
-    for kill in 0..12_u32 {
-        let folder = folder_with(STUDY);
-        let at = folder.path();
-        let mut child = Command::new(PROGRAM)
-            .current_dir(at)
-            .args(["run", "short.toml", "--jobs", "2"])
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
-        std::thread::sleep(Duration::from_millis(20 + 37 * u64::from(kill)));
-        child.kill().expect("SIGKILL");
-        child.wait().expect("it is over");
-        let told = run(at, &["--resume"]);
-        assert_eq!(told.code, 0, "{}", told.err);
-        assert_eq!(table(at, "out"), expected, "kill {kill}");
-        let hashes: BTreeSet<String> = lines(at, "out")
-            .iter()
-            .filter_map(|line| Some(line.strip_prefix("{\"schema\":2,\"hash\":\"")?[..16].to_owned()))
-            .collect();
-        assert_eq!(hashes.len(), CASES);
-    }
-}
-
-#[test]
-fn an_old_store_of_single_files_is_read_and_grows_in_packs() {
+fn a_store_of_the_older_layout_is_named_and_not_read() {
     let folder = folder_with(STUDY);
     let at = folder.path();
-    // As a program before the packs kept them: a store that knows of no number of cases.
-    let whole = folder_with(STUDY);
-    assert_eq!(run(whole.path(), &[]).code, 0);
-    let packed = RecordStore::for_cases(&whole.path().join("out"), "short", CASES);
-    let single = RecordStore::new(&at.join("out"), "short");
-    for case in study().cases(Tier::Full).into_iter().take(50) {
-        single.write(&packed.kept(case).expect("a record")).expect("written");
+    let case = at.join("out/short/cases").join(study().planned[0].case.hash());
+    fs::create_dir_all(&case).expect("a folder");
+    fs::write(case.join("record.json"), "{}").expect("a file");
+    let sentence = "out/short/cases has records in the layout of version 0.2: they are not read, and the folder can be deleted";
+    for (words, code) in [
+        (&["report", "short.toml", "--from-records"][..], 4),
+        (&["records", "out/short"], 4),
+        (&["merge", "short.toml", "out", "--out", "merged"], 6),
+        (&["run", "short.toml", "--resume"], 0),
+        (&["report", "short.toml"], 0),
+        (&["compare", "out", "out"], 0),
+    ] {
+        let told = call(at, words);
+        assert!(told.code == code && told.err.contains(sentence), "{words:?} {}: {}", told.code, told.err);
     }
-    assert!(packs(at, "out").is_empty() && at.join("out/short/cases").is_dir());
-    let told = run(at, &["--resume"]);
-    assert!(told.err.contains("72 cases (50 from disk, 0 failed)"), "{}", told.err);
-    assert_eq!(table(at, "out"), table(whole.path(), "out"));
-    assert_eq!(packs(at, "out").len(), 1);
-    // What is run anew is in a pack then, and newer than the file.
-    let mut changed = packed.kept(&study().planned[0].case).expect("a record");
-    changed.counters.steps += 1;
-    let store = RecordStore::new(&at.join("out"), "short");
-    store.write(&changed).expect("written");
-    let read = store.kept(&changed.case).expect("a record");
-    assert_eq!(read.counters.steps, changed.counters.steps);
+    assert!(!call(at, &["run", "short.toml", "--resume", "--out", "new"]).err.contains("layout"));
 }
 
 #[test]
@@ -309,7 +258,9 @@ fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
         .expect("it starts");
     // As soon as it has kept something.
     for _ in 0..2000 {
-        if packs(at, "out").first().is_some_and(|pack| fs::metadata(pack).is_ok_and(|about| about.len() > 0))
+        if packs(&at.join("out"), "short")
+            .first()
+            .is_some_and(|pack| fs::metadata(pack).is_ok_and(|about| about.len() > 0))
         {
             break;
         }
@@ -321,7 +272,7 @@ fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(6), "{told}");
     assert!(told.contains("not run, for the run was told to end: `--resume` goes on with them"), "{told}");
-    let done = lines(at, "out").len() / 2;
+    let done = lines(&at.join("out"), "short").len() / 2;
     assert!((1..CASES).contains(&done), "{done} of {CASES}");
     let told = call(at, &["plan", "short.toml", "--missing", "out"]);
     assert_eq!(told.out.lines().count() - 1, CASES - done);
@@ -425,8 +376,8 @@ fn an_array_whose_merge_is_refused_is_taken_back() {
 
 /// The share 2/2 of a whole run in packs of its own, each record changed on its way.
 fn changed_share(folder: &Path, out: &str, change: &dyn Fn(&mut Record)) {
-    let whole = RecordStore::for_cases(&folder.join("out"), "short", CASES);
-    let share = RecordStore::for_cases(&folder.join(out), "short", CASES);
+    let whole = RecordStore::new(&folder.join("out"), "short");
+    let share = RecordStore::new(&folder.join(out), "short");
     for case in study().cases(Tier::Full).into_iter().skip(CASES / 2) {
         let mut record = whole.kept(case).expect("a record");
         change(&mut record);
@@ -438,8 +389,8 @@ fn changed_share(folder: &Path, out: &str, change: &dyn Fn(&mut Record)) {
 fn records_of_another_machine_are_merged_and_counted_and_those_of_other_sources_are_not() {
     let (folder, expected) = whole();
     let at = folder.path();
-    let first: RecordStore = RecordStore::for_cases(&at.join("first"), "short", CASES);
-    let all = RecordStore::for_cases(&at.join("out"), "short", CASES);
+    let first: RecordStore = RecordStore::new(&at.join("first"), "short");
+    let all = RecordStore::new(&at.join("out"), "short");
     for case in study().cases(Tier::Full).into_iter().take(CASES / 2) {
         first.write(&all.kept(case).expect("a record")).expect("written");
     }

@@ -155,7 +155,7 @@ fn run_all(
         _ => "check",
     };
     let bar = StudyBar::new(name);
-    let store_of = |study: &Study| Some(RecordStore::for_cases(records?, &study.name, study.planned.len()));
+    let store_of = |study: &Study| Some(RecordStore::new(records?, &study.name));
     let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
     let selected: Vec<Selected<'_>> = (studies.iter().zip(&stores))
         .map(|(study, store)| Selected { study, store: store.as_ref(), is_kept: false })

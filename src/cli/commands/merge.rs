@@ -7,7 +7,7 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, load};
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place::{chosen_as, studies_of_this_project};
-use crate::cli::study_files::write_table;
+use crate::cli::study_files::{tell_of_passed_over, write_tables};
 use crate::record::csv::TableForm;
 use crate::record::provenance::Origins;
 use crate::record::store::RecordStore;
@@ -80,7 +80,7 @@ fn known_to(folders: &[PathBuf]) -> Vec<PathBuf> {
 
 /// The stores of a study in the target and in each other folder.
 fn stores_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> (RecordStore, Vec<RecordStore>) {
-    let store = |folder: &PathBuf| RecordStore::for_cases(folder, &study.name, study.planned.len());
+    let store = |folder: &PathBuf| RecordStore::new(folder, &study.name);
     let real = |folder: &PathBuf| folder.canonicalize().ok();
     let others =
         folders.iter().filter(|folder| real(folder) != real(&arguments.out) || real(folder).is_none());
@@ -110,9 +110,7 @@ fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyh
 /// Brings the records of a study together; the number of holes that are left.
 fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyhow::Result<usize> {
     let (target, others) = stores_of(study, folders, arguments);
-    for damage in others.iter().flat_map(RecordStore::damages) {
-        say!("{}: {damage}", study.name);
-    }
+    std::iter::once(&target).chain(&others).for_each(|store| tell_of_passed_over(study, store));
     let mut holes: Vec<&Case> = Vec::new();
     let cases = study.cases(arguments.tier);
     for case in &cases {
@@ -126,7 +124,7 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
         holes = refinement::wanted(study, holes, &records);
     }
     if there > 0 {
-        let table = write_table(study, &target, &[], Some(TableForm::Plain))?;
+        let table = write_tables(study, &target, &[], TableForm::Plain)?;
         say!("{}: {there} of {} cases, {}", study.name, cases.len(), table.display());
     }
     for case in holes.iter().take(MOST_HOLES) {

@@ -1,11 +1,29 @@
-//! `oedometer records`: lists the records of a folder of results, or prints single ones.
+//! `oedometer records`: lists the records of a folder of results, or prints them whole.
 
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{json_of, print_data, print_with, say};
-use crate::record::Record;
+use crate::cli::output::{TableFormat, print_tables, print_with, say};
 use crate::record::csv::long_tables::LongTable;
 use crate::record::store::RecordStore;
+use crate::record::{Record, WallSample};
+use crate::render::table::{Align, Cell, Table, TableColumn};
+use std::io::{self, Write};
 use std::path::PathBuf;
+
+/// A record as it is printed: with its wall times, which are kept beside it.
+#[derive(serde::Serialize, schemars::JsonSchema)]
+pub struct PrintedRecord<'a> {
+    #[serde(flatten)]
+    record: &'a Record,
+    /// Wall times, all of them.
+    wall: &'a [WallSample],
+}
+
+impl<'a> PrintedRecord<'a> {
+    /// A record as it is printed.
+    pub fn of(record: &'a Record) -> Self {
+        Self { record, wall: &record.wall }
+    }
+}
 
 /// A row of the list.
 #[derive(serde::Serialize)]
@@ -47,9 +65,13 @@ pub struct Arguments {
     /// Folder of a study's results, like out/terzaghi-mesh
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Cases to print as JSON, by the first digits of their hashes [default: a list of all]
+    /// Cases to print, by the first digits of their hashes [default: all]
     #[arg(value_name = "HASH")]
     cases: Vec<String>,
+    /// Output format: a list of the cases, or with `json` their whole records, an array where no case is named [default: csv
+    /// of all cases, json of those named]
+    #[arg(long, value_enum, conflicts_with_all = ["profiles", "history"])]
+    format: Option<TableFormat>,
     /// Print the fields over the height of every case as CSV
     #[arg(long, conflicts_with_all = ["cases", "history"])]
     profiles: bool,
@@ -72,8 +94,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             )));
         }
     };
-    for damage in store.damages() {
-        say!("{damage}");
+    for sentence in store.passed_over() {
+        say!("{sentence}");
     }
     let mut hashes = store.hashes();
     hashes.retain(|hash| is_asked(hash, &arguments.cases));
@@ -81,29 +103,70 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let reason = format!("{} has no such record", folder.display());
         return Err(Ended::with(Exit::NothingSelected, reason));
     }
+    let records = hashes.iter().filter_map(|hash| store.read(hash));
     let long = LongTable::ALL.into_iter().zip([arguments.profiles, arguments.history]);
+    let default = if arguments.cases.is_empty() { TableFormat::Csv } else { TableFormat::Json };
     if let Some((table, _)) = long.into_iter().find(|(_, is_wanted)| *is_wanted) {
-        print_with(|out| {
-            out.write_all(table.header_line().as_bytes())?;
-            for record in hashes.iter().filter_map(|hash| store.read(hash)) {
-                out.write_all(table.rows_of(&record)?.as_bytes())?;
-            }
-            Ok(())
-        })?;
-    } else if arguments.cases.is_empty() {
-        print_with(|out| {
-            let mut writer = csv::Writer::from_writer(out);
-            for record in hashes.iter().filter_map(|hash| store.read(hash)) {
-                writer.serialize(Row::of(record))?;
-            }
-            writer.flush()
-        })?;
+        print_with(|out| write_long(out, table, records))?;
     } else {
-        for record in hashes.iter().filter_map(|hash| store.read(hash)) {
-            print_data(&json_of(&record)?)?;
+        match arguments.format.unwrap_or(default) {
+            TableFormat::Json => print_with(|out| write_json(out, records, arguments.cases.is_empty()))?,
+            TableFormat::Csv => print_with(|out| write_list(out, records))?,
+            format => print_tables(&[table_of(records)?], format)?,
         }
     }
     Ok(Exit::Pass)
+}
+
+/// Writes a table with rows of every record, one record after the other: a million of them take no memory.
+fn write_long(
+    out: &mut dyn Write,
+    table: LongTable,
+    records: impl Iterator<Item = Record>,
+) -> io::Result<()> {
+    out.write_all(table.header_line().as_bytes())?;
+    for record in records {
+        out.write_all(table.rows_of(&record)?.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Writes whole records as JSON, one behind the other or as an array.
+fn write_json(out: &mut dyn Write, records: impl Iterator<Item = Record>, is_array: bool) -> io::Result<()> {
+    let [begin, between, end] = if is_array { ["[\n", ",\n", "\n]\n"] } else { ["", "\n", "\n"] };
+    out.write_all(begin.as_bytes())?;
+    for (place, record) in records.enumerate() {
+        out.write_all(if place > 0 { between } else { "" }.as_bytes())?;
+        serde_json::to_writer_pretty(&mut *out, &PrintedRecord::of(&record))?;
+    }
+    out.write_all(end.as_bytes())
+}
+
+/// Writes the list as CSV.
+fn write_list(out: &mut dyn Write, records: impl Iterator<Item = Record>) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    for record in records {
+        writer.serialize(Row::of(record))?;
+    }
+    writer.flush()
+}
+
+/// The list as a table for people.
+fn table_of(records: impl Iterator<Item = Record>) -> anyhow::Result<Table> {
+    let mut text = Vec::new();
+    write_list(&mut text, records)?;
+    let mut reader = csv::Reader::from_reader(text.as_slice());
+    let is_number = |header: &str| ["cells", "cpu_seconds"].contains(&header);
+    let column = |header: &str| TableColumn {
+        align: if is_number(header) { Align::Right } else { Align::Left },
+        ..TableColumn::text(header)
+    };
+    let columns = reader.headers()?.iter().map(column).collect();
+    let row = |row: csv::Result<csv::StringRecord>| {
+        Ok(row?.iter().map(|field| Cell::Text(field.to_owned())).collect())
+    };
+    let rows = reader.records().map(row).collect::<csv::Result<_>>()?;
+    Ok(Table { columns, rows, ..Table::default() })
 }
 
 /// Whether a record is asked for by the first digits of its hash; where none are given, all are.

@@ -10,7 +10,7 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place::StudyArguments;
 use crate::cli::progress::StudyBar;
-use crate::cli::study_files::{is_compressed, write_table};
+use crate::cli::study_files::{is_compressed, is_small, tell_of_passed_over, write_tables};
 use crate::cli::trust::{self, TrustArguments};
 use crate::cli::{slurm, study_files};
 use crate::foreign::reading::mapping_of;
@@ -156,8 +156,8 @@ fn with_case(study: &Study, hash: &str) -> Study {
 }
 
 /// Runs the selected cases of studies side by side, then times alone those of the studies that ask
-/// for it, and writes a CSV a study; one report a study. A case without a record is told of, and the others
-/// go on.
+/// for it, and writes the tables of a study where a form of them is given; one report a study. A case without a record is
+/// told of, and the others go on.
 ///
 /// # Errors
 /// When a result cannot be kept.
@@ -166,15 +166,16 @@ pub fn run_and_store(
     selected: &[Study],
     options: &RunOptions,
     results: &Path,
-    beside: Option<TableForm>,
+    tables: Option<TableForm>,
 ) -> anyhow::Result<Vec<RunReport>> {
-    let store_of = |study: &Study| RecordStore::for_cases(results, &study.name, study.planned.len());
-    let stores: Vec<RecordStore> = studies.iter().map(store_of).collect();
-    // Those of small studies and of timed ones are held, for they are read again at once.
-    let is_held = |(study, store): (&Study, &RecordStore)| {
-        !store.is_packed() || study.timing_repeats > 0 || !study.solvers.is_empty()
-    };
-    let only_on_disk = options.only_on_disk && !studies.iter().zip(&stores).any(is_held);
+    let stores: Vec<RecordStore> =
+        studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
+    for (study, store) in studies.iter().zip(&stores) {
+        tell_of_passed_over(study, store);
+    }
+    // Records of small studies and of timed ones are held, for they are read again at once.
+    let is_held = |study: &Study| is_small(study) || study.timing_repeats > 0 || !study.solvers.is_empty();
+    let only_on_disk = options.only_on_disk && !studies.iter().any(is_held);
     let options = RunOptions { only_on_disk, ..options.clone() };
     let kept = selected.iter().zip(&stores).map(|(study, store)| Selected {
         study,
@@ -209,11 +210,11 @@ pub fn run_and_store(
         }
         // The table of many shares is made once, by `merge`, and so is a large one where a case is run again.
         let is_share = options.shard.is_some_and(|shard| shard.count > 1);
-        let is_one_of_many = chosen.planned.len() < study.planned.len() && is_compressed(study, store);
-        let place = if (is_share && store.is_packed()) || is_one_of_many {
-            store.folder().to_owned()
-        } else {
-            write_table(study, store, &report.records, beside)?
+        let is_one_of_many = chosen.planned.len() < study.planned.len() && is_compressed(study);
+        let is_left = (is_share && !is_small(study)) || is_one_of_many;
+        let place = match tables.filter(|_| !is_left) {
+            Some(form) => write_tables(study, store, &report.records, form)?,
+            None => store.folder().to_owned(),
         };
         tell_of(study, report, &place);
     }

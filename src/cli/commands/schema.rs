@@ -1,12 +1,12 @@
 //! `oedometer schema`: JSON Schemas of study files, records, mappings, cases and findings.
 
+use crate::cli::commands::records::PrintedRecord;
 use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
 use crate::judge::findings::Findings;
 use crate::judge::race::RaceFindings;
-use crate::record::Record;
 use crate::study::file::StudyFile;
 use crate::study::reading::{each_part, plain_schema_of, schema_of as schema_of_toml};
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ pub enum Document {
 pub fn schema_of(document: Document) -> Value {
     let (mut schema, title) = match document {
         Document::Study => (schema_of_toml::<StudyFile>(), "oedometer study"),
-        Document::Record => (plain_schema_of::<Record>(), "oedometer record"),
+        Document::Record => (plain_schema_of::<PrintedRecord<'_>>(), "oedometer record"),
         Document::Case => (plain_schema_of::<CaseFile>(), "oedometer case"),
         Document::Findings => (plain_schema_of::<RaceFindings>(), "oedometer findings"),
         Document::StudyFindings => (plain_schema_of::<Findings>(), "oedometer study findings"),

@@ -224,7 +224,7 @@ impl<'a> Campaign<'a> {
         }
         let mut unforeseen = 0;
         for (study, cases) in &self.studies {
-            let store = RecordStore::for_cases(&self.results, &study.name, study.planned.len());
+            let store = RecordStore::new(&self.results, &study.name);
             let failed: Vec<Record> = cases.iter().filter_map(|case| store.kept(case)).collect();
             let failed: Vec<Record> =
                 failed.into_iter().filter(|record| record.status != Status::Ok).collect();

@@ -4,7 +4,7 @@ use super::*;
 use crate::case::Task;
 use crate::case::outcome::Outcome;
 use crate::measure::record::record_of;
-use crate::record::pack::HEADER;
+use crate::record::pack::{Damage, HEADER};
 use crate::record::{AttachedRun, Status};
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 use oedometer_mpm::scene::SceneKind;
@@ -112,11 +112,6 @@ fn content(record: &Record) -> Content {
     Content { tag, wall: record.wall.iter().map(|sample| sample.seconds).collect(), end }
 }
 
-fn packed(folder: &Path) -> RecordStore {
-    let folder = folder.join("s");
-    RecordStore { packs: Arc::new(Packs::new(&folder)), folder, is_packed: true }
-}
-
 impl Bed {
     fn new(seed: u64) -> Self {
         let folder = tempfile::TempDir::new().expect("a folder");
@@ -135,7 +130,7 @@ impl Bed {
     }
 
     fn open(&self) -> RecordStore {
-        packed(self.folder.path())
+        RecordStore::new(self.folder.path(), "s")
     }
 
     fn reopen(&mut self) {
@@ -163,10 +158,10 @@ impl Bed {
     }
 
     /// What timing does: the times that are known, and more.
-    fn write_wall(&mut self, case: usize) {
+    fn time(&mut self, case: usize) {
         let Some(Content { tag, wall, end }) = self.of(case) else { return };
         let wall = [wall, self.wall()].concat();
-        self.writer_of(case).write_wall(&record(&self.cases[case], tag, &wall, end)).expect("written");
+        self.writer_of(case).write(&record(&self.cases[case], tag, &wall, end)).expect("written");
         self.model.entry(case).or_default().push(Written { tag, end, wall, state: State::Whole });
     }
 
@@ -177,7 +172,7 @@ impl Bed {
     /// Takes a record over from elsewhere, as a merge does.
     fn take_over(&mut self, case: usize) {
         let elsewhere = tempfile::TempDir::new().expect("a folder");
-        let other = packed(elsewhere.path());
+        let other = RecordStore::new(elsewhere.path(), "s");
         self.tags += 1;
         let (tag, wall) = (self.tags, self.wall());
         other.write(&record(&self.cases[case], tag, &wall, CaseEnd::Ok)).expect("written");
@@ -245,14 +240,14 @@ impl Bed {
         self.model.get_mut(&case).expect("written")[at].state = state;
         if is_told {
             let store = self.open();
-            let told = store.damages();
+            let told = store.packs.damages();
             assert!(
                 told.iter().any(|damage| damage.pack == path),
                 "{told:?} has nothing of {}",
                 path.display()
             );
             store.refresh();
-            assert_eq!(store.damages(), told, "damage is forgotten when the store is looked at again");
+            assert_eq!(store.packs.damages(), told, "damage is forgotten when the store is looked at again");
         }
         self.reopen();
     }
@@ -288,7 +283,7 @@ impl Bed {
         let case = self.dice.below(CASES);
         match self.dice.below(16) {
             0..=5 => self.write(case),
-            6..=8 => self.write_wall(case),
+            6..=8 => self.time(case),
             9 => self.take_over(case),
             10..=12 => self.damage(case),
             13 => self.reopen(),
@@ -312,60 +307,13 @@ impl Bed {
 }
 
 #[test]
-fn a_packed_store_keeps_what_a_list_keeps_whatever_happens_to_it() {
+fn a_store_keeps_what_a_list_keeps_whatever_happens_to_it() {
     for seed in 0..24 {
         let mut bed = Bed::new(seed);
         for _ in 0..60 {
             bed.step();
         }
         bed.hold(&bed.open(), "at the end");
-    }
-}
-
-#[test]
-fn single_files_keep_what_a_list_keeps_and_go_on_in_packs_when_the_study_grows() {
-    for seed in 100..112 {
-        let mut dice = Dice(seed);
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let cases: Vec<Case> = (0..CASES).map(case).collect();
-        let mut model: BTreeMap<usize, Content> = BTreeMap::new();
-        let mut count = 1;
-        let mut store = RecordStore::for_cases(folder.path(), "s", count);
-        for tag in 0..80 {
-            let at = dice.below(CASES);
-            let mut wall: Vec<f64> = (0..dice.below(4)).map(|_| 0.5 * (1 + dice.below(2)) as f64).collect();
-            match dice.below(10) {
-                0..=3 => {
-                    store.write(&record(&cases[at], tag, &wall, CaseEnd::Ok)).expect("written");
-                    model.insert(at, Content { tag, wall, end: CaseEnd::Ok });
-                }
-                4..=6 => {
-                    if let Some(known) = model.get_mut(&at) {
-                        wall.splice(..0, known.wall.iter().copied());
-                        store.write_wall(&record(&cases[at], known.tag, &wall, known.end)).expect("written");
-                        known.wall = wall;
-                    }
-                }
-                7 if !store.is_packed() => {
-                    let path = store.folder_of(&cases[at].hash()).join("record.json");
-                    if let Ok(mut bytes) = fs::read(&path) {
-                        let place = dice.below(bytes.len());
-                        bytes[place] ^= 0x01;
-                        fs::write(&path, bytes).expect("a file");
-                        model.remove(&at);
-                    }
-                }
-                8 if tag > 40 => {
-                    count = 1000;
-                    store = RecordStore::for_cases(folder.path(), "s", count);
-                }
-                _ => store = RecordStore::for_cases(folder.path(), "s", count),
-            }
-            for (number, case) in cases.iter().enumerate() {
-                let kept = store.kept(case).as_ref().map(content);
-                assert_eq!(kept, model.get(&number).cloned(), "seed {seed}, step {tag}, case {number}");
-            }
-        }
     }
 }
 
@@ -403,32 +351,26 @@ fn a_record_is_taken_up_only_where_layout_case_and_program_are_these() {
         ),
     ];
     for (what, change, wanted, taken_up) in rows {
-        for count in [1, MOST_SINGLE_CASES + 1] {
-            let folder = tempfile::TempDir::new().expect("a folder");
-            let store = RecordStore::for_cases(folder.path(), "s", count);
-            let mut record = record(&own, 1, &wall, CaseEnd::Ok);
-            change(&mut record, &other);
-            store.write(&record).expect("written");
-            // As it was written, and as the next program opens it.
-            for store in [store, RecordStore::for_cases(folder.path(), "s", count)] {
-                let what = format!("{what} of {count}");
-                let found = [
-                    store.kept(&own).is_some(),
-                    store.read(&own.hash()).is_some(),
-                    store.origin(&own).is_some(),
-                ];
-                assert_eq!(found, wanted, "{what}");
-                assert!(store.has(&own) && !store.has(&other), "{what}");
-                let found = match store.found(&own) {
-                    Found::Nothing => "nothing",
-                    Found::OfAnotherProgram => "another program's",
-                    Found::Finished(record) if record.wall.is_empty() => "without times",
-                    Found::Finished(_) => "with times",
-                };
-                assert_eq!(found, taken_up, "{what}");
-                assert_eq!(store.finished(&own).is_some(), taken_up.contains("times"), "{what}");
-                assert_eq!(store.found(&other), Found::Nothing, "{what}");
-            }
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = RecordStore::new(folder.path(), "s");
+        let mut record = record(&own, 1, &wall, CaseEnd::Ok);
+        change(&mut record, &other);
+        store.write(&record).expect("written");
+        // As it was written, and as the next program opens it.
+        for store in [store, RecordStore::new(folder.path(), "s")] {
+            let found =
+                [store.kept(&own).is_some(), store.read(&own.hash()).is_some(), store.origin(&own).is_some()];
+            assert_eq!(found, wanted, "{what}");
+            assert!(store.has(&own) && !store.has(&other), "{what}");
+            let found = match store.found(&own) {
+                Found::Nothing => "nothing",
+                Found::OfAnotherProgram => "another program's",
+                Found::Finished(record) if record.wall.is_empty() => "without times",
+                Found::Finished(_) => "with times",
+            };
+            assert_eq!(found, taken_up, "{what}");
+            assert_eq!(store.finished(&own).is_some(), taken_up.contains("times"), "{what}");
+            assert_eq!(store.found(&other), Found::Nothing, "{what}");
         }
     }
 }
@@ -456,23 +398,16 @@ fn damage_is_told_by_its_first_byte_and_its_length() {
 }
 
 #[test]
-fn a_store_is_packed_from_the_sixty_fifth_case_on_and_stays_so() {
+fn records_of_the_older_layout_are_named_and_working_folders_of_programs_are_not() {
     let folder = tempfile::TempDir::new().expect("a folder");
-    let of = |name: &str, count: usize| RecordStore::for_cases(folder.path(), name, count);
-    let counts = [0, 1, 64, 65, 1000];
-    assert_eq!(counts.map(|count| of("s", count).is_packed()), [false, false, false, true, true]);
-    let (first, second) = (case(1), case(2));
-    let written = |store: &RecordStore, case: &Case| {
-        store.write(&record(case, 1, &[0.5], CaseEnd::Ok)).expect("written");
-        store.folder_of(&case.hash()).join("record.json").is_file()
-    };
-    assert!(written(&of("s", 64), &first) && !of("s", 1).is_packed());
-    assert!(!written(&of("s", 65), &second) && of("s", 1).is_packed(), "a small run finds packs");
-    let mut hashes = vec![first.hash(), second.hash()];
-    hashes.sort();
-    let store = of("s", 1);
-    assert_eq!((store.hashes(), store.folder()), (hashes, folder.path().join("s").as_path()));
-    assert!(!written(&store, &case(3)), "what goes on goes on in packs");
-    written(&store, &first);
-    assert_eq!(store.hashes().len(), 3, "a case of both is one");
+    let store = RecordStore::new(folder.path(), "s");
+    let solver = store.folder_of(&case(1).hash()).join("solver");
+    fs::create_dir_all(&solver).expect("a folder");
+    assert!(store.passed_over().is_empty());
+    fs::write(store.folder_of(&case(1).hash()).join("record.json"), "{}").expect("a file");
+    let cases = folder.path().join("s/cases");
+    let sentence =
+        "has records in the layout of version 0.2: they are not read, and the folder can be deleted";
+    assert_eq!(store.passed_over(), [format!("{} {sentence}", cases.display())]);
+    assert!(store.hashes().is_empty() && !store.has(&case(1)) && !store.is_done(&case(1)));
 }

@@ -9,6 +9,7 @@ use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_an
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{json_of, say};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
+use crate::cli::study_files::tell_of_passed_over;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
@@ -130,6 +131,7 @@ fn run_missing(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<R
     let whole = RunOptions::whole(tier, jobs_of(arguments.jobs));
     let options = RunOptions { resume: true, keep_unproven: true, ..whole };
     let chosen: Vec<Study> = studies.iter().map(selected).collect();
+    // The tables are of `run` and `merge`: a page shows what is in them.
     let mut reports = run_and_store(studies, &chosen, &options, &arguments.records, None)?;
     refuse_unfinished(&reports)?;
     for ((study, chosen), report) in studies.iter().zip(&chosen).zip(&mut reports) {
@@ -163,14 +165,18 @@ fn tier_of(study: &Study, report: &RunReport) -> Tier {
 
 /// The records there are, as they are.
 fn kept(studies: &[Study], arguments: &Arguments) -> anyhow::Result<Vec<RunReport>> {
-    let of_study = |study: &Study| {
-        let store = RecordStore::new(&arguments.records, &study.name);
+    let stores: Vec<RecordStore> =
+        studies.iter().map(|study| RecordStore::new(&arguments.records, &study.name)).collect();
+    for (study, store) in studies.iter().zip(&stores) {
+        tell_of_passed_over(study, store);
+    }
+    let of_study = |(study, store): (&Study, &RecordStore)| {
         let records: Vec<Record> =
             study.cases(Tier::Full).into_iter().filter_map(|case| store.kept(case)).collect();
         let taken_over = records.iter().filter_map(|record| TakenOver::of(record, false)).collect();
         RunReport { resumed: records.len(), records, taken_over, ..RunReport::default() }
     };
-    let reports: Vec<_> = studies.par_iter().map(of_study).collect();
+    let reports: Vec<_> = studies.par_iter().zip(&stores).map(of_study).collect();
     if reports.iter().all(|report| report.records.is_empty()) {
         let reason = format!(
             "there is no record of these studies in {}: leave `--from-records` out, and `report` makes them",
