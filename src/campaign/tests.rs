@@ -294,6 +294,8 @@ fn times_come_in_rounds_until_each_case_that_ended_well_has_its_number() {
     for record in [&records[0], &records[2]] {
         assert_eq!(store.kept(&record.case).expect("a record").wall, record.wall, "kept beside the record");
     }
+    let untimed = store.kept(&records[1].case).expect("a record");
+    assert_eq!(untimed.status, Status::Ok, "what was not timed is not written again");
     // What is timed well enough is neither run nor written again.
     std::fs::remove_dir_all(folder.path()).expect("removed");
     time_study(&study, &mut records, Some(&store), &tell).expect("nothing to do");
