@@ -84,7 +84,8 @@ pub fn sentence(error: &anyhow::Error) -> String {
             told = format!("{told}: {cause}");
         }
     }
-    format!("error: {}", without_numbers_of_the_system(&told))
+    let told = without_numbers_of_the_system(&told);
+    if told.starts_with("error: ") { told } else { format!("error: {told}") }
 }
 
 /// Removes error numbers of the system: ` (os error 2)`.
@@ -108,6 +109,7 @@ mod tests {
         let none = || std::io::Error::from_raw_os_error(2);
         let error = anyhow::Error::from(none()).context("cannot read a.csv");
         assert_eq!(sentence(&error), "error: cannot read a.csv: No such file or directory");
+        assert_eq!(sentence(&anyhow::anyhow!("error: no column")), "error: no column");
         let twice = Err::<(), _>(none()).context(format!("cannot read a.csv: {}", none())).expect_err("none");
         assert_eq!(sentence(&twice), "error: cannot read a.csv: No such file or directory");
     }

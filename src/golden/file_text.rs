@@ -131,6 +131,7 @@ impl GoldenFile {
     /// # Errors
     /// What is wrong and in which line, as a sentence.
     pub fn from_text(text: &str) -> Result<Self, String> {
+        let text = text.trim_start_matches('\u{feff}');
         if !text.ends_with('\n') {
             return Err(format!("line {}: the file ends within it", text.lines().count().max(1)));
         }
@@ -281,6 +282,9 @@ mod tests {
             assert!(text.contains(from), "{text}");
             GoldenFile::from_text(&text.replacen(from, to, 1)).expect_err("refused")
         };
+        // Editors put a byte order mark in front, and carriage returns at the ends.
+        let edited = format!("\u{feff}{}", text.replace('\n', "\r\n"));
+        assert_eq!(GoldenFile::from_text(&edited).expect("read").values, golden().values);
         let told = refused("46824", "many");
         assert_eq!(told, format!("line {}: `many` under `steps` is not a number", line_of("46824")));
         let told = refused(",0.05,", ",0.0000001,");

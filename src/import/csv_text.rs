@@ -8,6 +8,9 @@ use std::path::Path;
 /// Separators in the order in which they are tried; a blank stands for any.
 const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
 
+/// Marks of comments; without a declared one, that with which the text begins counts.
+const COMMENTS: [char; 3] = ['#', '%', '!'];
+
 /// A table as text with commas or another single separator, and what was found of it.
 #[derive(Debug)]
 pub struct CsvText {
@@ -15,6 +18,8 @@ pub struct CsvText {
     pub text: Vec<u8>,
     /// The separator in it.
     pub delimiter: u8,
+    /// Mark at the start of a comment line.
+    pub comment: Option<char>,
     /// Whether a comma begins the fraction of a number.
     pub has_decimal_comma: bool,
     /// Names of the columns, where the text itself does not begin with them.
@@ -42,10 +47,16 @@ impl CsvText {
 
     fn of(text: Vec<u8>, layout: &TableLayout) -> Result<Self, String> {
         let is_ended = text.last().is_none_or(|last| [b'\n', b'\r'].contains(last));
-        let lossy = String::from_utf8_lossy(&text);
-        let comment = layout.comment;
+        // What is no UTF-8 is taken for Latin-1, whose bytes are characters.
+        let text = String::from_utf8(text)
+            .unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect());
+        let begins = |mark: &char| text.trim_start().starts_with(*mark);
+        let comment = match layout.comment {
+            Some('#') => COMMENTS.into_iter().find(begins).or(layout.comment),
+            declared => declared,
+        };
         let is_comment = |line: &str| comment.is_some_and(|mark| line.trim_start().starts_with(mark));
-        let mut lines = lossy.lines().filter(|line| !line.trim().is_empty());
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
         let comments: Vec<&str> = lines.clone().take_while(|line| is_comment(line)).collect();
         let mut rows = lines.by_ref().filter(|line| !is_comment(line));
         let (first, second) = (rows.next().unwrap_or_default(), rows.next());
@@ -72,12 +83,19 @@ impl CsvText {
         let has_decimal_comma = dialect.has_decimal_comma;
         if dialect.delimiter != ' ' && !drops_header {
             let delimiter = u8::try_from(dialect.delimiter).unwrap_or(b',');
-            return Ok(Self { text, delimiter, has_decimal_comma, names, is_ended });
+            return Ok(Self {
+                text: text.into_bytes(),
+                delimiter,
+                comment,
+                has_decimal_comma,
+                names,
+                is_ended,
+            });
         }
         // One line for each, so that messages name the lines of the file.
-        let mut rewritten = String::with_capacity(lossy.len());
+        let mut rewritten = String::with_capacity(text.len());
         let mut is_header = drops_header;
-        for line in lossy.lines() {
+        for line in text.lines() {
             if is_comment(line) || line.trim().is_empty() {
             } else if is_header {
                 is_header = false;
@@ -90,7 +108,7 @@ impl CsvText {
         }
         let delimiter =
             if dialect.delimiter == ' ' { b';' } else { u8::try_from(dialect.delimiter).unwrap_or(b',') };
-        Ok(Self { delimiter, has_decimal_comma, names, is_ended, text: rewritten.into_bytes() })
+        Ok(Self { delimiter, comment, has_decimal_comma, names, is_ended, text: rewritten.into_bytes() })
     }
 }
 
@@ -239,7 +257,7 @@ mod tests {
         let table = CsvText::of(text.as_bytes().to_vec(), layout)?;
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(table.delimiter)
-            .comment(Some(b'#'))
+            .comment(table.comment.and_then(|mark| u8::try_from(mark).ok()))
             .trim(csv::Trim::All)
             .has_headers(table.names.is_none())
             .from_reader(&table.text[..]);
@@ -255,7 +273,7 @@ mod tests {
             })
             .collect();
         let byte = row.position().map_or(0, csv::Position::byte);
-        let line = line_of_record(&table.text, byte, Some('#'));
+        let line = line_of_record(&table.text, byte, table.comment);
         Ok(format!("{} = {} in line {line}", names.join(" "), numbers.join(" ")))
     }
 
@@ -267,6 +285,8 @@ mod tests {
             ("# t, y, p\n1.0,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
             ("# column\n# t y p\n1.0 2.5 3\n", "t y p = 1 2.5 3 in line 3"),
             ("# t y p\n1.0,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            ("% t, y, p\n1.0,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            ("! column\n!t y p\n1.0 2.5 3\n", "t y p = 1 2.5 3 in line 3"),
             ("t y p\n  1.0   2.5\t3\n", "t y p = 1 2.5 3 in line 2"),
             ("t\ty\tp\n1\t2,5\t3\n", "t y p = 1 2.5 3 in line 2"),
             ("t;y;p\n1;2,5;3\n", "t y p = 1 2.5 3 in line 2"),
@@ -282,6 +302,8 @@ mod tests {
         ] {
             assert_eq!(told(text, &layout).as_deref(), Ok(found), "{text}");
         }
+        let latin = CsvText::of(b"t,H\xf6he\n1,2\n".to_vec(), &layout).expect("a table");
+        assert_eq!(latin.text, "t,Höhe\n1,2\n".as_bytes());
         // A comma may separate or begin a fraction.
         let asked = told("1,0 2,5\n", &layout);
         assert_eq!(asked.as_deref(), Ok("1 2 = 1 2.5 in line 1"));

@@ -29,6 +29,8 @@ pub fn spellings(typed: &str) -> impl Iterator<Item = Spelling<'_>> {
             Some(("cells", rest)) => (Some(Association::Cells), rest),
             _ => (None, spelled),
         };
+        // The root of an HDF5.
+        let rest = rest.strip_prefix('/').unwrap_or(rest);
         let indexed = rest.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
         let found = indexed.and_then(|(name, inside)| Some((name, axes_of(inside)?)));
         let Some((name, axes)) = found else {
@@ -75,6 +77,7 @@ mod tests {
             ("Pressure [Pa]", None, "Pressure [Pa]", None, None),
             ("Z [m]", None, "Z [m]", None, None),
             ("a:b", None, "a:b", None, None),
+            ("/fields/u[1]", None, "fields/u", Some(1), None),
             ("p[time, time]", None, "p[time, time]", None, None),
         ] {
             let found = spellings(typed).next().expect("a name");

@@ -30,15 +30,15 @@ struct Table<'a> {
 
 impl<'a> Table<'a> {
     fn open(path: &'a Path, layout: &TableLayout) -> Result<Self, ImportError> {
-        let CsvText { text, delimiter, has_decimal_comma, names, is_ended } = CsvText::read(path, layout)?;
+        let CsvText { text, delimiter, comment, has_decimal_comma, names, is_ended } =
+            CsvText::read(path, layout)?;
         let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b'#');
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter)
-            .comment(layout.comment.map(as_byte))
+            .comment(comment.map(as_byte))
             .trim(csv::Trim::All)
             .has_headers(names.is_none())
             .from_reader(Cursor::new(text));
-        let comment = layout.comment;
         let header = if let Some(names) = names {
             csv::StringRecord::from(names)
         } else {
@@ -98,9 +98,15 @@ impl<'a> Table<'a> {
         let number = number_of(typed, self.has_decimal_comma);
         number.filter(|number| number.is_finite()).ok_or_else(|| {
             let column = excerpt(self.header.get(place).unwrap_or_default());
+            let has_comma = !self.has_decimal_comma && number_of(typed, true).is_some_and(f64::is_finite);
+            let hint = if has_comma {
+                "; where a comma begins fractions, write `decimal = \",\"` into [csv]"
+            } else {
+                ""
+            };
             let typed = excerpt(typed);
             self.error_in_line(format!(
-                "`{typed}` in the column `{column}` is invalid: expected a finite number"
+                "`{typed}` in the column `{column}` is invalid: expected a finite number{hint}"
             ))
         })
     }

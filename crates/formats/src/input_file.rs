@@ -61,8 +61,7 @@ pub fn head(path: &Path, most: usize) -> io::Result<Vec<u8>> {
         bytes = unpacked;
     }
     // A cut inside a pair is no damage here.
-    let is_wide = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-    let even = if is_wide { bytes.len() / 2 * 2 } else { bytes.len() };
+    let even = if wide(&bytes).is_some() { bytes.len() / 2 * 2 } else { bytes.len() };
     bytes.truncate(even);
     Ok(plain(bytes))
 }
@@ -96,18 +95,34 @@ fn damaged(error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("its gzip is damaged or cut: {error}"))
 }
 
+/// Bytes at the start of a file that show UTF-16 without a mark: every other one is 0.
+const LOOK: usize = 16;
+
+/// The order of the bytes of text in UTF-16, and how long its mark is.
+fn wide(bytes: &[u8]) -> Option<(fn([u8; 2]) -> u16, usize)> {
+    match bytes {
+        [0xff, 0xfe, ..] => return Some((u16::from_le_bytes, 2)),
+        [0xfe, 0xff, ..] => return Some((u16::from_be_bytes, 2)),
+        _ => {}
+    }
+    let (pairs, _) = bytes.get(..LOOK)?.as_chunks();
+    let is_letter = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    let all =
+        |is_it: fn(&[u8; 2], &dyn Fn(u8) -> bool) -> bool| pairs.iter().all(|pair| is_it(pair, &is_letter));
+    if all(|[first, second], is_letter| is_letter(*first) && *second == 0) {
+        return Some((u16::from_le_bytes, 0));
+    }
+    all(|[first, second], is_letter| *first == 0 && is_letter(*second)).then_some((u16::from_be_bytes, 0))
+}
+
 /// Bytes without a byte order mark; text in UTF-16 as UTF-8. What is no UTF-16 behind its mark stays as it is.
 fn plain(mut bytes: Vec<u8>) -> Vec<u8> {
     if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
         bytes.drain(..3);
         return bytes;
     }
-    let from_bytes: fn([u8; 2]) -> u16 = match bytes.get(..2) {
-        Some([0xff, 0xfe]) => u16::from_le_bytes,
-        Some([0xfe, 0xff]) => u16::from_be_bytes,
-        _ => return bytes,
-    };
-    let (pairs, rest) = bytes[2..].as_chunks();
+    let Some((from_bytes, mark)) = wide(&bytes) else { return bytes };
+    let (pairs, rest) = bytes[mark..].as_chunks();
     let text: Option<String> =
         char::decode_utf16(pairs.iter().map(|pair| from_bytes(*pair))).map(Result::ok).collect();
     match text.filter(|_| rest.is_empty()) {
@@ -173,7 +188,7 @@ mod tests {
         use std::io::Write;
         let folder = tempfile::TempDir::new().expect("a folder");
         let path = folder.path().join("a.csv");
-        let text = "t,y,p\n1,2,3µ\n";
+        let text = "t,y,p\n1,2,3 µ\n";
         let wide = |order: fn(u16) -> [u8; 2]| -> Vec<u8> {
             std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(order).collect()
         };
@@ -189,6 +204,8 @@ mod tests {
             marked.clone(),
             wide(u16::to_le_bytes),
             wide(u16::to_be_bytes),
+            wide(u16::to_le_bytes)[2..].to_vec(),
+            wide(u16::to_be_bytes)[2..].to_vec(),
             packed.clone(),
             [pack(&text.as_bytes()[..4]), pack(&text.as_bytes()[4..])].concat(),
             pack(&wide(u16::to_le_bytes)),

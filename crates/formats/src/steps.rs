@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 const DEEPEST: usize = 8;
 /// Bytes at the start of a file by which it is recognised.
 const LOOK: usize = 4096;
+/// First bytes of HDF5.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Most files that a collection may name.
 const MOST: usize = 100_000;
 
@@ -67,7 +69,9 @@ impl Kind {
 
     /// The kind of a file that begins with these bytes.
     pub(crate) fn of_head(head: &[u8]) -> Self {
-        if head.starts_with(b"\x89HDF\r\n\x1a\n") {
+        // Behind a block of the user's, as of MATLAB 7.3, which is as long as some power of two.
+        let is_hdf5 = |from: &usize| head.get(*from..).is_some_and(|rest| rest.starts_with(HDF5));
+        if [0, 512, 1024, 2048].iter().any(is_hdf5) {
             return Self::Hdf5;
         }
         if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {

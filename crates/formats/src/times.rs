@@ -32,6 +32,8 @@ pub struct Use {
 enum Over {
     /// It is the same at all times.
     Same,
+    /// As [`Self::Same`], as a matrix with one row, of all places.
+    Row,
     /// Along this axis; the places are along the other one, if there is one.
     Axis(usize),
     /// Each row has its own time.
@@ -165,8 +167,13 @@ fn axis_of(array: &Array, usage: &Use, count: usize, places: Option<usize>) -> R
     let are_times: Vec<usize> = (0..open.min(2)).filter(|axis| lengths[*axis] == count).collect();
     // A list of places, of which there are as many as times.
     let is_flat_place = open.max(1) == 1 && places == Some(count) && !usage.is_quantity;
+    let is_row = !usage.is_quantity
+        && count > 1
+        && lengths.first() == Some(&1)
+        && lengths.get(1).copied() == places.filter(|places| *places > 1);
     match (&are_times[..], usage.is_quantity) {
         _ if is_flat_place => Ok(Over::Same),
+        _ if is_row => Ok(Over::Row),
         ([axis], true) if usage.has_component && lengths.len() == 2 && *axis == 0 && count > 1 => {
             Err(format!(
                 "`{name}` has the shape {} for {count} times, and the mapping takes one of its columns: say which axis is which, \
@@ -215,6 +222,7 @@ impl States<'_> {
             let over = self.over.iter().find(|(known, _)| std::ptr::eq(*known, array));
             frame.arrays.push(match over {
                 Some((_, Over::Axis(axis))) => at_time(array, *axis, place),
+                Some((_, Over::Row)) => at_time(array, 0, 0),
                 Some((_, Over::Rows)) => of_rows(array, rows),
                 _ => array.clone(),
             });
@@ -303,6 +311,7 @@ mod tests {
             (&[3], &[3, 2], first(&[0.0, 1.0, 2.0], &[1.0, 3.0, 5.0])),
             (&[3], &[2, 3, 1], first(&[0.0, 1.0, 2.0], &[3.0, 4.0, 5.0])),
             (&[2, 3], &[2, 3], first(&[3.0, 4.0, 5.0], &[3.0, 4.0, 5.0])),
+            (&[1, 3], &[2, 3], first(&[0.0, 1.0, 2.0], &[3.0, 4.0, 5.0])),
             (&[3], &[3, 2, 2], first(&[0.0, 1.0, 2.0], &[2.0, 3.0, 6.0, 7.0, 10.0, 11.0])),
         ] {
             let found = told(y, p, &two, &quantity()).expect("two states");

@@ -44,6 +44,8 @@ const NAMED: [(&[u8], &str); 30] = [
         "it is a case of EnSight, which is not read: write PVD with VTU (ParaView: File, Save Data)",
     ),
 ];
+/// What stands in an archive of tar, and where.
+const TAR: (usize, &[u8]) = (257, b"ustar");
 const CLASSIC: &str = "it is classic netCDF (of Exodus II, too), which is not read: export VTU or CSV, or turn it into \
                        netCDF-4 by `nccopy -k nc4 FILE NEW`";
 const TECPLOT: &str = "it is a file of Tecplot, which is not read: export VTU or CSV";
@@ -57,10 +59,13 @@ pub(crate) fn named(head: &[u8], kind: Kind) -> Option<String> {
     if kind != Kind::Table {
         return None;
     }
-    if head.is_empty() {
+    let start = head.trim_ascii_start();
+    if start.is_empty() {
         return Some("it is empty: the program wrote nothing into it".to_owned());
     }
-    let start = head.trim_ascii_start();
+    if head.get(TAR.0..).is_some_and(|rest| rest.starts_with(TAR.1)) {
+        return Some("it is an archive of tar: unpack it first".to_owned());
+    }
     let begins = |begin: &[u8]| start.get(..begin.len()).is_some_and(|part| part.eq_ignore_ascii_case(begin));
     if let Some((_, told)) = NAMED.iter().find(|(begin, _)| begins(begin)) {
         return Some((*told).to_owned());
@@ -100,6 +105,8 @@ mod tests {
                 "`git lfs pull`",
             ),
             (b"", "it is empty"),
+            (b"\n \r\n", "it is empty"),
+            (&[&[b'a'; 257][..], b"ustar\0"].concat(), "unpack it first"),
             (b"\n <!DOCTYPE HTML PUBLIC>", "a web page"),
             (b"<HTML><head>", "a web page"),
             (b"CDF\x01\0\0\0\0", "nccopy -k nc4"),

@@ -10,6 +10,8 @@ use std::ops::Range;
 const MEANT: [&str; 2] = ["did you mean `", "it is called `"];
 /// Words about a key in a wrong table: what its right one lacks then is not known.
 const MISPLACED: &str = "` belongs to ";
+/// A mistake of an expectation that no other key of it makes or hides.
+const TIMELESS: &str = "names no time factor";
 /// Words before a line as it would be right, and before an example of one.
 const RIGHT: [&str; 3] = ["write `", "without quotes: `", "like `"];
 
@@ -18,8 +20,17 @@ struct Mended {
     text: String,
     /// Numbers of the wrong lines.
     lines: BTreeSet<usize>,
-    /// Numbers of those whose value is not known now, each with its table.
-    unknown: BTreeMap<usize, String>,
+    /// Those whose value is not known now.
+    unknown: BTreeMap<usize, Unknown>,
+}
+
+/// A key whose value is not known.
+struct Unknown {
+    key: String,
+    /// The table that it belongs to.
+    table: String,
+    /// Whether it stands in another table.
+    is_misplaced: bool,
 }
 
 /// Adds to the mistakes that kept a study from being read those that show once these are mended: a misspelt word is taken
@@ -30,7 +41,7 @@ pub fn with_later_mistakes(mut error: StudyError, purpose: Purpose) -> StudyErro
     let Err(later) = Study::check_read(&source, purpose) else { return error };
     let moved = later.diagnostics.into_iter().filter_map(|one| {
         let (line, columns) = place(&source.text, one.span.as_ref()?)?;
-        let span = mended.is_sure(line).then(|| bytes(&error.source, line, columns))??;
+        let span = mended.is_sure(line, &one.message).then(|| bytes(&error.source, line, columns))??;
         Some(Diagnostic { span: Some(span), ..one })
     });
     let moved: Vec<Diagnostic> = moved.filter(|one| !error.diagnostics.contains(one)).collect();
@@ -41,14 +52,23 @@ pub fn with_later_mistakes(mut error: StudyError, purpose: Purpose) -> StudyErro
 impl Mended {
     /// Whether a mistake at a line is none of what was left out: not in the same block; what is expected depends on the
     /// sweeps and outputs, and these on the values before them.
-    fn is_sure(&self, line: usize) -> bool {
+    fn is_sure(&self, line: usize, message: &str) -> bool {
         let lines: Vec<&str> = self.text.split('\n').collect();
         let here = block(&lines, line);
-        let is_sure = |(number, table): (&usize, &String)| {
-            let is_same_block = block(&lines, *number) == here && here.is_some();
-            let is_expected = table_of(&lines, line).starts_with("expect");
-            !is_same_block
-                && match table.as_str() {
+        let table_here = table_of(&lines, line);
+        let is_timeless = message.ends_with(TIMELESS);
+        let is_sure = |(number, unknown): (&usize, &Unknown)| {
+            let is_expected = table_here.starts_with("expect");
+            if is_timeless {
+                return !unknown.key.starts_with("time");
+            }
+            let is_same = if unknown.is_misplaced {
+                unknown.table == table_here
+            } else {
+                block(&lines, *number) == here && here.is_some()
+            };
+            !is_same
+                && match unknown.table.as_str() {
                     "sweep" | "output" => !is_expected,
                     table if table.starts_with("expect") => true,
                     _ => is_expected,
@@ -67,14 +87,20 @@ fn mended(error: &StudyError) -> Option<Mended> {
         let (number, columns) = place(&error.source, one.span.as_ref()?)?;
         let line = lines.get_mut(number)?;
         let is_entry = line.contains('=') && !line.trim_start().starts_with(['[', '#']);
-        let is_misplaced = one.help.as_deref().is_some_and(|help| help.contains(MISPLACED));
-        if !is_entry || is_misplaced || !numbers.insert(number) {
+        if !is_entry || !numbers.insert(number) {
             return None;
         }
         let word = line.get(columns.clone())?.to_owned();
         let quoted =
             |words: &str| one.help.as_deref()?.split_once(words)?.1.split_once('`').map(|(text, _)| text);
         let key = line[..line.find('=')?].trim().to_owned();
+        let unknown_in = |table: String, is_misplaced| Unknown { key: key.clone(), table, is_misplaced };
+        if let Some((_, home)) = one.help.as_deref().and_then(|help| help.split_once(MISPLACED)) {
+            let home = home.split(':').next().unwrap_or_default().trim_matches(['[', ']']).to_owned();
+            line.insert(0, '#');
+            unknown.insert(number, unknown_in(home, true));
+            continue;
+        }
         let right = RIGHT.iter().find_map(|words| quoted(words).map(|text| (text, *words)));
         let right = right.filter(|(text, _)| text.split_once(" =").is_some_and(|(name, _)| name == key));
         match (MEANT.iter().find_map(|words| quoted(words)), right) {
@@ -82,22 +108,31 @@ fn mended(error: &StudyError) -> Option<Mended> {
             (Some(meant), _) if word.starts_with(['"', '\'']) => {
                 line.replace_range(columns, &format!("\"{meant}\""));
             }
-            (Some(meant), _) if columns.end <= line.find('=')? => line.replace_range(columns, meant),
+            (Some(meant), _) if columns.end <= line.find('=')? && !has_key(&source, number, meant) => {
+                line.replace_range(columns, meant);
+            }
             (None, Some((right, words))) => {
                 right.clone_into(line);
                 if words == RIGHT[2] {
-                    unknown.insert(number, table_of(&source, number));
+                    unknown.insert(number, unknown_in(table_of(&source, number), false));
                 }
             }
             _ => {
                 line.insert(0, '#');
                 if !one.message.starts_with("unknown key") {
-                    unknown.insert(number, table_of(&source, number));
+                    unknown.insert(number, unknown_in(table_of(&source, number), false));
                 }
             }
         }
     }
     (!numbers.is_empty()).then(|| Mended { text: lines.join("\n"), lines: numbers, unknown })
+}
+
+/// Whether the block of a line has a key already.
+fn has_key(lines: &[&str], number: usize, key: &str) -> bool {
+    let here = block(lines, number);
+    let is_key = |line: &str| line.split_once('=').is_some_and(|(name, _)| name.trim() == key);
+    (0..lines.len()).any(|place| block(lines, place) == here && is_key(lines[place]))
 }
 
 /// Number of the header above a line, or its own; `None` before the first one.
@@ -174,6 +209,19 @@ mod tests {
             ("time_factor = 0.1", "time_factor = true"),
         ] {
             assert_eq!(count(old, new), 1, "{new}");
+        }
+        // A key twice, once misspelt; a key in a table that is not its own; and what else is wrong.
+        for (old, new, count_of_all) in [
+            ("cells = [4, 8, 16]", "cells = [4, 8, 16]\ncellz = 3", 1),
+            ("height = 1.0", "height = 1.0\nporosity = 3.0\ncells = [3]", 2),
+            ("cells = [4, 8, 16]", "", 1),
+            ("title = \"t\"", "title = \"t\"\ncells = [4]", 1),
+        ] {
+            assert_eq!(count(old, new), count_of_all, "{new}");
+            let timeless = sound.replace("time_factor = 0.1\n", "");
+            let source = StudySource { name: "t.toml".to_owned(), text: timeless.replacen(old, new, 1) };
+            let told = Study::check(&source).expect_err(new).to_string();
+            assert!(told.contains("names no time factor"), "{new}: {told}");
         }
         // A second mistake elsewhere is told with each of them.
         let wrong = sound.replace("\"pressure\"", "\"presure\"");
