@@ -131,16 +131,49 @@ pub fn diagnosis(
         }
         own.map(|own| (given, own))
     });
-    let (Some((whole, own)), Some((thin, own_thin))) = (whole, thin) else { return Ok(Vec::new()) };
+    let (Some((mut whole, own)), Some((mut thin, own_thin))) = (whole, thin) else { return Ok(Vec::new()) };
     let mut sentences = Vec::new();
     if whole.columns.iter().any(|column| !column.shows_nothing()) {
         let base = Explanation::by(World::own(&whole), &own, &whole, true);
-        let best = other_worlds(&thin, &own_thin).unwrap_or(base);
+        let is_explained = base.left(&whole) <= CORRECTED;
+        let other = other_worlds(&thin, &own_thin);
+        let alone = if other.is_none() && !is_explained { of_most(&mut thin, &own_thin) } else { None };
+        if let Some((_, place)) = &alone {
+            whole.columns[*place].is_left_out = true;
+        }
+        let best = other.or(alone.map(|(best, _)| best)).unwrap_or(base);
         sentences = sentences_of(&best, &whole);
+        let left_out = whole.columns.iter().filter(|column| column.is_left_out);
+        sentences.extend(
+            left_out.map(|column| format!("your {} does not match that: it is wrong by itself", column.name)),
+        );
     }
     sentences.extend(exchanged_axes(&whole).filter(|_| sentences.is_empty()));
     sentences.extend(uneven_top(&whole, solution.is_plane()));
     Ok(sentences)
+}
+
+/// The best explanation of all columns but one, which is wrong by itself, and the place of that one; two and more must
+/// agree.
+fn of_most(given: &mut Given<'_>, own: &Predicted) -> Option<(Explanation, usize)> {
+    let shown = |given: &Given<'_>| given.columns.iter().filter(|column| !column.shows_nothing()).count();
+    if shown(given) <= 2 {
+        return None;
+    }
+    let mut all: Vec<(Explanation, usize, f64)> = Vec::new();
+    for place in 0..given.columns.len() {
+        if given.columns[place].shows_nothing() {
+            continue;
+        }
+        given.columns[place].is_left_out = true;
+        all.extend(other_worlds(given, own).map(|found| {
+            let left = found.left(given);
+            (found, place, left)
+        }));
+        given.columns[place].is_left_out = false;
+    }
+    let best = all.into_iter().min_by(|a, b| a.2.total_cmp(&b.2));
+    best.map(|(found, place, _)| (found, place))
 }
 
 /// The best explanation in another world, where one convinces more than readings alone.
@@ -173,9 +206,11 @@ fn other_worlds(given: &Given<'_>, own: &Predicted) -> Option<Explanation> {
             worlds(given, stage).into_iter().filter_map(|world| Explanation::of(world, given, false));
         let better = explanations.filter(|one| is_accepted(one) && one.cost(given) < limit);
         best = best.into_iter().chain(better).min_by(|a, b| a.cost(given).total_cmp(&b.cost(given)));
-        // A name that leaves next to nothing, or a factor of the time that all columns have: nothing more is needed.
+        // A name that leaves next to nothing, or a factor of the time that all columns have: nothing more is needed. Times
+        // that are late may be a ramp.
         let is_enough = |best: &Explanation| {
-            let is_common = stage != Stage::Named && best.readings.iter().all(Reading::is_plain);
+            let is_late = stage == Stage::Clock && best.world.clock[1] < 0.0;
+            let is_common = stage != Stage::Named && !is_late && best.readings.iter().all(Reading::is_plain);
             is_common || (stage == Stage::Named && worst(best) <= CLEAR * before)
         };
         if best.as_ref().is_some_and(is_enough) {
@@ -192,13 +227,15 @@ enum Stage {
     Named,
     /// A fitted factor or offset of the times.
     Clock,
+    /// A load that rises over a fitted time.
+    Ramp,
     /// A fitted stiffness.
     Stiffness,
     /// A fitted factor of the times of a result that is upside down.
     Turned,
 }
 
-const STAGES: [Stage; 4] = [Stage::Named, Stage::Clock, Stage::Stiffness, Stage::Turned];
+const STAGES: [Stage; 5] = [Stage::Named, Stage::Clock, Stage::Ramp, Stage::Stiffness, Stage::Turned];
 
 /// The other worlds of a stage.
 fn worlds(given: &Given<'_>, stage: Stage) -> Vec<World> {
@@ -209,6 +246,7 @@ fn worlds(given: &Given<'_>, stage: Stage) -> Vec<World> {
             parts.into_iter().flatten().chain(problems(given, &own)).collect()
         }
         Stage::Clock => clock::clocks(given, &own),
+        Stage::Ramp => clock::ramp(given, &own).into_iter().collect(),
         Stage::Stiffness => clock::stiffness(given, &own).into_iter().collect(),
         Stage::Turned => {
             let turned = places(given, &own).into_iter().filter(|world| world.ends == Ends::UpsideDown);
@@ -335,9 +373,11 @@ fn soils(given: &Given<'_>, own: &World) -> Vec<World> {
     if !own.is_slow() {
         return Vec::new();
     }
-    let named = clock::moduli(given).into_iter();
-    let mut all: Vec<World> =
-        named.map(|(ratio, asked)| clock::stiffer(own, ratio).with(" of another stiffness", asked)).collect();
+    let of = |(ratio, asked): (f64, &str)| {
+        let (said, or) = clock::with_modulus(given, ratio);
+        clock::stiffer(own, ratio).with(&said, format!("{asked}{or}"))
+    };
+    let mut all: Vec<World> = clock::moduli(given).into_iter().map(of).collect();
     if given.kind_is_plane() || given.kind == ReferenceKind::Mandel {
         let exchanged = with_soils(&own.parameters, |layer| {
             let (young, nu) = (layer.youngs_modulus.unwrap_or(1.0), layer.poissons_ratio.unwrap_or(0.25));
@@ -359,7 +399,8 @@ fn problems(given: &Given<'_>, own: &World) -> Vec<World> {
     if !own.is_slow() {
         return all;
     }
-    if given.moves() {
+    // Of a column at its start the pressure alone is the total stress.
+    if given.moves() || given.kind == ReferenceKind::Mandel {
         for ends in [Ends::Own, Ends::Closed] {
             let still = World { clock: [0.0, 0.0], ends, ..own.clone() };
             all.push(still.with(" of the start at all times", "does nothing drain: is the surface closed?"));

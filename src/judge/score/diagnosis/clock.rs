@@ -31,6 +31,9 @@ const NAME: f64 = 2e-3;
 const NEAR_ONE: f64 = 4e-3;
 /// Viscosity of water at 20 °C, Pa s.
 const VISCOSITY: f64 = 1.0e-3;
+/// Ramps of the load that are searched, over the first and the last time.
+const SHORTEST_RAMP: f64 = 0.05;
+const LONGEST_RAMP: f64 = 10.0;
 /// Most names that a sentence offers.
 const MOST_NAMES: usize = 4;
 
@@ -387,9 +390,73 @@ fn offset(trial: &Trial<'_>, base: &World, [first, last]: [f64; 2]) -> Option<Wo
     let seconds = short(rounded(parameters.time(offset.abs())));
     let (side, late) = if offset < 0.0 { ("before", "late") } else { ("after", "early") };
     let said = format!(" {seconds} s {side}");
-    let asked = format!("do your times count from another moment, so that all are {seconds} s too {late}?");
+    // A load that rises before the first time looks like a late one, halfway.
+    let rise = parameters.time(-2.0 * offset);
+    let rising = World { ramp: rise, ..base.clone() };
+    let rises_as_well =
+        offset < 0.0 && base.adds_up() && trial.left(&rising, None) <= AS_WELL * value(offset) + ROUND_OFF;
+    let rises = if rises_as_well {
+        format!(" Or does the load rise over {} s, in a ramp?", short(three_digits(rise)))
+    } else {
+        String::new()
+    };
+    let asked =
+        format!("do your times count from another moment, so that all are {seconds} s too {late}?{rises}");
     let world = world(offset).with(&said, asked);
     Some(World { count: base.count + 2, is_fitted: true, ..world })
+}
+
+/// The world of a load that rises evenly, where that of the scene is there at once.
+pub fn ramp(given: &Given<'_>, base: &World) -> Option<World> {
+    let times = || given.states.iter().map(|state| state.time).filter(|time| *time > 0.0);
+    let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    if !(base.adds_up() && first.is_finite() && !base.parameters.self_weight) {
+        return None;
+    }
+    let trial = Trial::of(given);
+    let world = |seconds: f64| World { ramp: seconds, ..base.clone() };
+    let fit = fits(&trial, [SHORTEST_RAMP * first, LONGEST_RAMP * last], &world, false).into_iter().next()?;
+    if fit.is_open().contains(&true) || !fit.left.is_finite() {
+        return None;
+    }
+    let seconds = short(three_digits(fit.factor));
+    let said = format!(" under a load that rises over {seconds} s");
+    let late = World { clock: [1.0, -0.5 * fit.factor], ..base.clone() };
+    let is_late = fit.factor < 2.0 * first && trial.left(&late, None) <= AS_WELL * fit.left + ROUND_OFF;
+    let or = if is_late { " Or do your times count from another moment, half of that earlier?" } else { "" };
+    let asked = format!(
+        "does your load rise over {seconds} s, in a ramp, where that of the scene is there at once?{or}"
+    );
+    let world = world(fit.factor).with(&said, asked);
+    Some(World { count: base.count + 2, is_fitted: true, ..world })
+}
+
+/// How a sentence goes on about a stiffness of so many times the right one, and the further question whether it is ν.
+pub fn with_modulus(given: &Given<'_>, ratio: f64) -> (String, String) {
+    let Some((said, ratio_of_poisson)) = modulus_told(given, ratio) else {
+        return (" of another stiffness".to_owned(), String::new());
+    };
+    (format!(" with {said}"), ratio_of_poisson.map_or(String::new(), |ratio| format!(" Or is {ratio}?")))
+}
+
+/// A stiffness of so many times the right one as numbers, and as Poisson's ratio; none in layers and in planes.
+fn modulus_told(given: &Given<'_>, ratio: f64) -> Option<(String, Option<String>)> {
+    let soil = &given.parameters.soil;
+    let is_plane = given.kind_is_plane() || given.kind == ReferenceKind::Mandel;
+    if is_plane || !given.parameters.soils.is_empty() {
+        return None;
+    }
+    let own = soil.oedometric_modulus();
+    let [number, right] = [ratio * own, own].map(|number| short(rounded(number)));
+    // E_oed/E = (1 − ν)/((1 + ν)(1 − 2ν)).
+    let over = ratio * own / soil.youngs_modulus;
+    let root = (powi(over - 1.0, 2) + 8.0 * over * (over - 1.0)).sqrt();
+    let poisson = (root - (over - 1.0)) / (4.0 * over);
+    let [poisson_told, poisson_right] =
+        [poisson, soil.poissons_ratio].map(|number| short(three_digits(number)));
+    let is_other = poisson.is_finite() && poisson_told != poisson_right;
+    let ratio = is_other.then(|| format!("ν {poisson_told} for {poisson_right}"));
+    Some((format!("E_oed {number} Pa for {right}"), ratio))
 }
 
 /// Ratios of moduli that people take for one another, over the right one.
@@ -441,17 +508,21 @@ pub fn stiffness(given: &Given<'_>, base: &World) -> Option<World> {
     }
     let power = (ln(fit.factor) / ln(10.0)).round();
     let ten = exp(power * ln(10.0));
-    let oedometric = given.parameters.soil.oedometric_modulus();
-    let [number, own] = [fit.factor * oedometric, oedometric].map(|number| short(rounded(number)));
     if power != 0.0 && fit.allows(ten) {
         let said = format!(" with a stiffness {} × as large", short_factor(rounded(ten)));
         return Some(stiffer(base, ten).with(&said, "is E off by a power of ten, or in another unit?"));
     }
     let said = format!(" with a stiffness {} × as large", short_factor(rounded(fit.factor)));
-    let asked = if given.parameters.soils.is_empty() {
-        format!("is E_oed {number} Pa for {own}?")
-    } else {
-        "is the stiffness of each layer off?".to_owned()
+    let asked = match modulus_told(given, fit.factor) {
+        Some((told, ratio)) => {
+            format!("is {told}{}?", ratio.map_or(String::new(), |told| format!(", as of {told}")))
+        }
+        None if given.parameters.soils.is_empty() => {
+            let own = given.parameters.soil.oedometric_modulus();
+            let [number, own] = [fit.factor * own, own].map(|number| short(rounded(number)));
+            format!("is E_oed {number} Pa for {own}?")
+        }
+        None => "is the stiffness of each layer off?".to_owned(),
     };
     let world = stiffer(base, fit.factor).with(&said, asked);
     Some(World { count: base.count + 2, is_fitted: true, ..world })

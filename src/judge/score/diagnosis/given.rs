@@ -54,6 +54,8 @@ pub struct Column {
     pub states: Vec<usize>,
     /// Root mean square of what the scene's own exact solution has there.
     pub exact_size: f64,
+    /// Whether it is wrong by itself, so that no world need explain it.
+    pub is_left_out: bool,
 }
 
 impl Column {
@@ -100,7 +102,8 @@ impl Column {
 
     /// Whether neither the result nor the scene has anything to show here.
     pub fn shows_nothing(&self) -> bool {
-        self.exact_size < VANISHED * self.scale
+        let is_seen = || self.size(self.computed.iter().copied()) > SMALL * self.scale;
+        self.is_left_out || (self.exact_size < VANISHED * self.scale && !is_seen())
     }
 }
 
@@ -190,6 +193,7 @@ fn column(states: &[Cow<'_, SampledState>], field: Field, name: &'static str, sc
         weights: Vec::new(),
         states: Vec::new(),
         exact_size: 0.0,
+        is_left_out: false,
     };
     let mut first = 0;
     for (number, state) in states.iter().enumerate() {

@@ -290,7 +290,7 @@ fn offset_asked(
     let of_constant = if is_near(constant, ATMOSPHERE) || is_near(constant, BAR) {
         atmosphere.to_owned()
     } else {
-        format!("is a constant of {} Pa left in?", short(rounded(constant)))
+        format!("is a constant of {} Pa left in?", short(rounded(constant)).replace('-', "−"))
     };
     let is_elevation = scale.is_head && sense < 0.0 && is_near(constant, weight * height);
     let gradient = if sense > 0.0 {
@@ -330,7 +330,7 @@ fn earlier_stage(column: &Column, exact: &[f64], given: &Given<'_>) -> Option<Re
     let (constant, slope) = line(column, &off, height)?;
     let at = |place: usize| constant + slope * column.heights[place] / height;
     let left = column.misfit(exact, |place, value| value - at(place));
-    let top = short(rounded(constant + slope));
+    let top = short(rounded(constant + slope)).replace('-', "−");
     let begin = format!("differs from the exact one by the same at all times, {top} m at the top");
     let asked = vec!["is the displacement of an earlier stage, as of the own weight, left in?".to_owned()];
     Some(Reading { begin, asked, count: 2, is_fitted: true, left })

@@ -6,7 +6,7 @@ use super::given::Given;
 use crate::import::SampledState;
 use crate::measure::fields::{ExactFields, SamplePlaces};
 use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
-use oedometer_exact::{ColumnParameters, Reference, ReferenceKind};
+use oedometer_exact::{ColumnParameters, Reference, ReferenceKind, ShelfProblem};
 
 /// Time factors after which nothing changes.
 const LAST: f64 = 40.0;
@@ -19,6 +19,16 @@ const FIRST_STEPPED: f64 = 1e-8;
 
 /// Share of the height at which nothing of a drained surface is seen at the start.
 const JUST_BELOW: f64 = 1e-9;
+
+/// Places in [0, 1] and weights of Gauss' rule of six points.
+const GAUSS: [(f64, f64); 6] = [
+    (0.033_765_242_898_423_97, 0.085_662_246_189_585_17),
+    (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
+    (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
+    (0.619_309_593_041_598_4, 0.233_956_967_286_345_53),
+    (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
+    (0.966_234_757_101_576, 0.085_662_246_189_585_17),
+];
 
 /// Fields at all samples of all states, one after the other, and the settlement of each state.
 #[derive(Clone, Debug, Default)]
@@ -89,6 +99,8 @@ pub struct World {
     pub said: String,
     /// The questions to ask.
     pub asked: Vec<String>,
+    /// How long the load rises, s, in place of being there at once.
+    pub ramp: f64,
     /// Number of single mistakes in it.
     pub count: usize,
     /// Whether a number of it was fitted.
@@ -106,6 +118,7 @@ impl World {
             coupling: Coupling::Whole,
             pressure: 1.0,
             load: 1.0,
+            ramp: 0.0,
             said: String::new(),
             asked: Vec::new(),
             count: 0,
@@ -128,6 +141,22 @@ impl World {
         let still = [AtRest, SealedElement, Footing];
         let waves = [DynamicColumn, DynamicSingleMode, StandingWave];
         !(self.kind.is_manufactured() || still.contains(&self.kind) || waves.contains(&self.kind))
+    }
+
+    /// Whether a load in parts has the sum of what each part does.
+    pub fn adds_up(&self) -> bool {
+        use ReferenceKind::{CosineLayer, CosineLayerIncompressible, Layered, Mandel, Shelf, Terzaghi};
+        use ShelfProblem::{Barron, BarronFreeStrain, BiotColumn, Cryer};
+        matches!(
+            self.kind,
+            Terzaghi
+                | ReferenceKind::TerzaghiIncompressible
+                | Layered
+                | CosineLayer
+                | CosineLayerIncompressible
+                | Mandel
+                | Shelf(BiotColumn | Cryer | Barron | BarronFreeStrain)
+        )
     }
 
     /// Whether the body is one column of soil, or of layers, that strains along its height alone and has no weight.
@@ -186,10 +215,8 @@ impl World {
         let world = self.of_half();
         let mut all = Predicted::default();
         for state in &given.states {
-            let time = world.time_factor(state.time);
             let places = Places::of(self, &world, state);
-            let fields = self.fields(solution, time, &places)?;
-            let settlement = solution.settlement(time).ok()?;
+            let (fields, settlement) = self.under_its_load(&world, solution, state.time, &places)?;
             let loaded = |value: &f64| self.load * value;
             all.pressure.extend(fields.pressure.iter().map(|p| self.pressure * loaded(p)));
             all.effective_stress.extend(fields.effective_stress.iter().map(loaded));
@@ -199,6 +226,36 @@ impl World {
             all.settlement.push(halves * loaded(&settlement));
         }
         Some(all)
+    }
+
+    /// The fields and the settlement of a state, at once or as the sum of what each part of a rising load does.
+    fn under_its_load(
+        &self,
+        half: &Self,
+        solution: &Reference,
+        seconds: f64,
+        places: &Places,
+    ) -> Option<(ExactFields, f64)> {
+        let at = |seconds: f64| {
+            let time = half.time_factor(seconds);
+            Some((self.fields(solution, time, places)?, solution.settlement(time).ok()?))
+        };
+        if self.ramp <= 0.0 {
+            return at(seconds);
+        }
+        let mut sum: Option<(ExactFields, f64)> = None;
+        // Ages of the load's parts; most happens when they are young, as the root of the age.
+        let youngest = (seconds - self.ramp).max(0.0);
+        for (place, weight) in GAUSS {
+            let share = 2.0 * (seconds - youngest) * place * weight / self.ramp;
+            let (part, settlement) = at(youngest + (seconds - youngest) * place * place)?;
+            let (fields, so_far) = sum.get_or_insert_with(|| (of_zeros(&part), 0.0));
+            *so_far += share * settlement;
+            for (list, part) in lists_of(fields).into_iter().zip(lists_of(&mut part.clone())) {
+                list.iter_mut().zip(part).for_each(|(value, part)| *value += share * *part);
+            }
+        }
+        sum
     }
 
     /// The half of a column that is drained at both ends.
@@ -236,6 +293,18 @@ impl World {
         }
         Some(fields)
     }
+}
+
+fn lists_of(fields: &mut ExactFields) -> [&mut Vec<f64>; 4] {
+    let ExactFields { pressure, effective_stress, displacement, horizontal_displacement } = fields;
+    [pressure, effective_stress, displacement, horizontal_displacement]
+}
+
+/// Fields of 0 at as many places.
+fn of_zeros(fields: &ExactFields) -> ExactFields {
+    let mut zeros = fields.clone();
+    lists_of(&mut zeros).into_iter().flatten().for_each(|value| *value = 0.0);
+    zeros
 }
 
 /// The places of a state in the body of a world.

@@ -159,7 +159,7 @@ const COLUMNS: [&str; 3] = ["pu", "p", "u"];
 const NOISES: [f64; 2] = [5e-4, 0.03];
 
 /// Words of a sentence that offer a cause of a kind.
-const OFFERS: [(&str, &str); 29] = [
+const OFFERS: [(&str, &str); 30] = [
     ("E_oed", "stiffness"),
     ("is E ", "stiffness"),
     ("stiffness of each layer", "stiffness"),
@@ -168,6 +168,7 @@ const OFFERS: [(&str, &str); 29] = [
     ("are times", "clock"),
     ("another moment", "moment"),
     ("is the load", "load"),
+    ("load rise", "ramp"),
     ("sign declared", "sign"),
     ("is it in ", "unit"),
     ("a head", "head"),
@@ -327,12 +328,34 @@ fn changes() -> Vec<Change> {
         change(
             "times late",
             &["do your times count from another moment"],
-            ["moment", "moment", "moment"],
+            ["moment ramp", "moment ramp", "moment ramp"],
             |scene| {
                 let late = 0.3 * scene.seconds()[0];
                 Some(scene.solved(&scene.parameters, &|time| time - late))
             },
         ),
+        change("a ramp of the load", &["does your load rise"], ["ramp", "ramp", "ramp"], |scene| {
+            // The mean of many loads that come one after the other, up to the second time.
+            let length = scene.seconds()[1];
+            let count = if scene.is_plane() || scene.kind == ReferenceKind::Layered { 40 } else { 200 };
+            let mut sum = scene.own();
+            sum.iter_mut().for_each(|state| {
+                times(&mut state.pressure, 0.0);
+                times(&mut state.displacement, 0.0);
+            });
+            for part in 0..count {
+                let begin = length * (f64::from(part) + 0.5) / f64::from(count);
+                let states = scene.solved(&scene.parameters, &|time| (time - begin).max(0.0));
+                for (all, one) in sum.iter_mut().zip(states).filter(|(all, _)| all.time > begin) {
+                    let lists =
+                        [(&mut all.pressure, one.pressure), (&mut all.displacement, one.displacement)];
+                    for (all, one) in lists {
+                        all.iter_mut().zip(one).for_each(|(all, one)| *all += one / f64::from(count));
+                    }
+                }
+            }
+            (scene.kind != ReferenceKind::XieLeo).then_some(sum)
+        }),
         written("p as head", &["your p", "head"], P, move |_, state| {
             times(&mut state.pressure, 1.0 / weight)
         }),
@@ -492,20 +515,25 @@ fn changes() -> Vec<Change> {
             ["closed clock", "closed clock", "closed clock array"],
             |scene| (scene.kind != ReferenceKind::XieLeo).then(|| scene.solved(&scene.parameters, &|_| 0.0)),
         ),
-        change("a closed surface", &["does nothing drain"], ["closed", "closed array", ""], |scene| {
-            (scene.is_column() && scene.parameters.soils.is_empty()).then(|| {
-                let mut states = scene.solved(&scene.parameters, &|_| 0.0);
-                for state in &mut states {
-                    let inside = state.pressure[1];
-                    state.pressure.iter_mut().for_each(|p| *p = inside);
-                    let base = state.displacement[0];
-                    let slope = (state.displacement[1] - base) / state.initial_height[1];
-                    let heights = state.initial_height.iter();
-                    state.displacement = heights.map(|y| base + slope * y).collect();
-                }
-                states
-            })
-        }),
+        change(
+            "a closed surface",
+            &["does nothing drain"],
+            ["closed", "closed array", "closed array"],
+            |scene| {
+                (scene.is_column() && scene.parameters.soils.is_empty()).then(|| {
+                    let mut states = scene.solved(&scene.parameters, &|_| 0.0);
+                    for state in &mut states {
+                        let inside = state.pressure[1];
+                        state.pressure.iter_mut().for_each(|p| *p = inside);
+                        let base = state.displacement[0];
+                        let slope = (state.displacement[1] - base) / state.initial_height[1];
+                        let heights = state.initial_height.iter();
+                        state.displacement = heights.map(|y| base + slope * y).collect();
+                    }
+                    states
+                })
+            },
+        ),
         written("p as head in cm", &["your p", "a head in cm"], P, move |_, state| {
             times(&mut state.pressure, 100.0 / weight)
         }),

@@ -104,6 +104,20 @@ fn every_mistake_is_named_in_good_and_in_mediocre_results() {
     }
     let seconds = told_by(&states(&TIMES, |time| 60.0 * time, 0.0), &CONVENTION.replace("\"s\"", "\"min\""));
     assert!(seconds.iter().any(|told| told.contains("are times in s where min is declared?")), "{seconds:?}");
+    // So late that nothing is left of the exact pressure; and beside a displacement that is wrong by itself.
+    let days = told_by(&states(&TIMES, |time| 86_400.0 * time, 0.0), &CONVENTION.replace("\"s\"", "\"d\""));
+    assert!(days.iter().any(|told| told.contains("are times in s where d is declared?")), "{days:?}");
+    let mut mixed = states(&TIMES, |time| time / 60.0, 0.0);
+    for state in &mut mixed {
+        state
+            .displacement
+            .iter_mut()
+            .zip(&state.initial_height)
+            .for_each(|(u, y)| *u = 1e-6 * (9.0 * y).sin());
+    }
+    let mixed = told(&mixed);
+    let shared = "each of your p and effective_stress matches the exact one at 60 × the time";
+    assert!(mixed[0].starts_with(shared) && mixed[1].starts_with("your u_y does not match"), "{mixed:?}");
 }
 
 #[test]
@@ -282,7 +296,8 @@ fn another_stiffness_and_another_permeability_are_named() {
         only(
             &slower(off).collect::<Vec<_>>(),
             &[
-                "each of your p, effective_stress and u_y matches the exact one of another stiffness: is E taken for E_oed?",
+                "each of your p, effective_stress and u_y matches the exact one with E_oed 1e6 Pa for 1.2e6: is E taken for E_oed? Or \
+                 is ν 0 for 0.25?",
             ],
         );
     }
