@@ -92,16 +92,21 @@ pub fn exact(
 /// Tail, over the load, above which a half-space is no column.
 pub(crate) const MOST_TAIL: f64 = 1e-2;
 
+/// Tail, over the load, above which a value says nothing.
+const WORTHLESS: f64 = 0.1;
+
 /// How far a solution can be trusted at a time.
 ///
 /// # Errors
-/// When the time is impossible, or the solution is that of a half-space and the base is felt.
+/// When the time is impossible, the solution is that of a half-space and the base is felt, or the bound is no bound.
 pub(crate) fn accuracy_of(reference: &Reference, time_factor: f64) -> Result<Accuracy, ExactError> {
     let accuracy = reference.accuracy(time_factor)?;
-    if reference.kind() == ReferenceKind::YieldFront && accuracy.tail_bound > MOST_TAIL {
-        return Err(ExactError::BaseFelt { time_factor, bound: accuracy.tail_bound });
+    let (bound, is_near) = (accuracy.tail_bound, |most: f64| accuracy.tail_bound <= most);
+    match reference.kind() {
+        ReferenceKind::YieldFront if !is_near(MOST_TAIL) => Err(ExactError::BaseFelt { time_factor, bound }),
+        _ if !is_near(WORTHLESS) => Err(ExactError::Inaccurate { time_factor, bound }),
+        _ => Ok(accuracy),
     }
-    Ok(accuracy)
 }
 
 /// The degree of consolidation by settlement, where it means anything.

@@ -25,7 +25,8 @@ pub fn complaints(record: &Record) -> Vec<String> {
             .filter(|row| row.quantity == Quantity::Pressure && row.reference == reference.name);
         let smallest = pressures.map(|row| row.absolute).fold(f64::INFINITY, f64::min);
         // No reference is better than its round-off, whatever a result at round-off asks.
-        if reference.tail_bound > (TAIL_SHARE * smallest).max(ROUND_OFF) {
+        let is_enough = reference.tail_bound <= (TAIL_SHARE * smallest).max(ROUND_OFF);
+        if !is_enough {
             found.push(format!(
                 "the reference {} is only accurate to {:.1e}, and the smallest error against it is {smallest:.1e}",
                 reference.name, reference.tail_bound
@@ -125,6 +126,7 @@ time_step = [{ growth = 0.05 }]
             })
         };
         assert_eq!(told(ROUND_OFF), "");
+        assert!(told(f64::NAN).contains("is only accurate to NaN"), "{}", told(f64::NAN));
         assert!(told(1.1 * ROUND_OFF).contains("is only accurate to 1.1e-14"), "{}", told(1.1 * ROUND_OFF));
     }
 

@@ -6,6 +6,7 @@ use crate::measure::balances::{balance, curve_gap, start_checks};
 use crate::measure::dimensionless_groups::{groups, inertia_rules};
 use crate::measure::fields::snapshot_errors;
 use crate::measure::other_measures::{load_factor, measures_of};
+use crate::measure::statistics::larger;
 use crate::measure::theory::known_reference;
 use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
@@ -171,7 +172,7 @@ fn reference_use(case: &Case, reference: &Reference) -> Result<ReferenceUse, Exa
     for time_factor in case.time_factors.iter() {
         let accuracy = reference.accuracy(*time_factor)?;
         entry.terms = entry.terms.max(accuracy.terms);
-        entry.tail_bound = entry.tail_bound.max(accuracy.bound());
+        entry.tail_bound = larger(entry.tail_bound, accuracy.bound());
     }
     Ok(entry)
 }

@@ -200,6 +200,17 @@ pub enum ExactError {
         /// What the base may change, over the load.
         bound: f64,
     },
+    /// A time at which a series is not known well enough to be worth anything.
+    #[error(
+        "at T_v = {time_factor} the solution may be off by {bound:.1e} of the load: it is no solution there; ask for another \
+         time factor"
+    )]
+    Inaccurate {
+        /// Time factor.
+        time_factor: f64,
+        /// What the terms left out may add, over the load.
+        bound: f64,
+    },
     /// The place of a source.
     #[error("the pressure at the source itself is infinite: ask for places beside it, ζ below 1")]
     AtTheSource,

@@ -1,4 +1,5 @@
-//! What five and more levels show that the finest three hide: a floor, a term of lower order, a logarithm.
+//! What five and more levels show that the finest three hide: a floor, a term of lower order, a logarithm, an order that
+//! runs away.
 //!
 //! Each candidate is fitted to all levels, with relative residuals. A candidate counts where it explains the levels far
 //! better than a power alone and better than a term of higher order that dies out, which is harmless.
@@ -38,6 +39,12 @@ const BETTER: f64 = 2.0;
 /// Factor over the 95 % quantile of Fisher's F by which a candidate must beat a power alone: noise of a few per cent
 /// on five levels is taken for a curve in one series of a hundred.
 const CLEARLY: f64 = 5.0;
+
+/// Factor from one change of the order to the next from which on it does not slow down.
+const GROWS: f64 = 1.1;
+
+/// How far an order runs before it counts: about that of a fifth of the finest error.
+const GONE: f64 = 0.1;
 
 /// The second term of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +108,24 @@ pub fn judge_all_levels(case: &EvaluableSeries, of_window: Classification) -> Cl
     if !judged || case.points.len() < LEAST_LEVELS {
         return of_window;
     }
-    hidden(case).and_then(|found| classified(case, &found)).unwrap_or(of_window)
+    let found = hidden(case).and_then(|found| classified(case, &found));
+    found.or_else(|| runs_away(case).filter(|_| of_window.class == Class::Asymptotic)).unwrap_or(of_window)
+}
+
+/// An order that rises faster from level to level: what settles slows down. A term of lower order and of the other sign
+/// takes off more and more of the error, which changes sign below.
+fn runs_away(case: &EvaluableSeries) -> Option<Classification> {
+    let changes: Vec<f64> = case.pairs.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let [.., first, second, last] = *changes.as_slice() else { return None };
+    let grows = |from: f64, to: f64| from > 0.0 && to > GROWS * from;
+    // Changes that grow like a geometric series have gone so far in all.
+    let gone = last * last / (last - second);
+    (grows(first, second) && grows(second, last) && gone >= GONE).then(|| {
+        let reason = format!("the orders {} rise faster and faster", orders(&case.pairs));
+        let found = Classification::new(Class::PreAsymptotic, reason)
+            .advise("add a finer level: a second term of the other sign takes over");
+        Classification { order: Some(case.order), ..found }
+    })
 }
 
 /// The second term that all levels show, where one governs the finest.

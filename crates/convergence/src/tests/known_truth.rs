@@ -239,7 +239,7 @@ pub(super) const KINDS: [Kind; 19] = [
 ];
 
 /// What the finest three levels hide and five show, what must not be taken for it, and floors that are reached from below.
-const HIDDEN_KINDS: [Kind; 6] = [
+const HIDDEN_KINDS: [Kind; 7] = [
     ("a floor of a quarter on five levels and more", |draw, ratio| {
         let (p, count) = (draw.one_of(&[1.0, 1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
         let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, 0.0);
@@ -249,6 +249,12 @@ const HIDDEN_KINDS: [Kind; 6] = [
     ("a lower order of a quarter on five levels and more", |draw, ratio| {
         let (p, count) = (draw.one_of(&[1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
         let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, p - 1.0);
+        let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
+        Known::of(points, draw.one_of(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
+    }),
+    ("a lower order of the other sign on five levels and more", |draw, ratio| {
+        let (p, count) = (draw.one_of(&[1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let b = coefficient(-draw.between(0.22, 0.3), ratio, count, p, p - 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
         Known::of(points, draw.one_of(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
     }),

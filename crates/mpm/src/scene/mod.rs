@@ -155,7 +155,13 @@ impl SceneKind {
         match self {
             Self::YieldFront => &[0.0005, 0.001, 0.002, 0.004],
             Self::Footing => &[0.01, 0.02, 0.05],
-            Self::StandingWave => &[2e-5, 5e-5, 1e-4],
+            // Between the zeros of the wave, of its stress, and of the motions.
+            Self::StandingWave => &[1e-5, 5e-5, 1e-4],
+            Self::ManufacturedBox | Self::ManufacturedShear | Self::ManufacturedVortex => {
+                &[0.1, 0.2, 0.3, 0.4]
+            }
+            // Later the pressure has drained along the layer, too.
+            Self::CosineLayer => &[0.05, 0.1, 0.2, 0.5],
             _ => &[0.05, 0.1, 0.2, 0.5, 1.0],
         }
     }
