@@ -98,8 +98,11 @@ fn damaged(error: &io::Error) -> io::Error {
 /// Bytes at the start of a file that show UTF-16 without a mark: every other one is 0.
 const LOOK: usize = 16;
 
+/// How two bytes make a number.
+type FromBytes = fn([u8; 2]) -> u16;
+
 /// The order of the bytes of text in UTF-16, and how long its mark is.
-fn wide(bytes: &[u8]) -> Option<(fn([u8; 2]) -> u16, usize)> {
+fn wide(bytes: &[u8]) -> Option<(FromBytes, usize)> {
     match bytes {
         [0xff, 0xfe, ..] => return Some((u16::from_le_bytes, 2)),
         [0xfe, 0xff, ..] => return Some((u16::from_be_bytes, 2)),
