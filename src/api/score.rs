@@ -96,7 +96,7 @@ pub fn score_files(
     Ok(results.all.into_iter().map(|one| (one.name(), one.score)).collect())
 }
 
-/// The case file of a scene, as attached solvers get it: what a solver that is tested in Python has to solve.
+/// The case file of a scene, as the commands of a study get it: what a solver that is tested in Python has to solve.
 ///
 /// # Errors
 /// When the scene refuses its inputs.

@@ -34,8 +34,7 @@ impl<'a> CaseRunner<'a> {
     pub fn of(study: &'a Study) -> Self {
         let axes = Axes::of(study.scene);
         let of_table = |solver: &'a _| solver_of(solver, axes, study.may_start_solvers);
-        let others =
-            study.solvers.iter().map(|solver| (SolverName::Attached(solver.attached), of_table(solver)));
+        let others = study.solvers.iter().map(|solver| (solver.method(), of_table(solver)));
         Self { study, this_program: ThisProgram { kernel: Kernel::Fastest }, others: others.collect() }
     }
 
@@ -62,7 +61,7 @@ impl<'a> CaseRunner<'a> {
 
     /// What a finished record is to the solvers of now.
     pub fn standing(&self, record: &Record) -> Standing {
-        self.other(&record.case).unwrap_or(&self.this_program).standing(record.attached.as_ref())
+        self.other(&record.case).unwrap_or(&self.this_program).standing(record.outside_run())
     }
 
     /// Runs a case within the time that the study gives it; files that its solver leaves are kept in the store.

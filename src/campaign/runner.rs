@@ -32,7 +32,7 @@ pub struct RunOptions {
     pub shard: Option<Shard>,
     /// Whether finished records are taken up.
     pub resume: bool,
-    /// Whether those of attached solvers are taken up too that nothing proves to be of the program of now.
+    /// Whether those are taken up too that nothing proves to be of the program of now.
     pub keep_unproven: bool,
     /// Whether records are only kept on disk and not in the report: any number of cases takes the same memory.
     pub only_on_disk: bool,
@@ -500,11 +500,11 @@ pub struct RunReport {
     pub resumed: usize,
     /// What made those.
     pub origins: Origins,
-    /// Those of them that attached solvers made.
+    /// Those of them that this program did not make.
     pub taken_over: Vec<TakenOver>,
     /// Records of another program that were there, and whose cases were run again.
     pub of_another_program: usize,
-    /// Records of attached solvers that nothing proves to be of the program of now, and whose cases were run again.
+    /// Records that nothing proves to be of the program of now, and whose cases were run again.
     pub unproven: usize,
     /// What went wrong beside failed cases; finished records are kept all the same.
     pub errors: Vec<RunError>,

@@ -1,7 +1,7 @@
 //! Tells that a run has to end: by Ctrl-C, or the signal that a scheduler sends before it kills a job.
 //!
-//! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, an attached solver with all that it has started among
-//! it; what is finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
+//! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, with all processes that it has started; what is
+//! finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
 //! to its end for a while.
 
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,4 @@
-//! Results of attached solvers that a run takes over from an earlier one, and by what their programs are known.
+//! Results of other programs that a run takes over from an earlier one, and by what these are known.
 
 use crate::record::Record;
 use oedometer_soil::wording::count_of;
@@ -22,7 +22,7 @@ pub struct TakenOver {
 impl TakenOver {
     /// A record that is taken over; `None` for one of this program, whose sources decide its values.
     pub fn of(record: &Record, is_proven: bool) -> Option<Self> {
-        let about = record.attached.as_ref()?;
+        let about = record.outside_run()?;
         Some(Self {
             solver: record.case.method.to_string(),
             case: record.case.label(),

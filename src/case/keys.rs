@@ -299,11 +299,10 @@ impl Key {
         self.name == "integrator" || self.tables.contains(&"integrator")
     }
 
-    /// Whether it says something of a case: what only this program's integrators take says nothing to an attached
-    /// solver.
+    /// Whether it says something of a case: what only this program's integrators take says nothing to others.
     pub fn counts_for(&self, case: &Case) -> bool {
         let is_rule = self.name == "time_step" && !matches!(case.time_step, TimeStepRule::Seconds(_));
-        !case.is_attached() || !(is_rule || self.is_of_integrator())
+        case.has_integrator() || !(is_rule || self.is_of_integrator())
     }
 
     /// The value in a case.
@@ -452,7 +451,7 @@ mod tests {
         set(&mut case, "cells", Value::Number(4.0));
         set(&mut case, "length", Value::Number(4.0));
         assert_eq!(case, before, "a value of another kind, or of another body, changes nothing");
-        // What only this program's integrators take says nothing to an attached solver.
+        // What only this program's integrators take says nothing to others.
         let idle = |case: &Case| -> Vec<&str> {
             KEYS.iter().filter(|key| !key.counts_for(case)).map(|key| key.name).collect()
         };

@@ -107,16 +107,16 @@ impl Case {
     }
 
     fn label_with(&self, step: &str) -> String {
-        let mut label = if self.is_attached() {
+        let Self { method, cells, points_per_cell, .. } = self;
+        let mut label = if self.has_integrator() {
+            format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
+        } else {
             let is_step_given = matches!(self.time_step, TimeStepRule::Seconds(_));
-            let points = match self.points_per_cell {
+            let points = match *points_per_cell {
                 USUAL_POINTS => String::new(),
                 points => format!(" points={points}"),
             };
-            format!("{} cells={}{points} {}", self.method, self.cells, if is_step_given { step } else { "" })
-        } else {
-            let Self { method, cells, points_per_cell, .. } = self;
-            format!("{method} {} cells={cells} points={points_per_cell} {step}", self.integrator.name())
+            format!("{method} cells={cells}{points} {}", if is_step_given { step } else { "" })
         };
         let variant = self.variant();
         label.truncate(label.trim_end().len());

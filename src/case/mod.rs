@@ -139,9 +139,14 @@ impl Case {
         case.number()
     }
 
-    /// Whether an external solver solves it.
-    pub fn is_attached(&self) -> bool {
-        self.method.own().is_none()
+    /// Whether an integrator of this program solves it, by steps and points that are known.
+    pub fn has_integrator(&self) -> bool {
+        self.method.own().is_some()
+    }
+
+    /// Whether its work is counted, and can be estimated.
+    pub fn counts_work(&self) -> bool {
+        self.has_integrator()
     }
 
     /// Configuration of the shape functions of this program's method: the method's own, or the scene's.
@@ -191,7 +196,7 @@ impl Case {
     #[must_use]
     pub fn without_idle_choices(&self) -> Self {
         let mut case = self.clone();
-        if self.is_attached() || self.configuration() != Configuration::Frozen {
+        if !self.has_integrator() || self.configuration() != Configuration::Frozen {
             return case;
         }
         (case.settings.affine, case.settings.stress_slopes) = (false, false);
@@ -205,11 +210,11 @@ impl Case {
         case
     }
 
-    /// The case as an attached solver knows it: it has no use for what only this program's integrators take, and cases
+    /// The case as its solver knows it: another program has no use for what only this program's integrators take, and cases
     /// that differ in nothing else are one. A step in seconds stays, for it is a step that can be suggested.
     #[must_use]
-    pub fn for_attached(mut self) -> Self {
-        if self.is_attached() {
+    pub fn as_its_solver_knows(mut self) -> Self {
+        if !self.has_integrator() {
             self.integrator = IntegratorKind::Implicit;
             self.formulation = self.integrator.default_formulation();
             self.settings = ExplicitSettings::default();
@@ -342,24 +347,24 @@ mod tests {
         }
     }
 
-    fn attached(name: &str, digest: &str) -> SolverName {
+    fn foreign(name: &str, digest: &str) -> SolverName {
         SolverName::Attached(Attached::new(name, digest).expect("a plain name"))
     }
 
     #[test]
     fn what_only_the_integrators_take_makes_no_other_case_of_an_attached_solver() {
-        let foreign = Case { method: attached("ogs", "0123456789abcdef"), ..seed() };
-        let explicit = foreign.clone().for_attached();
+        let foreign = Case { method: foreign("ogs", "0123456789abcdef"), ..seed() };
+        let explicit = foreign.clone().as_its_solver_knows();
         let mut implicit = foreign.clone();
         implicit.integrator = IntegratorKind::Implicit;
         implicit.time_step = TimeStepRule::Growth(0.05);
         implicit.settings.drag = Drag::Implicit;
-        assert_eq!(implicit.for_attached().hash(), explicit.hash());
+        assert_eq!(implicit.as_its_solver_knows().hash(), explicit.hash());
         assert_eq!(explicit.label(), "ogs cells=10");
-        let stepped = Case { time_step: TimeStepRule::Seconds(0.5), ..foreign }.for_attached();
+        let stepped = Case { time_step: TimeStepRule::Seconds(0.5), ..foreign }.as_its_solver_knows();
         assert_ne!(stepped.hash(), explicit.hash());
         assert_eq!(stepped.label(), "ogs cells=10 seconds=5e-1");
-        assert_eq!(seed().for_attached(), seed(), "a method of this program keeps all");
+        assert_eq!(seed().as_its_solver_knows(), seed(), "a method of this program keeps all");
     }
 
     #[test]
@@ -426,8 +431,8 @@ mod tests {
             |case| case.material.conductivity_mean = ConductivityMean::Chord,
             |case| case.method = Method::named("GIMP").expect("a method").into(),
             |case| case.method = Method::named("GIMP-SRI").expect("a method").into(),
-            |case| case.method = attached("ogs", "0123456789abcdef"),
-            |case| case.method = attached("ogs", "0123456789abcdee"),
+            |case| case.method = foreign("ogs", "0123456789abcdef"),
+            |case| case.method = foreign("ogs", "0123456789abcdee"),
             |case| case.integrator = IntegratorKind::Implicit,
             |case| case.formulation = Formulation::UP,
             |case| case.settings.scheme = Scheme::Leapfrog,

@@ -39,13 +39,13 @@ pub fn work_of_seconds(seconds: f64) -> u64 {
 /// Time in which a result that lies there is read and judged, s.
 pub const READING_SECONDS: f64 = 4e-3;
 
-/// Time assumed for a case of an attached solver, s: it cannot be estimated.
-const ATTACHED_SECONDS: f64 = 5.0;
+/// Time assumed for a case whose work is not counted, s: it cannot be estimated.
+const UNKNOWN_SECONDS: f64 = 5.0;
 
 /// Time that a case will take on one core of the machine that [`step_cost`](crate::case::step_cost) names, s.
 pub fn estimated_seconds(case: &Case) -> f64 {
-    if case.is_attached() {
-        return ATTACHED_SECONDS;
+    if !case.counts_work() {
+        return UNKNOWN_SECONDS;
     }
     CASE_SECONDS + estimated_steps(case) * seconds_per_step(case)
 }

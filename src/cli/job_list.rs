@@ -28,9 +28,9 @@ pub struct JobList {
     pub tasks: u64,
     /// By what they are parted.
     pub parting: Parting,
-    /// Whether the studies may start their attached solvers.
+    /// Whether the studies may start their solvers.
     pub allow_solvers: bool,
-    /// Whether results of attached solvers are kept that nothing proves to be of the present program.
+    /// Whether results are kept that nothing proves to be of the present program.
     pub keep_unproven: bool,
 }
 

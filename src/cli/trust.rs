@@ -5,7 +5,6 @@
 //! terminal said yes to: that is remembered by a digest of the commands and of the adapter's files.
 
 use crate::campaign::runner::Tally;
-use crate::case::solver::SolverName;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place;
@@ -85,9 +84,8 @@ pub fn end_with(tally: Tally, otherwise: Exit) -> Exit {
 
 /// The solvers of a study that its cases would start.
 fn starting(study: &Study) -> Vec<&ExternalSolver> {
-    let is_used = |solver: &&ExternalSolver| {
-        study.planned.iter().any(|planned| planned.case.method == SolverName::Attached(solver.attached))
-    };
+    let is_used =
+        |solver: &&ExternalSolver| study.planned.iter().any(|planned| planned.case.method == solver.method());
     study.solvers.iter().filter(|solver| !solver.is_given()).filter(is_used).collect()
 }
 
@@ -111,7 +109,7 @@ fn digest_of(study: &Study, starting: &[&ExternalSolver]) -> String {
     take(&study.name);
     for solver in starting {
         take(&solver.folder.to_string_lossy());
-        take(&format!("{:?}", (solver.attached, &solver.command, &solver.version, &solver.environment)));
+        take(&format!("{:?}", (solver.identity, &solver.command, &solver.version, &solver.environment)));
         for word in solver.words().chain(&solver.version) {
             if let Some(path) = solver.file(word) {
                 take(&digest_of_file(&path));

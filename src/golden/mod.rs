@@ -290,8 +290,7 @@ pub fn values_of(records: &[Record]) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::new();
     for record in records {
         let label = record.case.label();
-        // Nobody counts the work of an attached solver.
-        if !record.case.is_attached() {
+        if record.case.counts_work() {
             values.insert(format!("{label} | steps"), record.counters.steps as f64);
             values.insert(format!("{label} | point updates"), record.counters.point_updates as f64);
         }

@@ -1,7 +1,7 @@
 //! Results over time: two states of a study beside each other, and golden values over the commits that changed them.
 //!
 //! A state is a folder of records, or the golden files of a git revision; `rounds`
-//! alone runs something, commands of an attached solver.
+//! alone runs something, two commands of a study.
 
 pub(crate) mod comparison;
 pub(crate) mod repository;

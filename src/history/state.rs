@@ -1,5 +1,5 @@
-//! One state of studies: their values, and the inputs that they belong to, from records, golden files, or two commands of
-//! an attached solver that are run in turn.
+//! One state of studies: their values, and the inputs that they belong to, from records, golden files, or two commands that
+//! are run in turn.
 
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::planned::Tier;
@@ -21,7 +21,7 @@ pub(crate) struct StudyState {
     pub golden: GoldenFile,
     /// Processor seconds of every run of each case by label, where they were measured.
     pub seconds: BTreeMap<String, Vec<f64>>,
-    /// What made the values: this program and attached ones, with their commits.
+    /// What made the values: this program and others, with their commits.
     pub made_by: Vec<String>,
 }
 
@@ -145,12 +145,12 @@ impl StudyState {
             let runs = record.wall.iter().map(|sample| sample.cpu_seconds.unwrap_or(sample.seconds));
             (record.case.label(), runs.collect())
         });
-        let of_attached = |record: &Record| {
-            let about = record.attached.as_ref()?;
+        let of_others = |record: &Record| {
+            let about = record.outside_run()?;
             Some(format!("`{}` by {}", record.case.method, about.made_by()))
         };
         let own = records.iter().map(|record| record.provenance.made_by());
-        let made_by: BTreeSet<String> = own.chain(records.iter().filter_map(of_attached)).collect();
+        let made_by: BTreeSet<String> = own.chain(records.iter().filter_map(of_others)).collect();
         Self {
             golden: GoldenFile::of(study, records, "records"),
             seconds: seconds.collect(),
@@ -200,7 +200,8 @@ pub(crate) fn with_command(study: &Study, command: &str) -> Result<Study, String
     // Nothing of a result that is there already, one run a round, and no version of another program.
     (solver.repeats, solver.warm_up) = (1, false);
     (solver.files, solver.version, solver.known_by) = (Vec::new(), Vec::new(), None);
-    study.planned.retain(|planned| planned.case.is_attached());
+    let method = solver.method();
+    study.planned.retain(|planned| planned.case.method == method);
     Ok(study)
 }
 
@@ -310,7 +311,7 @@ mod tests {
             (solver.repeats, solver.warm_up, solver.version.len(), solver.is_given()),
             (1, false, 0, false)
         );
-        assert!(found.planned.len() == 1 && found.planned[0].case.is_attached());
+        assert!(found.planned.len() == 1 && !found.planned[0].case.has_integrator());
         let empty =
             "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`";
         let several = |count: usize| {

@@ -27,7 +27,7 @@ impl Path<'_> {
         Context {
             formal_order: (self.axis == Axis::Cells).then(|| formal_order(case, measure)).flatten(),
             round_off: Some(self.round_off(measure)),
-            tolerance: Some(if case.is_attached() { SINGLE_PRECISION } else { ITERATIONS }),
+            tolerance: Some(if case.has_integrator() { ITERATIONS } else { SINGLE_PRECISION }),
             reference_accuracy: used.map(|used| used.tail_bound),
             limiters: self.limiters(measure),
             mobility: self.mobility(measure),
@@ -36,7 +36,7 @@ impl Path<'_> {
     }
 
     /// Errors up to this are round-off: of a linear system, whose condition grows with the cells (measured in a sealed
-    /// element: 2e-13 times their number to the power of 1.5), and of the digits that an attached solver has written.
+    /// element: 2e-13 times their number to the power of 1.5), and of the digits that stand in a file.
     fn round_off(&self, measure: &Measure) -> f64 {
         let of_system =
             |record: &&Record| ROUND_OFF * (record.case.cells as f64).sqrt() * record.case.cells as f64;
@@ -45,8 +45,8 @@ impl Path<'_> {
             let samples = measure.sample.of(snapshot).unwrap_or(&snapshot.nodes);
             Some(2.0 * half_a_digit(measure.quantity.field(samples)?))
         };
-        let attached = self.records.iter().filter(|record| record.case.is_attached());
-        let digits = attached.filter_map(of_digits);
+        let read = self.records.iter().filter(|record| record.outside_run().is_some());
+        let digits = read.filter_map(of_digits);
         // An explicit step solves no system.
         let solved = self.records.iter().filter(|record| !record.case.is_explicit());
         solved.map(of_system).chain(digits).fold(ROUND_OFF, f64::max)
@@ -86,8 +86,8 @@ impl Path<'_> {
     /// without varying them.
     fn held_limiters(&self, measure: &Measure) -> Vec<Limiter> {
         let case = &self.records[0].case;
-        // What an attached solver keeps while the mesh is refined is not known here.
-        if self.axis != Axis::Cells || measure.reference == NEXT_FINER || case.is_attached() {
+        // What another program keeps while the mesh is refined is not known here.
+        if self.axis != Axis::Cells || measure.reference == NEXT_FINER || !case.has_integrator() {
             return Vec::new();
         }
         let moves = case.configuration().moves_points();
@@ -193,7 +193,7 @@ const UNMOVED: f64 = 0.1;
 fn strain_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let case = &finest.case;
     let is_theory = measure.reference != NEXT_FINER && measure.reference != NO_REFERENCE;
-    let is_finite = !case.scene.is_large_strain() && case.configuration().deforms() && !case.is_attached();
+    let is_finite = !case.scene.is_large_strain() && case.configuration().deforms() && case.has_integrator();
     let magnitude = Some(0.5 * finest.groups.finite_strain).filter(|_| is_theory && is_finite)?;
     let name = "finite strain against a theory of small strain";
     Some(Limiter { magnitude: Some(magnitude), ..Limiter::new(LimiterKind::Model, name) })
@@ -499,7 +499,7 @@ mod tests {
             assert_eq!(told, wanted, "{scene} {axis:?} {reference}");
             let known: Vec<bool> = found.iter().map(|one| one.magnitude.is_some()).collect();
             assert_eq!(known, wanted.iter().map(|one| one.1 == LimiterKind::Model).collect::<Vec<_>>());
-            // Of an attached solver neither steps nor points are known.
+            // Of another program neither steps nor points are known.
             for run in &mut runs {
                 let digest = "0123456789abcdef";
                 run.case.method =

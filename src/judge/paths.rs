@@ -1,7 +1,7 @@
 //! Groups the records of a study into paths along an axis, with their series of errors.
 
 use crate::case::{Norm, Quantity, Sample, step_label};
-use crate::judge::explanation::place_of_attached;
+use crate::judge::explanation::place_in_kept;
 use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
@@ -180,12 +180,10 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// A measure at the points; for an attached solver, at the places that it has instead.
+    /// A measure at the points, or at the places that the solver has instead.
     pub fn own_measure(&self, measure: &Measure) -> Measure {
-        let own = self
-            .records
-            .iter()
-            .find(|record| record.attached.as_ref().is_some_and(|one| one.sample.is_some()));
+        let own =
+            self.records.iter().find(|record| record.outside_run().is_some_and(|run| run.sample.is_some()));
         match own {
             Some(record) if measure.sample == Sample::Points => {
                 Measure { sample: record.main_sample(), ..measure.clone() }
@@ -203,10 +201,10 @@ impl<'a> Path<'a> {
         self.records.iter().find(is_bounded).unwrap_or(&self.records[self.records.len() - 1])
     }
 
-    /// Where most of the error of an attached solver's result lies, at the level that a demand bounds.
+    /// Where most of the error lies at the level that a demand bounds, where that cannot be made again.
     pub(crate) fn place(&self, demand: &SeriesDemand, measure: &Measure) -> Option<String> {
         let record = self.bounded_level(demand);
-        place_of_attached(record, measure.error(record)?)
+        place_in_kept(record, measure.error(record)?)
     }
 
     /// What the runs of the path share, in words, the method first.
@@ -219,7 +217,7 @@ impl<'a> Path<'a> {
         let variant = Some(case.variant()).filter(|variant| !variant.is_empty());
         let cells = (self.axis != Axis::Cells).then(|| format!("{} cells", case.cells));
         let method = Some(case.method.to_string());
-        if case.is_attached() {
+        if !case.has_integrator() {
             return [method, cells, variant].into_iter().flatten().collect();
         }
         let has_step = case.integrator != IntegratorKind::Explicit;

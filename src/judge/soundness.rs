@@ -38,14 +38,14 @@ pub fn complaints(record: &Record) -> Vec<String> {
 
 /// Drops from a record what no verdict of its study needs, because whole records of a hundred thousand cases do not
 /// fit into memory: fields and history, and where no expectation selects the record its errors and balances too.
-/// Records with complaints and those of attached solvers stay whole.
+/// Records with complaints stay whole, and those that cannot be made again.
 pub fn thin(study: &Study, record: &mut Record) {
     // What is proposed to a study without expectations comes from its errors and fields.
     if proposals::are_wanted(study) {
         return;
     }
     let has_complaints = || !complaints(record).is_empty();
-    if record.status != Status::Ok || record.attached.is_some() || has_complaints() {
+    if record.status != Status::Ok || !record.can_be_made_again() || has_complaints() {
         return;
     }
     record.history = Vec::new();

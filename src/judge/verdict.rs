@@ -411,7 +411,7 @@ impl<'a> Absent<'a> {
 /// One sentence for each case whose solver gives different results when repeated.
 pub fn differing_repeats(records: &[Record]) -> Vec<String> {
     let note = |record: &Record| {
-        let told = record.attached.as_ref()?.notes.first()?;
+        let told = record.outside_run()?.notes.first()?;
         Some(format!("{}: {told}", record.case.label()))
     };
     records.iter().filter_map(note).collect()

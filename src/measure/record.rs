@@ -51,8 +51,8 @@ pub fn record_of(case: &Case, references: &[ReferenceKind], outcome: Outcome) ->
     let Outcome { status, snapshots, sample, steps, inside, foreign, wall, .. } = outcome;
     let Some(inside) = inside else {
         let of_places = || AttachedRun { sample, ..AttachedRun::default() };
-        let attached = Some(foreign.unwrap_or_else(of_places));
-        let record = Record { wall, attached, ..empty_record(case, status, steps, 0.0) };
+        let record = Record { wall, ..empty_record(case, status, steps, 0.0) };
+        let record = record.made_outside(foreign.unwrap_or_else(of_places));
         return results_outside(case, snapshots).added_to(record, references);
     };
     let share = match &inside.critical_step {
@@ -102,7 +102,7 @@ impl Results<'_> {
     fn added_to(self, record: Record, kinds: &[ReferenceKind]) -> Result<Record, ExactError> {
         let case = &record.case;
         let mut prepared = case.time_factors.to_vec();
-        if record.attached.is_some() {
+        if record.outside_run().is_some() {
             prepared.extend(&self.times);
         }
         let references: Vec<Arc<Reference>> = kinds
@@ -115,7 +115,7 @@ impl Results<'_> {
             // Runs of this program are not compared with a theory that leaves out the inertia they have.
             let hold = references
                 .iter()
-                .filter(|one| record.attached.is_some() || inertia_rules(case, one.kind()).is_none());
+                .filter(|one| record.outside_run().is_some() || inertia_rules(case, one.kind()).is_none());
             for reference in hold {
                 let rows = snapshot_errors(case, reference, *time, snapshot)?;
                 errors.extend(rows.into_iter().map(|row| ErrorRow { time_factor: *asked, ..row }));

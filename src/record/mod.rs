@@ -281,9 +281,25 @@ impl Record {
         self.snapshots.get(index)
     }
 
-    /// Kind of places whose errors stand for the case: the points, or what an attached solver has.
+    /// The same, made by a run outside of this program.
+    #[must_use]
+    pub fn made_outside(self, run: AttachedRun) -> Self {
+        Self { attached: Some(run), ..self }
+    }
+
+    /// What is known of the run outside of this program that made it.
+    pub fn outside_run(&self) -> Option<&AttachedRun> {
+        self.attached.as_ref()
+    }
+
+    /// Whether this program can make it again from its case, with all that a record leaves out.
+    pub fn can_be_made_again(&self) -> bool {
+        self.attached.is_none()
+    }
+
+    /// Kind of places whose errors stand for the case: the points, or what its solver has instead.
     pub fn main_sample(&self) -> Sample {
-        self.attached.as_ref().and_then(|attached| attached.sample).unwrap_or(Sample::Points)
+        self.outside_run().and_then(|run| run.sample).unwrap_or(Sample::Points)
     }
 
     /// Wall times of runs that had the machine to themselves, s.
@@ -319,9 +335,9 @@ mod tests {
         record.snapshots.pop();
         assert!(record.snapshot(0.1).is_some() && record.snapshot(0.3).is_none(), "it did not come to it");
         assert_eq!(record.main_sample(), Sample::Points);
-        record.attached = Some(AttachedRun { sample: Some(Sample::Nodes), ..AttachedRun::default() });
+        record = record.made_outside(AttachedRun { sample: Some(Sample::Nodes), ..AttachedRun::default() });
         assert_eq!(record.main_sample(), Sample::Nodes);
-        record.attached = Some(AttachedRun::default());
+        record = record.made_outside(AttachedRun::default());
         assert_eq!(record.main_sample(), Sample::Points);
     }
 }

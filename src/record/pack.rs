@@ -47,7 +47,7 @@ const WINDOW: usize = 1 << 20;
 pub struct Entry {
     /// Hash of the case.
     pub case: u64,
-    /// Whether the case is worth another run: it ran out of its time, or its attached solver failed.
+    /// Whether the case is worth another run: it ran out of its time, or the program that solves it failed.
     pub is_late: bool,
     /// Tag of the program that made it.
     pub program: u64,

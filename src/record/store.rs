@@ -128,7 +128,7 @@ impl RecordStore {
     /// What there is of a case to take up.
     ///
     /// A record that cannot be read, was damaged, is of another layout or of another case counts as none, and so does
-    /// one that ran out of its time, or whose attached solver failed: the case is run again, and so it is where another
+    /// one that ran out of its time, or whose program failed: the case is run again, and so it is where another
     /// program made its record.
     /// Another build of the same sources gives the same values and is taken up, without its wall times, which are
     /// that build's own.

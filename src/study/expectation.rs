@@ -211,7 +211,7 @@ pub struct CaseExpectation {
 }
 
 impl CaseExpectation {
-    /// Whether it is about an attached solver that is absent.
+    /// Whether it is about a solver that is absent.
     pub fn asks_for_a_skip(&self) -> bool {
         self.demand.status.as_deref() == Some(FailureKind::Skipped.name())
     }

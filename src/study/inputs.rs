@@ -156,7 +156,7 @@ fn schema_of_values(key: &Key, generator: &mut SchemaGenerator) -> Schema {
     match key.kind {
         Kind::Method => {
             let choices = MethodTable::json_schema(generator);
-            // The name of an attached solver is any plain word.
+            // The name of a solver is any plain word.
             let solver = json_schema!({ "type": "string", "pattern": "^[A-Za-z][A-Za-z0-9._-]*$" });
             json_schema!({ "anyOf": [{ "enum": Method::names() }, solver, choices] })
         }

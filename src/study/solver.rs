@@ -1,6 +1,6 @@
 //! A checked external solver: its command, and how its result is read.
 
-use crate::case::solver::Attached;
+use crate::case::solver::{Attached, SolverName};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ pub const PLACEHOLDERS: [(&str, &str); 7] = [
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExternalSolver {
     /// Its name, with the digest of its command and files.
-    pub attached: Attached,
+    pub identity: Attached,
     /// Folder of the study file, against which its files are named.
     pub folder: PathBuf,
     /// The program and its arguments, as typed.
@@ -105,7 +105,12 @@ impl ExternalSolver {
 
     /// The name that the study gives it.
     pub fn name(&self) -> &str {
-        self.attached.name()
+        self.identity.name()
+    }
+
+    /// What cases have as their method that are given to it.
+    pub fn method(&self) -> SolverName {
+        SolverName::Attached(self.identity)
     }
 
     /// The words of its command and the values of its environment.

@@ -318,14 +318,14 @@ fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
 #[test]
 fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own() {
     let mut record = records().remove(0);
-    record.attached = Some(crate::record::AttachedRun::default());
+    record = record.made_outside(crate::record::AttachedRun::default());
     for (sample, own) in record.wall.iter_mut().zip([5.5, 7.5, 6.5]) {
         (sample.own_seconds, sample.peak_memory) = (Some(own), Some(counted(1e6 * own)));
     }
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));
     }
-    let table = runs::attached_table(std::slice::from_ref(&record)).expect("one attached run");
+    let table = runs::attached_table(std::slice::from_ref(&record)).expect("one run");
     for (header, cell) in [
         ("wall, least", Cell::Seconds(2.0)),
         ("wall, median", Cell::Seconds(3.0)),

@@ -219,7 +219,7 @@ impl<'a> Trial<'a> {
         state.studies.remove(&name).ok_or_else(|| format!("there are no records of `{name}`"))
     }
 
-    /// What the results of the commit that was tried last look like, where an attached solver made them.
+    /// What the results of the commit that was tried last look like, where another program made them.
     fn diagnoses(&self) -> Vec<String> {
         let study = self.study_file().ok().and_then(|file| {
             let path = self.tree().join(file);

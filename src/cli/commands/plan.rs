@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     Ok(if count == 0 { Exit::NothingSelected } else { Exit::Pass })
 }
 
-/// What attached solvers are given of each case.
+/// What the commands of studies are given of each case.
 fn case_files_of(studies: &[(&Study, Vec<&Case>)]) -> Vec<CaseFile> {
     studies.iter().flat_map(|(_, cases)| cases).map(|case| CaseFile::of(case)).collect()
 }

@@ -8,7 +8,7 @@ pub(crate) fn solver(folder: &Path, command: &[&str]) -> ExternalSolver {
     ExternalSolver {
         files: Vec::new(),
         time_step: None,
-        attached: Attached::new("toy", "0123456789abcdef").expect("a plain name"),
+        identity: Attached::new("toy", "0123456789abcdef").expect("a plain name"),
         folder: folder.to_owned(),
         command: command.iter().map(|word| (*word).to_owned()).collect(),
         result: "{out}/result.csv".to_owned(),
@@ -118,12 +118,12 @@ mod runs {
     /// A case on two cells with one output.
     fn case(solver: &ExternalSolver) -> Case {
         Case {
-            method: crate::case::solver::SolverName::Attached(solver.attached),
+            method: solver.method(),
             cells: 2,
             time_factors: vec![0.1].into(),
             ..Case::seed(Task::Solve, SceneKind::Terzaghi)
         }
-        .for_attached()
+        .as_its_solver_knows()
     }
 
     /// Runs a shell script in the place of a solver.

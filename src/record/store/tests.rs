@@ -103,7 +103,7 @@ fn record(case: &Case, tag: usize, wall: &[f64], end: CaseEnd) -> Record {
 }
 
 fn content(record: &Record) -> Content {
-    let tag = record.attached.as_ref().and_then(|about| about.version.as_ref()?.parse().ok()).expect("a tag");
+    let tag = record.outside_run().and_then(|about| about.version.as_ref()?.parse().ok()).expect("a tag");
     let end = match &record.status {
         Status::Ok => CaseEnd::Ok,
         status if status.is_worth_another_run() => CaseEnd::Late,

@@ -132,9 +132,12 @@ pub fn sample(sample: Sample) -> &'static str {
     }
 }
 
-/// Work of a case, which is not counted for an attached solver.
+/// Why the work of a case is not known.
+pub const NOT_COUNTED: &str = "of an attached solver";
+
+/// Work of a case, where it is counted.
 pub fn counted(record: &Record, work: u64) -> Cell {
-    if record.case.is_attached() { Cell::missing("of an attached solver") } else { Cell::Count(work) }
+    if record.case.counts_work() { Cell::Count(work) } else { Cell::missing(NOT_COUNTED) }
 }
 
 /// A measure in words, without its time.

@@ -11,23 +11,23 @@ const BUSY: f64 = 2.0;
 /// One row per run of an attached solver: how it ended, what it took, and whether its repeats agree. `None` where no
 /// solver is attached.
 pub fn attached_table(records: &[Record]) -> Option<Table> {
-    let attached: Vec<&Record> = records.iter().filter(|record| record.attached.is_some()).collect();
-    if attached.is_empty() {
+    let outside: Vec<&Record> = records.iter().filter(|record| record.outside_run().is_some()).collect();
+    if outside.is_empty() {
         return None;
     }
-    let busy = attached.iter().filter(|record| is_busy(&record.wall)).count();
+    let busy = outside.iter().filter(|record| is_busy(&record.wall)).count();
     let busy = (busy > 0).then(|| {
         format!(
             "{busy} of {} runs took more than {BUSY} times their processor time: the machine was busy or they waited, so \
              compare processor times",
-            attached.len()
+            outside.len()
         )
     });
     let columns = columns(
         "case | ended | made by | > wall, least [s] | > wall, median [s] | > processor [s] | > memory [MB] \
          | > by its own account [s] | > repeats differ by",
     );
-    let rows = attached.iter().map(|record| attached_row(record));
+    let rows = outside.iter().map(|record| attached_row(record));
     let table = Table::of("Runs of attached solvers", columns, rows).note(
         "wall time: least and median over the repeats; processor time and memory: of the solver and of the processes that \
          it waited for",
@@ -36,7 +36,7 @@ pub fn attached_table(records: &[Record]) -> Option<Table> {
 }
 
 fn attached_row(record: &Record) -> Vec<Cell> {
-    let about = record.attached.as_ref();
+    let about = record.outside_run();
     let wall = over(&record.wall, |sample| Some(sample.seconds));
     let median = |field| over(&record.wall, field).map(|spread| spread.median);
     let mood = match record.status.failure() {
@@ -76,7 +76,7 @@ fn is_busy(samples: &[WallSample]) -> bool {
 
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
 pub fn attached_notes(record: &Record) -> Vec<String> {
-    let Some(about) = &record.attached else { return Vec::new() };
+    let Some(about) = record.outside_run() else { return Vec::new() };
     let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
     let version = about.version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
     notes.push(if about.command.is_empty() {

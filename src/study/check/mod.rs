@@ -9,7 +9,7 @@ mod sweeps;
 mod values;
 
 use crate::case::work_estimate::{READING_SECONDS, estimated_seconds};
-use crate::case::{Case, Key, PlannedCase, Planner, SolverName, Task, Tier, Value};
+use crate::case::{Case, Key, PlannedCase, Planner, Task, Tier, Value};
 use crate::record::Record;
 use crate::study::check::expectations::Subject;
 use crate::study::check::geometry::load_of;
@@ -123,7 +123,7 @@ impl Study {
 
     /// The solver that a case is given to, where that is not this program.
     pub fn solver_of(&self, case: &Case) -> Option<&ExternalSolver> {
-        self.solvers.iter().find(|solver| case.method == SolverName::Attached(solver.attached))
+        self.solvers.iter().find(|solver| case.method == solver.method())
     }
 
     /// Whether an expectation says that a record is to end as it did. How a contender of a race ends is a result.
@@ -225,7 +225,7 @@ impl Checker<'_> {
             let swept = self.outputs(&table.time_factors, &table.times);
             let outputs = swept.as_ref().unwrap_or(&outputs);
             let loaded = |case: Case| {
-                let mut case = case.for_attached();
+                let mut case = case.as_its_solver_knows();
                 case.column.points.name_water_points(case.points_per_cell);
                 if let Some(strain) = strain {
                     case.column.load = load_of(strain, &case);

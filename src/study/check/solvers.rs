@@ -37,7 +37,7 @@ impl GivenMeshes {
     /// A case a mesh.
     pub(super) fn cases(&self, base: &Case) -> Vec<Case> {
         let of_mesh =
-            |cells: &usize| Case { method: self.method, cells: *cells, ..base.clone() }.for_attached();
+            |cells: &usize| Case { method: self.method, cells: *cells, ..base.clone() }.as_its_solver_knows();
         self.cells.iter().map(of_mesh).collect()
     }
 }
@@ -116,9 +116,9 @@ impl Checker<'_> {
         let time_step =
             table.time_step.as_ref().map(|typed| self.positive(Some(typed), "time_step", "s", 1.0));
         let known_by = self.known_by(table, &folder);
-        let attached = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
+        let identity = self.identity(&table.name, "solver", &digest_of_solver(table, &folder))?;
         (self.diagnostics.len() == before).then(|| ExternalSolver {
-            attached,
+            identity,
             folder,
             command,
             result: table.result.to_string(),
@@ -180,12 +180,12 @@ impl Checker<'_> {
         let folder = folder_of(&self.source.name);
         let mapping = self.file_of_study(table.mapping.as_ref(), &folder);
         let digest = digest_of_result(table, &files, &cells, &folder);
-        let attached = self.identity(&table.name, "result", &digest)?;
+        let identity = self.identity(&table.name, "result", &digest)?;
         if self.diagnostics.len() > before {
             return None;
         }
         self.solvers.push(ExternalSolver {
-            attached,
+            identity,
             folder,
             command: Vec::new(),
             result: String::new(),
@@ -203,7 +203,7 @@ impl Checker<'_> {
             solve_seconds: None,
             solve_unit: 1.0,
         });
-        Some(GivenMeshes { method: SolverName::Attached(attached), cells, tier: table.tier })
+        Some(GivenMeshes { method: SolverName::Attached(identity), cells, tier: table.tier })
     }
 
     /// No system passes on a zero letter, nor a variable's name with `=` in it: it would set another variable.

@@ -177,7 +177,7 @@ impl Checker<'_> {
             if is_solved && has_end && self.diagnostics.is_empty() {
                 has_end = !self.has_no_end(start, &of_load, &case);
             }
-            if !is_solved || case.is_attached() {
+            if !is_solved || !case.has_integrator() {
                 continue;
             }
             if case.column.cells_across(case.cells).is_none() {

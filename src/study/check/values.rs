@@ -6,6 +6,7 @@ use crate::study::check::Checker;
 use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
 use crate::study::reading::Placed;
+use crate::study::solver::ExternalSolver;
 use oedometer_mpm::method::{Method, PressureIntegration, Recovery, WHOLE_PROJECTION};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;
@@ -72,9 +73,8 @@ impl Checker<'_> {
     }
 
     fn method_named(&mut self, name: &str, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
-        let attached = self.solvers.iter().find(|solver| solver.name() == name);
-        let attached = attached.map(|solver| SolverName::Attached(solver.attached));
-        let Some(method) = Method::named(name).map(SolverName::Own).or(attached) else {
+        let of_study = self.solvers.iter().find(|solver| solver.name() == name).map(ExternalSolver::method);
+        let Some(method) = Method::named(name).map(SolverName::Own).or(of_study) else {
             let mut names = Method::names();
             names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
