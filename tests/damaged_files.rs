@@ -207,7 +207,8 @@ impl Copies {
 
     fn read(&self, family: &Family) -> Result<usize, String> {
         let entry = self.root.path().join(family.folder).join(family.read);
-        let meshes = read(&[entry], family.preset, family.time_step, 1.0)?;
+        let meshes =
+            read(&[entry], family.preset, family.time_step, 1.0).map_err(|error| error.to_string())?;
         Ok(meshes.iter().flatten().map(|state| state.initial_height.len()).sum())
     }
 
@@ -285,6 +286,7 @@ fn claims_of_ten_gigabytes_and_bombs_allocate_next_to_nothing() {
         let refused = read(&[path], "meshio", Some(1.0), 1.0).expect_err(name);
         let allocated = region.change().bytes_allocated;
         assert!(allocated < (32 << 20), "{name}: {allocated} bytes allocated; {refused}");
+        let refused = refused.to_string();
         assert!(
             refused.contains("claim") || refused.contains("cut") || refused.contains("hold"),
             "{refused}"

@@ -4,6 +4,7 @@
 //! The module `oedometer` around this one gives them shapes and names.
 
 use oedometer::api::convergence::Demand;
+use oedometer::api::error::ApiError;
 use oedometer::api::score::Samples;
 use oedometer::api::{self, Meaning};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -32,7 +33,7 @@ fn refused(why: impl ToString) -> PyErr {
 
 /// Calls the interface without the lock of the interpreter. What it refuses is a `ValueError`; a panic, which would be a
 /// fault of this program, is a `RuntimeError` and never the end of the interpreter.
-fn call<T: Send>(py: Python<'_>, of: impl FnOnce() -> Result<T, String> + Send) -> PyResult<T> {
+fn call<T: Send>(py: Python<'_>, of: impl FnOnce() -> Result<T, ApiError> + Send) -> PyResult<T> {
     match py.detach(|| catch_unwind(AssertUnwindSafe(of))) {
         Ok(found) => found.map_err(refused),
         Err(_) => Err(PyRuntimeError::new_err(

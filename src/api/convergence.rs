@@ -1,5 +1,6 @@
 //! Orders, classes and verdicts of a series of errors.
 
+use crate::api::error::ApiError;
 use crate::judge::paths::{ROUND_OFF, SINGLE_PRECISION};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::study::diagnostic::one_of;
@@ -37,13 +38,11 @@ fn series_of(
     sizes: &[f64],
     errors: &[f64],
     formal_order: Option<f64>,
-) -> Result<(ErrorSeries, Context), String> {
+) -> Result<(ErrorSeries, Context), ApiError> {
     if sizes.len() != errors.len() {
-        return Err(format!(
-            "there are {} sizes and {} errors: give one of each per level",
-            sizes.len(),
-            errors.len()
-        ));
+        let (sizes, errors) = (sizes.len(), errors.len());
+        let why = format!("there are {sizes} sizes and {errors} errors: give one of each per level");
+        return Err(ApiError::Unfit(why));
     }
     let level = |(size, error): (&f64, &f64)| SeriesLevel { size: *size, error: Some(error.abs()) };
     let series = ErrorSeries::new(sizes.iter().zip(errors).map(level).collect());
@@ -66,7 +65,7 @@ fn series_of(
 ///
 /// # Errors
 /// When the lists differ in length.
-pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> Result<Found, String> {
+pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> Result<Found, ApiError> {
     let (series, context) = series_of(sizes, errors, formal_order)?;
     Ok(Found {
         sizes: series.levels().iter().map(|level| level.size).collect(),
@@ -80,12 +79,13 @@ pub fn convergence(sizes: &[f64], errors: &[f64], formal_order: Option<f64>) -> 
 ///
 /// # Errors
 /// When the lists differ in length, or the class does not exist.
-pub fn verdict(sizes: &[f64], errors: &[f64], demand: &Demand) -> Result<(bool, String), String> {
+pub fn verdict(sizes: &[f64], errors: &[f64], demand: &Demand) -> Result<(bool, String), ApiError> {
     let (series, context) = series_of(sizes, errors, demand.order.map(|(value, ..)| value))?;
     let class = demand.class.as_deref().map(|word| {
         let names = Class::ALL.map(Class::name);
         let found = Class::ALL.into_iter().find(|class| class.name() == word);
-        found.ok_or_else(|| format!("unknown class `{word}`: {}", one_of(word, &names)))
+        let unknown = || format!("unknown class `{word}`: {}", one_of(word, &names));
+        found.ok_or_else(|| ApiError::UnknownName(unknown()))
     });
     let demand = SeriesDemand {
         order: demand.order.map(|(value, minus, plus)| OrderBand { value, minus, plus }),
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(found.classification.class, Class::Asymptotic);
         assert!((found.classification.order.expect("an order") - 2.0).abs() < 1e-9);
         let told = "there are 1 sizes and 0 errors: give one of each per level";
-        assert_eq!(convergence(&[0.1], &[], None).err().as_deref(), Some(told));
+        assert_eq!(convergence(&[0.1], &[], None).expect_err("no pairs").to_string(), told);
         let lacking = convergence(&[0.1, 0.05, 0.025], &[4e-2, f64::NAN, 2.5e-3], None).expect("a series");
         assert_eq!((lacking.pair_orders, lacking.errors[2]), (vec![None, None], 2.5e-3));
         // 0.171, −0.145, −0.223 % go to a limit, and their sizes alone would grow.
@@ -134,7 +134,7 @@ mod tests {
         let nonsense = verdict(&sizes, &[4e-2, f64::NAN, 2.5e-3], &demand).expect("a series");
         assert!(!nonsense.0, "{}", nonsense.1);
         let unknown = Demand { class: Some("asymptotics".to_owned()), ..Demand::default() };
-        let told = verdict(&sizes, &errors, &unknown).expect_err("no class");
+        let told = verdict(&sizes, &errors, &unknown).expect_err("no class").to_string();
         assert!(told.starts_with("unknown class `asymptotics`: ") && told.contains("`asymptotic`"), "{told}");
     }
 

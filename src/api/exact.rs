@@ -1,5 +1,6 @@
 //! Exact solutions over times and depths.
 
+use crate::api::error::ApiError;
 use crate::api::scene_of;
 use crate::study::overrides::{Asked, Assignments};
 use oedometer_exact::{Accuracy, ColumnParameters, ExactError, FieldValues, Reference, ReferenceKind};
@@ -48,37 +49,39 @@ pub fn exact(
     depths: &[f64],
     x: &[f64],
     assignments: &[String],
-) -> Result<ExactValues, String> {
+) -> Result<ExactValues, ApiError> {
     let (kind, _) = scene_of(solution)?;
     if kind == ReferenceKind::Mandel && (x.is_empty() || !depths.is_empty()) {
-        return Err("the fields of `mandel` depend on the distance from its middle: give `x`, from 0 to 1, and no depth"
-            .to_owned());
+        let why = "the fields of `mandel` depend on the distance from its middle: give `x`, from 0 to 1, and no depth";
+        return Err(ApiError::Unfit(why.to_owned()));
     }
     let asked = Asked::of_solution(kind, &Assignments { assignments: assignments.to_vec() });
-    let Asked { parameters, references, .. } = asked.map_err(|error| error.to_string())?;
-    let told = |error: ExactError| error.to_string();
-    let reference = Reference::new(references[0], &parameters, time_factors).map_err(told)?;
+    let Asked { parameters, references, .. } = asked?;
+    let reference = Reference::new(references[0], &parameters, time_factors)?;
     let mut values =
         ExactValues { height: parameters.height, load: parameters.load, ..ExactValues::default() };
     for time_factor in time_factors {
         values.time.push(parameters.time(*time_factor));
-        values.settlement.push(reference.settlement(*time_factor).map_err(told)?);
-        let degree = degree_of(&reference, *time_factor).map_err(told)?;
+        values.settlement.push(reference.settlement(*time_factor)?);
+        let degree = degree_of(&reference, *time_factor)?;
         values.degree_of_consolidation.push(degree.unwrap_or(f64::NAN));
-        values.tail_bound.push(accuracy_of(&reference, *time_factor).map_err(told)?.tail_bound);
+        values.tail_bound.push(accuracy_of(&reference, *time_factor)?.tail_bound);
         if kind == ReferenceKind::Mandel {
             for distance in x {
                 if !(0.0..=1.0).contains(distance) {
-                    return Err(told(ExactError::Distance(*distance)));
+                    return Err(ExactError::Distance(*distance).into());
                 }
-                values.add(reference.fields(*time_factor, 1.0 - distance).map_err(told)?);
+                values.add(reference.fields(*time_factor, 1.0 - distance)?);
             }
             continue;
         }
         let distances = (!x.is_empty()).then_some(x);
-        let places = places_of(&reference, &parameters, *time_factor, depths, distances).map_err(told)?;
+        let places = places_of(&reference, &parameters, *time_factor, depths, distances)?;
         let places = places.ok_or_else(|| {
-            format!("`x` is for layers and `mandel`, and `{}` depends on the depth alone", reference.name())
+            let name = reference.name();
+            ApiError::Unfit(format!(
+                "`x` is for layers and `mandel`, and `{name}` depends on the depth alone"
+            ))
         })?;
         for Place { pressure, effective_stress, displacement, .. } in places {
             let (effective_stress, [horizontal, displacement]) = (effective_stress[1], displacement);
@@ -239,7 +242,7 @@ mod tests {
             ("terzaghi", &[0.5], &[0.5], "depends on the depth alone"),
             ("terzagi", &[0.5], &[], "no exact solution is called `terzagi`"),
         ] {
-            let error = exact(solution, &[0.1], depths, x, &[]).expect_err(solution);
+            let error = exact(solution, &[0.1], depths, x, &[]).expect_err(solution).to_string();
             assert!(error.contains(told), "{error}");
         }
     }

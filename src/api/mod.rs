@@ -4,10 +4,13 @@
 //! `oedometer` prints. Numbers are in SI; lists over places are `[time][place]`, one time after the other.
 
 pub mod convergence;
+pub mod error;
 pub mod exact;
 pub mod score;
 
+use crate::api::error::ApiError;
 use crate::case::keys::Key;
+use crate::foreign::reading::MappingError;
 use crate::import::SampledState;
 use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
@@ -25,11 +28,12 @@ use std::path::PathBuf;
 ///
 /// # Errors
 /// When no solution has the name: lists the names.
-pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
+pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), ApiError> {
     let kind: ReferenceKind = solution.parse().map_err(|_| {
         let shelf = ShelfProblem::ALL.map(ReferenceKind::Shelf);
         let names: Vec<&str> = ReferenceKind::ALL.iter().chain(&shelf).map(|kind| kind.name()).collect();
-        format!("no exact solution is called `{solution}`; there are {}", names.join(", "))
+        let known = names.join(", ");
+        ApiError::UnknownName(format!("no exact solution is called `{solution}`; there are {known}"))
     })?;
     Ok((kind, SceneKind::of_solution(kind)))
 }
@@ -39,7 +43,7 @@ pub fn scene_of(solution: &str) -> Result<(ReferenceKind, SceneKind), String> {
 ///
 /// # Errors
 /// When no scene, solution or input has the name: lists the names.
-pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
+pub fn dotted_key(scene: &str, name: &str) -> Result<String, ApiError> {
     if name.contains('.') {
         return Ok(name.to_owned());
     }
@@ -58,7 +62,8 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, String> {
     found.map(|table| format!("{table}.{name}")).ok_or_else(|| {
         let names: Vec<&str> =
             [body, "material"].iter().flat_map(|table| Key::of(table)).map(|key| key.name).collect();
-        format!("no input of `{}` is called `{name}`; there are {}", scene.name(), names.join(", "))
+        let (scene, known) = (scene.name(), names.join(", "));
+        ApiError::UnknownName(format!("no input of `{scene}` is called `{name}`; there are {known}"))
     })
 }
 
@@ -87,7 +92,7 @@ pub fn read(
     preset: &str,
     time_step: Option<f64>,
     height: f64,
-) -> Result<Vec<Vec<SampledState>>, String> {
+) -> Result<Vec<Vec<SampledState>>, ApiError> {
     let body = SolvedBody { height, length: None, seconds_per_time_factor: 1.0 };
     let meaning = Meaning { preset: Some(preset.to_owned()), time_step, ..Meaning::default() };
     let (_, runs) = runs_with(files, &meaning, body, Axes::Column)?;
@@ -100,41 +105,41 @@ pub(crate) fn runs_with(
     meaning: &Meaning,
     body: SolvedBody,
     axes: Axes,
-) -> Result<(Mapping, Vec<Run>), String> {
-    let told = |error: &dyn std::fmt::Display| error.to_string();
-    let given = files_of(files).map_err(|error| told(&error))?;
-    let is_tables = are_tables(&given).map_err(|error| told(&error))?;
+) -> Result<(Mapping, Vec<Run>), ApiError> {
+    let given = files_of(files)?;
+    let is_tables = are_tables(&given)?;
     let own = meaning.mapping.as_ref().map(|path| {
         let text = input_file::read_text(path);
-        let text = text.map_err(|error| format!("cannot read the mapping {}: {error}", path.display()))?;
-        Ok::<_, String>(StudySource { name: path.display().to_string(), text })
+        let text = text.map_err(|source| MappingError::Io { path: path.clone(), source })?;
+        Ok::<_, ApiError>(StudySource { name: path.display().to_string(), text })
     });
     let typed = meaning.mapping_text.clone().map(|text| StudySource { name: "the mapping".to_owned(), text });
     let own = own.transpose()?.or(typed);
     let default = (own.is_none() && !is_tables).then_some("meshio");
     let named = meaning.preset.as_deref().filter(|_| !is_tables).or(default);
-    let preset = named.map(|name| Preset::from_str(name, false)).transpose()?;
-    let mut mapping = Mapping::resolve(preset, own.as_ref(), axes).map_err(|error| told(&error))?;
+    let preset =
+        named.map(|name| Preset::from_str(name, false)).transpose().map_err(ApiError::UnknownName)?;
+    let mut mapping = Mapping::resolve(preset, own.as_ref(), axes)?;
     if let Some(step) = meaning.time_step {
         if !(step.is_finite() && step > 0.0) {
-            return Err(format!("a time step of {step} is invalid: give seconds above 0"));
+            let why = format!("a time step of {step} is invalid: give seconds above 0");
+            return Err(ApiError::Unfit(why));
         }
         mapping.time.step = Some(step);
     }
     let each = if meaning.cells.is_empty() || !is_tables { given.len().max(1) } else { 1 };
     let runs: Result<Vec<Vec<Run>>, _> =
         given.chunks(each).map(|some| runs_of(some, &mapping, body)).collect();
-    let mut runs = runs.map_err(|error| told(&error))?.concat();
+    let mut runs = runs?.concat();
     if !meaning.cells.is_empty() && meaning.cells.len() != runs.len() {
-        return Err(format!(
-            "`cells` has {} numbers for {} results: give one per result",
-            meaning.cells.len(),
-            runs.len()
-        ));
+        let (cells, results) = (meaning.cells.len(), runs.len());
+        let why = format!("`cells` has {cells} numbers for {results} results: give one per result");
+        return Err(ApiError::Unfit(why));
     }
     for (run, cells) in runs.iter_mut().zip(&meaning.cells) {
         if *cells == 0 {
-            return Err("a result has 0 cells: give whole numbers from 1 up".to_owned());
+            let why = "a result has 0 cells: give whole numbers from 1 up";
+            return Err(ApiError::Unfit(why.to_owned()));
         }
         run.cells = Some(*cells);
     }
@@ -157,12 +162,12 @@ mod tests {
             ("cosine-layer", "load", "layer.load"),
             ("terzaghi", "column.load", "column.load"),
         ] {
-            assert_eq!(dotted_key(scene, name).as_deref(), Ok(key));
+            assert_eq!(dotted_key(scene, name).expect("a key"), key);
         }
-        let told = dotted_key("terzaghi", "permeability").expect_err("no such key");
+        let told = dotted_key("terzaghi", "permeability").expect_err("no such key").to_string();
         let start = "no input of `terzaghi` is called `permeability`; there are height, ";
         assert!(told.starts_with(start) && told.contains(", hydraulic_conductivity, "), "{told}");
-        let told = dotted_key("terzagi", "load").expect_err("no such scene");
+        let told = dotted_key("terzagi", "load").expect_err("no such scene").to_string();
         let start = "no exact solution is called `terzagi`; there are terzaghi, terzaghi-incompressible, ";
         assert!(
             told.starts_with(start) && told.ends_with(ShelfProblem::ALL[ShelfProblem::ALL.len() - 1].name()),
@@ -189,7 +194,7 @@ mod tests {
             read(std::slice::from_ref(&file), preset, None, 1.0)
         };
         assert_eq!(read_as("pressure", "meshio").expect("a state")[0][0].pressure.len(), 2);
-        assert!(read_as("pressure", "nonsense").is_err_and(|told| told.contains("nonsense")));
+        assert!(read_as("pressure", "nonsense").is_err_and(|told| told.to_string().contains("nonsense")));
         let [water, pressure] = ["WATER_PRESSURE", "pressure"].map(|name| read_as(name, "kratos"));
         let state = &water.expect("a state")[0][0];
         assert_eq!(state.pressure[0], -2.0, "suction is positive there");
@@ -205,13 +210,13 @@ mod tests {
             ("terzaghi", "height", "column.height"),
             ("xie-leo", "porosity", "material.porosity"),
         ] {
-            assert_eq!(dotted_key(scene, name).as_deref(), Ok(key), "{scene}");
+            assert_eq!(dotted_key(scene, name).expect("a key"), key, "{scene}");
             let value = if name == "porosity" { "0.35" } else { "2.0" };
             let found = exact::exact(scene, &[0.1], &[], &[0.5], &[format!("{key}={value}")]);
             assert!(found.is_ok() || scene == "terzaghi" || scene == "xie-leo", "{scene}: {found:?}");
         }
         // A key of a problem of the shelf is that problem's alone.
-        assert_eq!(dotted_key("seabed", "period").as_deref(), Ok("wave.period"));
+        assert_eq!(dotted_key("seabed", "period").expect("a key"), "wave.period");
         for problem in ["davis-raymond", "terzaghi"] {
             assert!(dotted_key(problem, "period").is_err(), "{problem}");
         }
@@ -236,7 +241,7 @@ mod tests {
         assert_eq!(read_at(Some(0.5)).expect("a state")[0][0].time, 2.0);
         assert!(read_at(None).is_err(), "its time is given nowhere");
         for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(read_at(Some(step)).is_err_and(|told| told.contains("is invalid")), "{step}");
+            assert!(read_at(Some(step)).is_err_and(|told| told.to_string().contains("is invalid")), "{step}");
         }
         let states = read(std::slice::from_ref(&table), "kratos", None, 1.0).expect("the convention");
         assert_eq!((states[0][0].time, states[0][0].pressure[0]), (3.0, 7.0));
@@ -278,8 +283,9 @@ mod tests {
             assert_eq!(found.sample.name(), sample);
         }
         let none = Meaning { mapping: Some(folder.path().join("none.toml")), ..Meaning::default() };
-        let told =
-            runs_with(std::slice::from_ref(&table), &none, body, Axes::Column).expect_err("no mapping");
+        let told = runs_with(std::slice::from_ref(&table), &none, body, Axes::Column)
+            .expect_err("no mapping")
+            .to_string();
         let start = format!("cannot read the mapping {}: ", folder.path().join("none.toml").display());
         assert!(told.starts_with(&start), "{told}");
     }

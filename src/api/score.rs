@@ -1,5 +1,6 @@
 //! Scores a result given as lists against the references of a scene.
 
+use crate::api::error::ApiError;
 use crate::api::{Meaning, runs_with};
 use crate::case::Case;
 use crate::case::quantity::Sample;
@@ -49,15 +50,15 @@ pub fn score(
     sample: &str,
     reference: Option<&str>,
     assignments: &[String],
-) -> Result<Score, String> {
+) -> Result<Score, ApiError> {
     let asked = asked(scene, reference, assignments)?;
     let case = asked.case();
     let kind = Sample::ALL.into_iter().find(|kind| kind.name() == sample);
     let kind = kind.ok_or_else(|| {
         let names = Sample::ALL.map(Sample::name).join(", ");
-        format!("unknown kind of places `{sample}`: expected {names}")
+        ApiError::UnknownName(format!("unknown kind of places `{sample}`: expected {names}"))
     })?;
-    let mut mapping = Mapping::convention(Axes::of(case.scene)).map_err(|error| error.to_string())?;
+    let mut mapping = Mapping::convention(Axes::of(case.scene))?;
     mapping.sample = kind;
     mapping.columns.volume = (!samples.volume.is_empty()).then(|| "volume".to_owned());
     let axes = Axes::of(case.scene);
@@ -66,12 +67,17 @@ pub fn score(
             Axes::Slab => "middle of the slab to its drained side",
             _ => "crest of the load",
         };
-        return Err(format!("the fields of `{scene}` depend on it: give `distance`, m from the {from}"));
+        let why = format!("the fields of `{scene}` depend on it: give `distance`, m from the {from}");
+        return Err(ApiError::Unfit(why));
     }
     let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
     let comparison = asked.comparison(&mapping);
-    let mut results = Results::of(vec![run], &comparison).map_err(|error| error.to_string())?;
-    results.all.pop().map(|one| one.score).ok_or_else(|| "there is nothing to score".to_owned())
+    let mut results = Results::of(vec![run], &comparison)?;
+    results
+        .all
+        .pop()
+        .map(|one| one.score)
+        .ok_or_else(|| ApiError::Unfit("there is nothing to score".to_owned()))
 }
 
 /// Scores files of another program: their names and a score per mesh, in the order of the files.
@@ -84,12 +90,12 @@ pub fn score_files(
     meaning: &Meaning,
     reference: Option<&str>,
     assignments: &[String],
-) -> Result<Vec<(String, Score)>, String> {
+) -> Result<Vec<(String, Score)>, ApiError> {
     let asked = asked(scene, reference, assignments)?;
     let case = asked.case();
     let (mapping, runs) = runs_with(files, meaning, SolvedBody::of(case), Axes::of(case.scene))?;
     let comparison = Comparison { are_cells_found: meaning.cells.is_empty(), ..asked.comparison(&mapping) };
-    let mut results = Results::of(runs, &comparison).map_err(|error| error.to_string())?;
+    let mut results = Results::of(runs, &comparison)?;
     if let Some((series, cells)) = results.series() {
         results.keep_series(&series, &cells);
     }
@@ -105,10 +111,10 @@ pub fn case_file(
     cells: usize,
     time_factors: &[f64],
     assignments: &[String],
-) -> Result<String, String> {
+) -> Result<String, ApiError> {
     let mut case = asked(scene, None, assignments)?.case().clone();
     if cells == 0 || time_factors.iter().any(|time| !(*time >= 0.0 && time.is_finite())) {
-        return Err("give cells from 1 up and time factors from 0 up".to_owned());
+        return Err(ApiError::Unfit("give cells from 1 up and time factors from 0 up".to_owned()));
     }
     case.cells = cells;
     if !time_factors.is_empty() {
@@ -116,22 +122,22 @@ pub fn case_file(
         times.sort_by(f64::total_cmp);
         case.time_factors = times.into();
     }
-    CaseFile::of(&case).text().map_err(|error| error.to_string())
+    Ok(CaseFile::of(&case).text()?)
 }
 
 /// What a result is compared with.
-fn asked(scene: &str, reference: Option<&str>, assignments: &[String]) -> Result<Asked, String> {
+fn asked(scene: &str, reference: Option<&str>, assignments: &[String]) -> Result<Asked, ApiError> {
     let outputs = Outputs {
         reference: reference.map(str::to_owned),
         time_factor: None,
         set: Assignments { assignments: assignments.to_vec() },
     };
-    Asked::of_scene(scene, &outputs).map_err(|error| error.to_string())
+    Ok(Asked::of_scene(scene, &outputs)?)
 }
 
 impl Samples<'_> {
     /// The lists as states.
-    fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
+    fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, ApiError> {
         self.check()?;
         let body = SolvedBody::of(case);
         let mut turned = *self;
@@ -145,7 +151,7 @@ impl Samples<'_> {
     }
 
     /// The lists in the directions of a column, as states.
-    fn rows(&self, body: SolvedBody, mapping: &Mapping) -> Result<Vec<SampledState>, String> {
+    fn rows(&self, body: SolvedBody, mapping: &Mapping) -> Result<Vec<SampledState>, ApiError> {
         let mut rows = Vec::with_capacity(self.time.len() * self.height.len());
         for (at, time) in self.time.iter().enumerate() {
             for (place, height) in self.height.iter().enumerate() {
@@ -167,10 +173,10 @@ impl Samples<'_> {
                 let refused = |why: String| {
                     ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))
                 };
-                rows.push(raw.sample(mapping, body, &refused).map_err(|error| error.to_string())?);
+                rows.push(raw.sample(mapping, body, &refused)?);
             }
         }
-        let mut states = states_of(&rows).map_err(|error| error.to_string())?;
+        let mut states = states_of(&rows)?;
         if !self.settlement.is_empty() {
             for state in &mut states {
                 let at = self.time.iter().position(|time| *time == state.time);
@@ -181,10 +187,11 @@ impl Samples<'_> {
     }
 
     /// Refuses lists of the wrong length, numbers that are not finite, and a result without fields.
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ApiError> {
         let (times, places) = (self.time.len(), self.height.len());
         if times == 0 || places == 0 {
-            return Err("there is no time or no place: give at least one of each".to_owned());
+            let why = "there is no time or no place: give at least one of each";
+            return Err(ApiError::Unfit(why.to_owned()));
         }
         let fields = [
             ("pressure", self.pressure),
@@ -201,15 +208,16 @@ impl Samples<'_> {
         ];
         for (name, list) in fields {
             if !list.is_empty() && list.len() != times * places {
-                return Err(format!(
+                return Err(ApiError::Unfit(format!(
                     "`{name}` has {} numbers for {times} times and {places} places: its shape is [time][place]",
                     list.len()
-                ));
+                )));
             }
         }
         for (name, list, wanted) in others {
             if !list.is_empty() && list.len() != wanted {
-                return Err(format!("`{name}` has {} numbers and needs {wanted}", list.len()));
+                let why = format!("`{name}` has {} numbers and needs {wanted}", list.len());
+                return Err(ApiError::Unfit(why));
             }
         }
         let of_fields = fields.map(|(name, list)| (name, list, Some(places)));
@@ -217,12 +225,12 @@ impl Samples<'_> {
         for (name, list, row) in of_fields.into_iter().chain(of_others) {
             if let Some(at) = list.iter().position(|value| !value.is_finite()) {
                 let place = row.map_or(format!("[{at}]"), |row| format!("[{}][{}]", at / row, at % row));
-                return Err(format!("arrays: {place}: `{name}` is {}", list[at]));
+                return Err(ApiError::Unfit(format!("arrays: {place}: `{name}` is {}", list[at])));
             }
         }
         if fields.iter().all(|(_, list)| list.is_empty()) && self.settlement.is_empty() {
-            return Err("nothing is given to score: pressure, effective_stress, displacement or settlement"
-                .to_owned());
+            let why = "nothing is given to score: pressure, effective_stress, displacement or settlement";
+            return Err(ApiError::Unfit(why.to_owned()));
         }
         Ok(())
     }
@@ -282,7 +290,7 @@ mod tests {
         );
         let mut holed = found.pressure.clone();
         holed[3] = f64::NAN;
-        assert!(with(&holed).is_err_and(|told| told.contains("[0][3]") && told.contains("NaN")));
+        assert!(with(&holed).is_err_and(|told| told.to_string().contains("[0][3]: `pressure` is NaN")));
         // A settlement that is not finite is an error, not a missing one.
         let settlement = [f64::NAN, 1e-6];
         let samples = Samples {
@@ -292,12 +300,15 @@ mod tests {
             settlement: &settlement,
             ..Samples::default()
         };
-        let told = score("terzaghi", &samples, "centres", None, &load).expect_err("no number");
+        let told = score("terzaghi", &samples, "centres", None, &load).expect_err("no number").to_string();
         assert!(told.contains("[0]: `settlement` is NaN"), "{told}");
-        assert!(with(&found.pressure[1..]).is_err_and(|told| told.contains("39 numbers for 2 times")));
+        assert!(
+            with(&found.pressure[1..]).is_err_and(|told| told.to_string().contains("39 numbers for 2 times"))
+        );
         // In the plane a place has a distance too.
         let samples = Samples { settlement: &[], pressure: &found.pressure, ..samples };
-        let told = score("cosine-layer", &samples, "centres", None, &[]).expect_err("no distance");
+        let told =
+            score("cosine-layer", &samples, "centres", None, &[]).expect_err("no distance").to_string();
         assert!(told.contains("give `distance`, m from the crest"), "{told}");
     }
 
@@ -353,7 +364,7 @@ mod tests {
             horizontal_displacement: &six,
             settlement: &two,
         };
-        assert_eq!(whole.check(), Ok(()));
+        whole.check().expect("a result");
         for (samples, told) in [
             (Samples { time: &[], ..whole }, "there is no time or no place"),
             (Samples { height: &[], ..whole }, "there is no time or no place"),
@@ -375,7 +386,7 @@ mod tests {
             (Samples { time: &two, height: &three, ..Samples::default() }, "nothing is given to score"),
         ] {
             assert!(
-                samples.check().is_err_and(|error| error.contains(told)),
+                samples.check().is_err_and(|error| error.to_string().contains(told)),
                 "{told}: {:?}",
                 samples.check()
             );
@@ -384,7 +395,7 @@ mod tests {
             Samples { time: &two, height: &three, settlement: &two, ..Samples::default() },
             Samples { time: &two, height: &three, horizontal_displacement: &six, ..Samples::default() },
         ] {
-            assert_eq!(alone.check(), Ok(()));
+            alone.check().expect("a result");
         }
     }
 
@@ -439,10 +450,10 @@ mod tests {
             |score: &Score| score.series.iter().map(|row| (row.cells.clone(), row.class)).collect::<Vec<_>>();
         assert!(found.iter().all(|(_, score)| rows(score) == rows(&found[0].1) && !score.series.is_empty()));
         assert_eq!(found[0].1.series[0].cells, [10, 20, 40]);
-        let told = of(&[foreign.join("none.pvd")], None).expect_err("no file");
+        let told = of(&[foreign.join("none.pvd")], None).expect_err("no file").to_string();
         assert!(told.contains("none.pvd"), "{told}");
         let samples = Samples { time: &[1.0], height: &[0.5], pressure: &[1.0], ..Samples::default() };
-        let told = score("terzaghi", &samples, "places", None, &[]).err();
+        let told = score("terzaghi", &samples, "places", None, &[]).err().map(|error| error.to_string());
         let words = "unknown kind of places `places`: expected points, centres, nodes, surface";
         assert_eq!(told.as_deref(), Some(words));
     }

@@ -201,7 +201,7 @@ pub fn time_study(
             }
             let timed = runner
                 .time_alone(&record.case, store)
-                .map_err(|error| RunError::refused(&record.case, &error))?;
+                .map_err(|error| RunError::refused(&record.case, error))?;
             if timed.is_empty() {
                 continue;
             }

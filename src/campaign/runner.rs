@@ -365,7 +365,7 @@ fn run_and_keep(
             return None;
         }
         Ok(Ok(record)) => record,
-        Ok(Err(error)) => return Some(Err(Box::new(RunError::refused(case, &error)))),
+        Ok(Err(error)) => return Some(Err(Box::new(RunError::refused(case, error)))),
         Err(_) => return Some(Err(Box::new(RunError::crashed(case)))),
     };
     // What is on disk of a case that was not allowed to begin stays.
@@ -455,36 +455,47 @@ pub struct LongestCase {
 
 /// Why a study could not be run to its end.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// A result could not be kept.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A case could not be set up, or crashed, which is a fault of this program.
-    #[error("{label}: {reason}")]
-    Case {
+    /// The numbers of a case are such that nothing can solve it.
+    #[error("{label}: {source}")]
+    Refused {
         /// Label of the case.
         label: String,
         /// Why it has no record.
-        reason: String,
+        source: ExactError,
+    },
+    /// A case crashed, which is a fault of this program.
+    #[error("{label}: {CRASHED}")]
+    Crashed {
+        /// Label of the case.
+        label: String,
     },
 }
 
+/// What is said of a case that crashed.
+const CRASHED: &str = "crashed; please report it with the study file";
+
 impl RunError {
     /// The error of a case that its exact solutions refuse.
-    pub fn refused(case: &Case, error: &ExactError) -> Self {
-        Self::Case { label: case.label(), reason: error.to_string() }
+    pub fn refused(case: &Case, source: ExactError) -> Self {
+        Self::Refused { label: case.label(), source }
     }
 
     /// The error of a case that crashed.
     pub fn crashed(case: &Case) -> Self {
-        Self::Case { label: case.label(), reason: "crashed; please report it with the study file".to_owned() }
+        Self::Crashed { label: case.label() }
     }
 
     /// The case that has no record, with the reason; `None` if no single case caused it.
     pub fn of_case(&self) -> Option<(&str, String)> {
         match self {
             Self::Store(_) => None,
-            Self::Case { label, reason } => Some((label, reason.clone())),
+            Self::Refused { label, source } => Some((label, source.to_string())),
+            Self::Crashed { label } => Some((label, CRASHED.to_owned())),
         }
     }
 }

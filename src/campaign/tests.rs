@@ -263,7 +263,7 @@ fn a_case_without_a_record_is_named_with_its_reason_and_no_case_where_the_disk_r
     let case = Case { cells: 7, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
     let label = case.label();
     for (error, reason) in [
-        (RunError::refused(&case, &ExactError::Distance(1.5)), ExactError::Distance(1.5).to_string()),
+        (RunError::refused(&case, ExactError::Distance(1.5)), ExactError::Distance(1.5).to_string()),
         (RunError::crashed(&case), "crashed; please report it with the study file".to_owned()),
     ] {
         assert_eq!(error.to_string(), format!("{label}: {reason}"));

@@ -62,6 +62,7 @@ pub struct AttachedText {
 
 /// Why a text cannot identify a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NameError {
     /// The name is empty or has other letters.
     #[error("a name has letters, digits, `-`, `_` and `.`, and begins with a letter")]

@@ -1,4 +1,10 @@
 //! Runs a program in its own folder and process group, without input, with limits on time and output.
+//!
+//! Ours, and not the crate `process-wrap` (10.0.1). On Unix that begins a group and kills it, which are two calls here too, of
+//! the standard library and of `rustix`. It neither sees nor ends a process that has left the group, which
+//! `started_processes.rs` does; it has no limit on time or output; and its child is waited for by `waitpid` over the group,
+//! which takes the status away from `wait4`, and with it processor time and memory. On Windows its job objects would hold more
+//! than `taskkill` does; no test of ours runs there.
 
 use crate::foreign::started_processes::{Family, Found, MARK, Mark};
 use std::collections::VecDeque;

@@ -45,6 +45,7 @@ pub enum Unread {
 
 /// Why a solver's mapping cannot be taken.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MappingError {
     /// The file cannot be read.
     #[error("cannot read the mapping {path}: {source}")]

@@ -1,12 +1,13 @@
 //! Reads and writes the text of a golden file, whose format is described in [`crate::golden`].
 
+use crate::golden::text_error::{CellError, GoldenTextError};
 use crate::golden::{GoldenFile, SCHEMA, WITHOUT_INPUTS, parts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What stands before every line of the header.
 const HEADER_MARK: char = '#';
 /// The columns that say which case and time factor a row is of.
-const LABELS: [&str; 2] = ["case", "T_v"];
+pub(super) const LABELS: [&str; 2] = ["case", "T_v"];
 /// What stands before the quantity of a column of spreads.
 const SPREAD_MARK: &str = "spread of ";
 /// What stands before the key of a column of inputs.
@@ -70,8 +71,8 @@ impl GoldenFile {
     /// The file as text: the header, then rows by case and time factor, columns by name.
     ///
     /// # Errors
-    /// What refuses to be written, as a sentence.
-    pub fn to_text(&self) -> Result<String, String> {
+    /// When the values cannot be written as TOML and CSV.
+    pub fn to_text(&self) -> Result<String, GoldenTextError> {
         let values = self.values.iter().map(|(name, value)| {
             (name, false, rounded(*value, self.tolerance(name, value.abs()) / ROUNDING))
         });
@@ -89,7 +90,7 @@ impl GoldenFile {
             columns.insert(column);
             rows.entry(place.row).or_default().insert(column, value);
         }
-        let header = toml::to_string(self).map_err(|error| error.to_string())?;
+        let header = toml::to_string(self).map_err(GoldenTextError::unwritten)?;
         let mut text: String = header.lines().map(header_line).collect();
         let mut writer = csv::Writer::from_writer(Vec::new());
         let titles = columns.iter().map(|(is_spread, measure)| {
@@ -104,10 +105,10 @@ impl GoldenFile {
         }
         self.add_own_inputs(&mut records);
         for record in &records {
-            writer.write_record(record).map_err(|error| error.to_string())?;
+            writer.write_record(record)?;
         }
-        let table = writer.into_inner().map_err(|error| error.to_string())?;
-        text.push_str(&String::from_utf8(table).map_err(|error| error.to_string())?);
+        let table = writer.into_inner().map_err(|error| GoldenTextError::unwritten(error.into_error()))?;
+        text.push_str(&String::from_utf8(table).map_err(GoldenTextError::unwritten)?);
         Ok(text)
     }
 
@@ -129,43 +130,41 @@ impl GoldenFile {
     /// Reads what [`Self::to_text`] wrote.
     ///
     /// # Errors
-    /// What is wrong and in which line, as a sentence.
-    pub fn from_text(text: &str) -> Result<Self, String> {
+    /// What is wrong, and in which line.
+    pub fn from_text(text: &str) -> Result<Self, GoldenTextError> {
         let text = text.trim_start_matches('\u{feff}');
         if !text.ends_with('\n') {
-            return Err(format!("line {}: the file ends within it", text.lines().count().max(1)));
+            return Err(GoldenTextError::CutOff { line: text.lines().count().max(1) });
         }
         let header = text.lines().take_while(|line| line.starts_with(HEADER_MARK));
         let header: Vec<&str> =
             header.map(|line| line[1..].strip_prefix(' ').unwrap_or(&line[1..])).collect();
         let header = header.join("\n");
-        let mut golden: Self = toml::from_str(&header).map_err(|error| {
-            let before = error.span().map_or("", |span| header.get(..span.start).unwrap_or_default());
-            format!("line {}: {}", before.matches('\n').count() + 1, error.message())
+        let mut golden: Self = toml::from_str(&header).map_err(|source| {
+            let before = source.span().map_or("", |span| header.get(..span.start).unwrap_or_default());
+            GoldenTextError::Header { line: before.matches('\n').count() + 1, source }
         })?;
         if ![SCHEMA, WITHOUT_INPUTS].contains(&golden.schema) {
-            return Err(format!(
-                "it is of layout {}, and this program reads {WITHOUT_INPUTS} and {SCHEMA}",
-                golden.schema
-            ));
+            return Err(GoldenTextError::Layout(golden.schema));
         }
         let mut reader =
             csv::ReaderBuilder::new().comment(Some(HEADER_MARK as u8)).from_reader(text.as_bytes());
-        let titles = reader.headers().map_err(|error| error.to_string())?.clone();
+        let titles = reader.headers()?.clone();
         if !titles.iter().take(LABELS.len()).eq(LABELS) {
-            return Err(format!("its table does not begin with the columns `{}`", LABELS.join("`, `")));
+            return Err(GoldenTextError::Columns);
         }
         for record in reader.records() {
-            let record = record.map_err(|error| error.to_string())?;
-            golden.take_row(&titles, &record).map_err(|reason| {
-                format!("line {}: {reason}", record.position().map_or(0, csv::Position::line))
+            let record = record?;
+            golden.take_row(&titles, &record).map_err(|source| GoldenTextError::Row {
+                line: record.position().map_or(0, csv::Position::line),
+                source,
             })?;
         }
         Ok(golden)
     }
 
     /// Takes the values and spreads of a row of the table.
-    fn take_row(&mut self, titles: &csv::StringRecord, record: &csv::StringRecord) -> Result<(), String> {
+    fn take_row(&mut self, titles: &csv::StringRecord, record: &csv::StringRecord) -> Result<(), CellError> {
         let row = (&record[0], &record[1]);
         if !self.inputs.is_unknown() {
             self.inputs.own.entry(record[0].to_owned()).or_default();
@@ -180,14 +179,16 @@ impl GoldenFile {
                     .insert(key.to_owned(), cell.to_owned());
                 continue;
             }
-            let value = cell.parse().map_err(|_| format!("`{cell}` under `{title}` is not a number"))?;
+            let value = cell
+                .parse()
+                .map_err(|_| CellError::NoNumber { cell: cell.to_owned(), title: title.to_owned() })?;
             let (kept, measure) = match title.strip_prefix(SPREAD_MARK) {
                 Some(measure) => (&mut self.spread, measure),
                 None => (&mut self.values, title),
             };
             let name = TablePlace { row, measure }.name();
             if kept.insert(name, value).is_some() {
-                return Err(format!("`{title}` is given twice for this case and time factor"));
+                return Err(CellError::Twice { title: title.to_owned() });
             }
         }
         Ok(())
@@ -280,7 +281,7 @@ mod tests {
         let line_of = |part: &str| 1 + text.lines().position(|line| line.contains(part)).expect("a line");
         let refused = |from: &str, to: &str| {
             assert!(text.contains(from), "{text}");
-            GoldenFile::from_text(&text.replacen(from, to, 1)).expect_err("refused")
+            GoldenFile::from_text(&text.replacen(from, to, 1)).expect_err("refused").to_string()
         };
         // Editors put a byte order mark in front, and carriage returns at the ends.
         let edited = format!("\u{feff}{}", text.replace('\n', "\r\n"));
@@ -299,7 +300,7 @@ mod tests {
         let told = refused("# schema = 3", "# schema = 9");
         assert_eq!(told, "it is of layout 9, and this program reads 2 and 3");
         assert!(refused("case,T_v", "cases,T_v").contains("`case`, `T_v`"));
-        let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused");
+        let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused").to_string();
         assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));
     }
 }

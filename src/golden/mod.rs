@@ -34,6 +34,7 @@
 pub mod compare;
 mod file_text;
 pub mod inputs;
+pub mod text_error;
 pub mod tolerance;
 
 use crate::golden::compare::compare;
@@ -83,8 +84,12 @@ pub struct GoldenFile {
     pub values: BTreeMap<String, f64>,
 }
 
+/// An error behind another one.
+type Cause = Box<dyn std::error::Error + Send + Sync>;
+
 /// Why golden values could not be read or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GoldenError {
     /// The file does not exist.
     #[error("there is no golden file {0}: look at the results, then `oedometer accept` them with a reason")]
@@ -96,13 +101,18 @@ pub enum GoldenError {
         path: PathBuf,
         /// What is wrong with it.
         what: &'static str,
-        /// Why.
+        /// Why, and what to do.
         reason: String,
+        /// The error behind it, where there is one.
+        source: Option<Cause>,
     },
     /// The file system refuses.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
+
+/// What is said of a file that cannot be read.
+const UNREADABLE: &str = "cannot be read";
 
 impl GoldenError {
     /// Whether there is no file.
@@ -111,7 +121,14 @@ impl GoldenError {
     }
 
     fn refused(path: &Path, what: &'static str, reason: String) -> Self {
-        Self::Refused { path: path.to_owned(), what, reason }
+        Self::Refused { path: path.to_owned(), what, reason, source: None }
+    }
+
+    /// The same, for an error of a text or of the file system, with what to do if that is more than the error says.
+    fn caused(path: &Path, what: &'static str, error: impl Into<Cause>, remedy: Option<String>) -> Self {
+        let error = error.into();
+        let reason = remedy.unwrap_or_else(|| error.to_string());
+        Self::Refused { path: path.to_owned(), what, reason, source: Some(error) }
     }
 }
 
@@ -175,17 +192,19 @@ impl GoldenFile {
     /// When it is missing, unreadable or out of bounds.
     pub fn read(folder: &Path, study: &str) -> Result<Self, GoldenError> {
         let path = Self::path(folder, study);
-        let unreadable = |reason: String| GoldenError::refused(&path, "cannot be read", reason);
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(GoldenError::Missing(path));
             }
-            Err(error) => return Err(unreadable(error.to_string())),
+            Err(error) => return Err(GoldenError::caused(&path, UNREADABLE, error, None)),
         };
-        let file = Self::from_text(&text).map_err(|reason| unreadable(remedy(&text, &path, &reason)))?;
+        let file = Self::from_text(&text).map_err(|error| {
+            let remedy = remedy(&text, &path, &error);
+            GoldenError::caused(&path, UNREADABLE, error, Some(remedy))
+        })?;
         if file.study != study {
-            return Err(unreadable(format!("it is of study `{}`", file.study)));
+            return Err(GoldenError::refused(&path, UNREADABLE, format!("it is of study `{}`", file.study)));
         }
         match file.out_of_bounds() {
             Some(reason) => Err(GoldenError::refused(&path, "is refused", reason)),
@@ -202,8 +221,8 @@ impl GoldenFile {
         match Self::read(folder, study) {
             Err(GoldenError::Missing(path)) => {
                 match FILES.get_file(format!("{study}.csv")).and_then(|file| file.contents_utf8()) {
-                    Some(text) => Self::from_text(text).map_err(|reason| {
-                        GoldenError::refused(&path, "inside the program cannot be read", reason)
+                    Some(text) => Self::from_text(text).map_err(|error| {
+                        GoldenError::caused(&path, "inside the program cannot be read", error, None)
                     }),
                     None => Err(GoldenError::Missing(path)),
                 }
@@ -222,14 +241,14 @@ impl GoldenFile {
             return Err(GoldenError::refused(&path, "is refused", reason));
         }
         let text =
-            self.to_text().map_err(|reason| GoldenError::refused(&path, "cannot be written", reason))?;
+            self.to_text().map_err(|error| GoldenError::caused(&path, "cannot be written", error, None))?;
         write_whole(&path, text.as_bytes())?;
         Ok(path)
     }
 }
 
 /// Why a text is no golden file, and what to do.
-fn remedy(text: &str, path: &Path, reason: &str) -> String {
+fn remedy(text: &str, path: &Path, error: &text_error::GoldenTextError) -> String {
     let marks = ["<<<<<<<", "=======", ">>>>>>>", "|||||||"];
     let mark = text.lines().position(|line| marks.iter().any(|mark| line.starts_with(mark)));
     if text.starts_with("version https://git-lfs") {
@@ -243,7 +262,7 @@ fn remedy(text: &str, path: &Path, reason: &str) -> String {
         )
     } else {
         format!(
-            "{reason}; take it from a commit by `git checkout HEAD -- {path}`, or mend it",
+            "{error}; take it from a commit by `git checkout HEAD -- {path}`, or mend it",
             path = path.display()
         )
     }

@@ -6,6 +6,7 @@ use crate::case::planned::Tier;
 use crate::golden::GoldenFile;
 use crate::golden::compare::compare;
 use crate::golden::inputs::CaseInputs;
+use crate::golden::text_error::GoldenTextError;
 use crate::history::repository::{Commit, GitError, Repository};
 use crate::record::{Record, RecordStore, Status};
 use crate::study::check::Study;
@@ -166,7 +167,8 @@ pub(crate) fn golden_name<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
 }
 
 /// The sentence about a golden file of a layout that this program does not read.
-pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &str) -> String {
+pub(crate) fn unreadable(commit: &Commit, path: &str, reason: &GoldenTextError) -> String {
+    let reason = reason.to_string();
     format!("{path} at {} is passed over: {}", commit.short(), reason.lines().next().unwrap_or_default())
 }
 

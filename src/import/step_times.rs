@@ -118,7 +118,7 @@ pub fn join(step: &Step, patterns: &[String], wanted: Wanted, frame: &mut Frame)
             return Err(ImportError::content(other, "a file that is joined must have one state"));
         }
         read_states(&steps, wanted, &mut |_, part| {
-            frame.join(part).map_err(|why| ImportError::content(other, why))
+            frame.join(part).map_err(|why| ImportError::content(other, why.to_string()))
         })?;
     }
     Ok(())

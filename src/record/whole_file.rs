@@ -14,6 +14,7 @@ const HOST_LETTERS: usize = 32;
 
 /// Why a record could not be read or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StoreError {
     /// The file system said no.
     #[error("cannot {action} {path}: {source}")]

@@ -17,6 +17,7 @@ pub(crate) mod templates;
 
 /// A description that cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The drawing library refused a figure.
     #[error("figure `{title}` cannot be drawn: {reason}")]
@@ -53,11 +54,11 @@ pub enum RenderError {
         expected: usize,
     },
     /// The CSV writer failed.
-    #[error("table `{title}` cannot be written as CSV: {reason}")]
+    #[error("table `{title}` cannot be written as CSV: {source}")]
     Csv {
         /// Title of the table.
         title: String,
         /// What the writer said.
-        reason: String,
+        source: csv::Error,
     },
 }

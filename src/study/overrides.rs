@@ -19,6 +19,7 @@ pub const OF_RUNS: [(&str, &str); 3] =
 
 /// Why what was typed makes no study.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum OverrideError {
     /// An assignment, list or rule is wrong by itself.
     #[error("{0}")]

@@ -107,3 +107,74 @@ fn no_reader_opens_files_by_itself() {
         }
     }
 }
+
+/// Lines of a source that make an error an enum without saying that it may grow, or give a sentence in its place.
+fn rigid_errors(source: &str, is_public: bool) -> Vec<String> {
+    let code = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or(source);
+    let lines: Vec<&str> = code.lines().map(str::trim_start).collect();
+    let attributes = |place: usize| lines[..place].iter().rev().take_while(|line| line.starts_with("#["));
+    let derives_error = |line: &&&str| line.starts_with("#[derive") && line.contains("Error)");
+    let rigid = |place: &usize| {
+        lines[*place].starts_with("pub enum ")
+            && attributes(*place).any(|line| derives_error(&line))
+            && !attributes(*place).any(|line| *line == "#[non_exhaustive]")
+    };
+    let is_sentence = |place: &usize| {
+        is_public
+            && lines[*place].starts_with("pub fn ")
+            && lines[*place].contains(", String> {")
+            && lines[*place].contains("Result<")
+    };
+    (0..lines.len())
+        .filter(|place| rigid(place) || is_sentence(place))
+        .map(|place| lines[place].to_owned())
+        .collect()
+}
+
+/// Others match on our errors: a new kind breaks none of them, and no sentence has to be parsed.
+#[test]
+fn errors_have_types_that_may_grow() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut sources = sources_below(&root.join("src"));
+    for folder in ["convergence", "exact", "formats", "mpm", "soil"] {
+        sources.extend(sources_below(&root.join("crates").join(folder).join("src")));
+    }
+    let mut wrong = Vec::new();
+    for path in sources.iter().filter(|path| !is_test_module(path)) {
+        let inside = path.strip_prefix(root).expect("below the root");
+        // Folders of `src/` that other programs see, and the crates that are theirs to use.
+        let is_public = ["crates", "src/api", "src/golden"].iter().any(|open| inside.starts_with(open));
+        let source = fs::read_to_string(path).expect("a source");
+        wrong.extend(
+            rigid_errors(&source, is_public).iter().map(|line| format!("{}: {line}", inside.display())),
+        );
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let planted = "#[derive(Debug, thiserror::Error)]\npub enum E {}\npub fn f() -> Result<u8, String> {\n";
+    assert_eq!(rigid_errors(planted, true).len(), 2);
+    assert_eq!(rigid_errors(planted, false).len(), 1);
+    assert!(rigid_errors(&planted.replace("pub enum", "#[non_exhaustive]\npub enum"), false).is_empty());
+}
+
+#[test]
+fn an_error_leads_to_what_caused_it() {
+    use crate::case::{Case, Task};
+    use crate::golden::GoldenFile;
+    use crate::golden::text_error::{CellError, GoldenTextError};
+    use std::error::Error;
+
+    let case = Case::seed(Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi);
+    let refused = crate::campaign::runner::RunError::refused(&case, crate::exact::ExactError::Depth(2.0));
+    let source = refused.source().and_then(|source| source.downcast_ref());
+    assert_eq!(source, Some(&crate::exact::ExactError::Depth(2.0)));
+
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let text = GoldenFile::of("s", &[], "r").to_text().expect("a text") + "a,,b\n";
+    let text = text.replace("case,T_v", "case,T_v,steps");
+    fs::write(folder.path().join("s.csv"), &text).expect("written");
+    let unread = GoldenFile::read(folder.path(), "s").expect_err("no number");
+    let row = unread.source().and_then(|source| source.downcast_ref::<GoldenTextError>()).expect("its text");
+    let cell = row.source().and_then(|source| source.downcast_ref::<CellError>()).expect("its cell");
+    let wanted = CellError::NoNumber { cell: "b".to_owned(), title: "steps".to_owned() };
+    assert_eq!(*cell, wanted, "{unread}");
+}

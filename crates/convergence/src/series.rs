@@ -29,6 +29,7 @@ pub struct ErrorSeries {
 
 /// Why an order or a fit has no value.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Undefined {
     /// There are not enough levels.
     #[error("{levels} levels are too few: {needed} are needed")]

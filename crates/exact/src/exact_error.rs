@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why an exact solution gives no number.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ExactError {
     /// A quantity that must be positive is zero, negative or not finite.
     #[error("the {quantity} must be positive and finite, got {}", short(*value))]

@@ -94,10 +94,15 @@ impl From<SoilLayers> for Vec<SoilLayer> {
     }
 }
 
+/// More layers of soil than a column may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} layers of soil: {MOST_LAYERS} are the most")]
+pub struct TooManyLayers(pub usize);
+
 impl TryFrom<Vec<SoilLayer>> for SoilLayers {
-    type Error = String;
-    fn try_from(list: Vec<SoilLayer>) -> Result<Self, String> {
-        Self::of(&list).ok_or_else(|| format!("{} layers of soil: {MOST_LAYERS} are the most", list.len()))
+    type Error = TooManyLayers;
+    fn try_from(list: Vec<SoilLayer>) -> Result<Self, TooManyLayers> {
+        Self::of(&list).ok_or(TooManyLayers(list.len()))
     }
 }
 

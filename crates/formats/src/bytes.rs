@@ -22,7 +22,7 @@ impl Budget {
     }
 
     /// Takes bytes from the budget, if enough are left.
-    pub fn take(&mut self, bytes: u64) -> Result<(), String> {
+    pub(crate) fn take(&mut self, bytes: u64) -> Result<(), String> {
         let left = self.left.checked_sub(bytes);
         self.left = left.ok_or_else(|| {
             format!("it claims {bytes} bytes, and a file of its size may take {} more", self.left)

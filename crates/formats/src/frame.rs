@@ -95,6 +95,16 @@ pub struct Frame {
     pub doubts: Vec<String>,
 }
 
+/// A file has other points than the one that it is joined to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it has other points ({points}) than the file that it is joined to ({known})")]
+pub struct OtherPoints {
+    /// Points that it has.
+    pub points: usize,
+    /// Points of the file that it is joined to.
+    pub known: usize,
+}
+
 impl Frame {
     /// The array of a name, on what is asked for or on anything. Of several whose path ends with it, the first.
     pub fn array(&self, name: &str, on: Option<Association>) -> Option<&Array> {
@@ -148,10 +158,9 @@ impl Frame {
     ///
     /// # Errors
     /// When its points are others.
-    pub fn join(&mut self, other: Self) -> Result<(), String> {
+    pub fn join(&mut self, other: Self) -> Result<(), OtherPoints> {
         if self.coordinates != other.coordinates {
-            let (own, others) = (self.coordinates.len(), other.coordinates.len());
-            return Err(format!("it has other points ({others}) than the file that it is joined to ({own})"));
+            return Err(OtherPoints { points: other.coordinates.len(), known: self.coordinates.len() });
         }
         let is_new = |array: &Array| self.array(&array.name, Some(array.on)).is_none();
         let new: Vec<Array> = other.arrays.into_iter().filter(is_new).collect();

@@ -304,7 +304,7 @@ pub(crate) fn read_views(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> 
         let (_, after) = after.split_once('{').ok_or_else(cut)?;
         let (view, after) = view_of(name, after, wanted, &mut budget)?;
         match &mut whole {
-            Some(whole) => whole.join(view)?,
+            Some(whole) => whole.join(view).map_err(|why| why.to_string())?,
             None => whole = Some(view),
         }
         rest = after;

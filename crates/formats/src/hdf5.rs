@@ -53,7 +53,7 @@ struct Listed {
 
 impl Store {
     /// Opens a file.
-    pub fn open(path: &Path) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let bytes = input_file::read(path).map_err(|error| error.to_string())?;
         let size = bytes.len();
         // Without a cache of unpacked chunks: each data set has its own, and there may be thousands.
@@ -95,7 +95,7 @@ impl Store {
     }
 
     /// The texts of a data set of letters, one per row, without what fills them up.
-    pub fn texts(&mut self, path: &str) -> Result<Vec<String>, String> {
+    pub(crate) fn texts(&mut self, path: &str) -> Result<Vec<String>, String> {
         let named = |why: String| format!("the data set `{path}`: {why}");
         let known = self.by_path.get(path).and_then(|place| self.sets.get(*place));
         let Listed { shape, set, .. } = known.ok_or_else(|| named("the file does not have it".to_owned()))?;
@@ -118,7 +118,7 @@ impl Store {
     }
 
     /// The numbers of a data set, of all rows or of a first one and a count.
-    pub fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<Vec<f64>, String> {
+    pub(crate) fn numbers(&mut self, path: &str, rows: Option<(u64, u64)>) -> Result<Vec<f64>, String> {
         let named = |why: String| format!("the data set `{path}`: {why}");
         let known = self.by_path.get(path.trim_matches('/'));
         let listed = known.and_then(|place| self.sets.get(*place));
@@ -142,7 +142,7 @@ impl Store {
 
     /// The states of the file, each with its time if the file's layout gives it one. A file without such a layout is one
     /// state, whose arrays may run over the times that it lists.
-    pub fn times(&mut self) -> Result<Vec<Option<f64>>, String> {
+    pub(crate) fn times(&mut self) -> Result<Vec<Option<f64>>, String> {
         match self.layout {
             Layout::Plain => Ok(vec![None]),
             Layout::Exodus => exodus::times(self),
@@ -152,7 +152,7 @@ impl Store {
     }
 
     /// A state by its place in the list of states.
-    pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+    pub(crate) fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
         self.renew_budget();
         let mut frame = match self.layout {
             Layout::Plain => self.plain_frame(wanted),

@@ -32,7 +32,7 @@ mod xpath;
 pub use bytes::excerpt;
 pub use cells::Cells;
 pub use collections::collection_of;
-pub use frame::{Array, Association, Frame, Wanted};
+pub use frame::{Array, Association, Frame, OtherPoints, Wanted};
 pub use steps::{Kind, Step, read_states, steps_of};
 pub use times::{Axis, States, Use, states_by_time};
 

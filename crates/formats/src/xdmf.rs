@@ -70,7 +70,7 @@ pub(crate) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// A reader of a document in a file.
-    pub fn of(path: &'a Path, document: &'a Document<'a>) -> Result<Self, String> {
+    pub(crate) fn of(path: &'a Path, document: &'a Document<'a>) -> Result<Self, String> {
         let size = document.input_text().len();
         let states = states_of(document)?;
         let (pointers, budget) = (Pointers::of(document), Budget::of_file(size));
@@ -78,7 +78,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the state of a place in the list of times.
-    pub fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
+    pub(crate) fn frame(&mut self, place: usize, wanted: Wanted) -> Result<Frame, String> {
         let state = self.states.get(place).cloned();
         let state = state.ok_or_else(|| format!("it has {} states", self.states.len()))?;
         self.budget = Budget::of_file(self.size);

@@ -128,7 +128,7 @@ struct ExactJson<'a> {
 
 /// Evaluates and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
-    let (kind, _) = scene_of(&arguments.scene).map_err(Ended::usage)?;
+    let (kind, _) = scene_of(&arguments.scene).map_err(|why| Ended::usage(why.to_string()))?;
     let asked = Asked::of_solution(kind, &arguments.set)?;
     tell_warnings(&asked.study);
     let (parameters, kind) = (asked.parameters, asked.references[0]);

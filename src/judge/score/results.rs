@@ -18,6 +18,7 @@ use oedometer_soil::wording::short;
 
 /// Why results have no score.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScoreError {
     /// No state is at a requested time.
     #[error("no time is one of the requested ones: {0}; --time-tolerance sets how near is near")]

@@ -198,10 +198,10 @@ impl Table {
             }
             Ok(())
         };
-        let fail = |reason: String| RenderError::Csv { title: self.title.clone(), reason };
-        write().map_err(|error| fail(error.to_string()))?;
-        let bytes = writer.into_inner().map_err(|error| fail(error.to_string()))?;
-        String::from_utf8(bytes).map_err(|error| fail(error.to_string()))
+        let fail = |source: csv::Error| RenderError::Csv { title: self.title.clone(), source };
+        write().map_err(fail)?;
+        let bytes = writer.into_inner().map_err(|error| fail(error.into_error().into()))?;
+        String::from_utf8(bytes).map_err(|error| fail(std::io::Error::other(error).into()))
     }
 }
 

@@ -1,0 +1,70 @@
+//! Why a text is no golden file.
+
+use crate::golden::file_text::LABELS;
+use crate::golden::{SCHEMA, WITHOUT_INPUTS};
+
+/// Why a text is no golden file, or a golden file no text.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GoldenTextError {
+    /// The last line has no end.
+    #[error("line {line}: the file ends within it")]
+    CutOff {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// The header is wrong.
+    #[error("line {line}: {}", source.message())]
+    Header {
+        /// Counted from 1.
+        line: usize,
+        /// What TOML says.
+        source: toml::de::Error,
+    },
+    /// The layout is another one.
+    #[error("it is of layout {0}, and this program reads {WITHOUT_INPUTS} and {SCHEMA}")]
+    Layout(u32),
+    /// The table has other columns.
+    #[error("its table does not begin with the columns `{}`", LABELS.join("`, `"))]
+    Columns,
+    /// The table is none.
+    #[error(transparent)]
+    Table(#[from] csv::Error),
+    /// A row of the table is wrong.
+    #[error("line {line}: {source}")]
+    Row {
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong with it.
+        source: CellError,
+    },
+    /// The values cannot be written.
+    #[error(transparent)]
+    Unwritten(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl GoldenTextError {
+    pub(super) fn unwritten(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::Unwritten(Box::new(error))
+    }
+}
+
+/// What is wrong with a cell of the table of golden values.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CellError {
+    /// It has no number.
+    #[error("`{cell}` under `{title}` is not a number")]
+    NoNumber {
+        /// What it has instead.
+        cell: String,
+        /// Title of the column.
+        title: String,
+    },
+    /// Another column has the same title.
+    #[error("`{title}` is given twice for this case and time factor")]
+    Twice {
+        /// The title.
+        title: String,
+    },
+}
