@@ -11,23 +11,22 @@
 //! | `oedometer-mpm` | the material point method: state, operators, steps, runs; in `scene/` the physical problems |
 //! | `oedometer-convergence` | numbers only: series, orders, fits, classes, uncertainty |
 //! | `oedometer-formats` | files of other programs, each format read into one form |
+//! | `oedometer-case` | the waist: a case as plain data with its inputs, hash and label; what solves it ([`Solver`]), and what that leaves ([`Outcome`]) |
+//! | `oedometer-foreign` | other programs as solvers: case file, processes, mapping files, results turned into samples; TOML with mistakes at their places |
 //! | `oedometer` | the harness: what follows |
 //!
 //! Folders of `src/`, each of which uses only those above it (`src/tests/architecture.rs`):
 //!
 //! | folder | what it is |
 //! | :-- | :-- |
-//! | `case/` | a case as plain data: its inputs, hash, label; quantities, samples, norms |
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
 //! | `study/` | study files: keys, sweeps, expectations, every mistake reported at its place |
-//! | `import/` | external results: mapping files, and tables and frames turned into samples |
-//! | `foreign/` | attached solvers: their input, how they are run and ended, how their results are read |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, in shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
 //! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
 //! | `render/` | tables, charts, pages; sees records and verdicts, never a solver |
-//! | `schema/` | JSON schemas of the file formats |
+//! | `history/` | results over time: two states beside each other, and golden values over commits |
 //! | `cli/` | one file per subcommand |
 //! | [`api`] | the interface for other languages: names and lists in, lists out |
 //!
@@ -120,17 +119,18 @@
 
 pub mod api;
 mod campaign;
-mod case;
 mod cli;
-mod foreign;
 mod golden;
 mod history;
-mod import;
 mod judge;
 mod measure;
 mod record;
 mod render;
 mod study;
+
+use oedometer_case as case;
+use oedometer_foreign as foreign;
+use oedometer_foreign::import;
 
 /// Exact solutions, by one door:
 ///

@@ -1,6 +1,6 @@
 //! Reads a git repository by the program `git`.
 
-use crate::record::git::command;
+use crate::foreign::git::command;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};

@@ -5,7 +5,6 @@
 
 pub mod calibration;
 pub mod csv;
-pub mod git;
 pub mod pack;
 pub mod provenance;
 pub mod race_errors;

@@ -1,7 +1,7 @@
 //! A study as typed: every value with its place in the text, before any check.
 
 use crate::case::{Key, Norm, Quantity, Sample, Task, Tier};
-use crate::study::diagnostic::{Diagnostic, StudyError};
+use crate::study::diagnostic::StudyError;
 use crate::study::expectation::{Axis, NEXT_FINER, NO_REFERENCE};
 use crate::study::inputs::{Inputs, add_inputs, add_units, take_inputs};
 use crate::study::reading::{Placed, Typed};
@@ -9,32 +9,12 @@ use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::soil_layers::SoilLayer;
+pub use oedometer_foreign::source::StudySource;
 use oedometer_mpm::scene::SceneKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::de::Deserializer;
-
-/// Text of a study with a name for messages.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StudySource {
-    /// File name, or what stands for it.
-    pub name: String,
-    /// TOML.
-    pub text: String,
-}
-
-impl StudySource {
-    /// One complaint about the whole text.
-    pub fn complaint(&self, message: String, help: String) -> StudyError {
-        self.error(vec![Diagnostic { message, span: None, help: Some(help) }])
-    }
-
-    /// An error of this study.
-    pub fn error(&self, diagnostics: Vec<Diagnostic>) -> StudyError {
-        StudyError { name: self.name.clone(), source: self.text.clone(), diagnostics }
-    }
-}
 
 /// A study file.
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::case::work_estimate::{
-    MOST_PROBE_STEPS, estimated_seconds, estimated_steps, estimated_updates, estimated_work, work_of,
+    MOST_PROBE_STEPS, estimated_seconds, estimated_steps, estimated_updates, estimated_work,
 };
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -21,9 +21,7 @@ fn work_beyond_counting_stays_the_largest_number() {
     let endless = cases("", "cells = [3, 4]\ntime_step = [{ seconds = 1e-300 }]");
     assert_eq!(endless.len(), 2);
     assert!(endless.iter().all(|case| estimated_work(case) == u64::MAX));
-    assert_eq!(work_of(endless.iter()), u64::MAX);
-    let short = cases("", "cells = [3, 4]");
-    assert_eq!(work_of(short.iter()), estimated_work(&short[0]) + estimated_work(&short[1]));
+    assert!(cases("", "cells = [3, 4]").iter().all(|case| estimated_work(case) < 1_000_000_000));
 }
 
 #[test]

@@ -15,12 +15,14 @@ mod option_pairs;
 mod paper;
 mod race_page;
 mod record_tables;
+mod records_of_programs;
 mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;
 mod study_answers;
 mod study_complaints;
 mod study_limits;
+mod study_reading;
 mod whole_pages;
 mod whole_records;
 

@@ -107,11 +107,9 @@ pub fn error_key(row: &ErrorRow) -> ErrorKey<'_> {
     (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
 }
 
-impl SampledState {
-    /// Where its samples are, in a column or layer of a height, m.
-    fn places(&self, height: f64) -> SamplePlaces<'_> {
-        SamplePlaces { height, heights: &self.initial_height, distances: &self.initial_distance }
-    }
+/// Where the samples of a state are, in a column or layer of a height, m.
+fn places_of(state: &SampledState, height: f64) -> SamplePlaces<'_> {
+    SamplePlaces { height, heights: &state.initial_height, distances: &state.initial_distance }
 }
 
 /// Compares states with references.
@@ -179,7 +177,7 @@ impl Score {
     /// Adds the errors of a state against a reference, of the first reference the worst places too.
     fn add(&mut self, compared: &ScoredState<'_>, is_first: bool) -> Result<(), ExactError> {
         let ScoredState { parameters, reference, state, time_factor, sample, .. } = *compared;
-        let exact = ExactFields::of(reference, time_factor, state.places(parameters.height))?;
+        let exact = ExactFields::of(reference, time_factor, places_of(state, parameters.height))?;
         let settled = if reference.is_plane() {
             reference.settlement(LONG_AFTER)?
         } else {
@@ -209,7 +207,7 @@ impl Score {
             let field =
                 FieldError { time_factor, quantity, sample, reference: name, scale, components, resolution };
             let at_start = || {
-                let places = state.places(parameters.height);
+                let places = places_of(state, parameters.height);
                 let start = ExactFields::of(reference, 0.0, places).ok();
                 start_of(quantity, start.as_ref().map(|start| start.field(quantity)), scale, time_factor)
             };

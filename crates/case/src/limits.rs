@@ -1,0 +1,402 @@
+//! Combinations of inputs that are invalid although each input alone is valid, with the reason.
+
+use crate::{Case, Task};
+use oedometer_mpm::kernel::Drag;
+use oedometer_mpm::method::{Basis, Configuration, Memory};
+use oedometer_mpm::run::TimeStepRule;
+use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::column::Undrained;
+use oedometer_soil::conductivity::ConductivityMean;
+
+/// Why a case cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The input to blame, by its key.
+    pub key: &'static str,
+    /// A sentence.
+    pub why: &'static str,
+    /// What would be possible.
+    pub help: &'static str,
+}
+
+const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or tie both axes with `path`";
+const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds";
+
+impl Case {
+    /// Every reason why the case cannot be.
+    pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
+        self.without_idle_choices().refusals_of_choices()
+    }
+
+    #[expect(clippy::too_many_lines, reason = "a table: one row per limit")]
+    fn refusals_of_choices(self) -> impl Iterator<Item = Refusal> {
+        let always = |key, why: Option<&'static str>, help| why.map(|why| Refusal { key, why, help });
+        let when = move |key, is_so: bool, why, help| always(key, is_so.then_some(why), help);
+        let Self { scene, integrator, formulation, settings, column, .. } = &self;
+        let is_stability = self.task == Task::Stability;
+        let Some(method) = self.method.own() else {
+            return vec![when(
+                "task",
+                is_stability,
+                "an attached solver has no critical step that could be searched",
+                "name methods of this program alone, or leave `task` out",
+            )]
+            .into_iter()
+            .flatten();
+        };
+        let (points, is_explicit) = (&column.points, *integrator == IntegratorKind::Explicit);
+        let (two, by_limit) = (points.has_two_sets(), matches!(self.time_step, TimeStepRule::Stable(_)));
+        let configuration = method.configuration_in(scene.configuration());
+        let moves = configuration == Configuration::Updated;
+        let has_moving_points = is_explicit && configuration.moves_points() && !two;
+        let has_domains = has_moving_points && method.basis == Basis::Cpgimp;
+        let no_inertia = scene.needs_inertia() && *formulation == Formulation::QuasiStatic;
+        let chord = self.material.conductivity_mean == ConductivityMean::Chord;
+        let off_lattice = points.jitter != 0.0 || points.offset != 0.0;
+        vec![
+            always("time_step", integrator.refuses_rule(self.time_step), OWN_BLOCK),
+            always(
+                "integrator",
+                scene.refuses_integrator(*integrator),
+                "take `integrator = [\"explicit\"]`, or leave the key out",
+            ),
+            always(
+                "formulation",
+                integrator.refuses_formulation(*formulation),
+                "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
+            ),
+            when(
+                "formulation",
+                no_inertia,
+                "the quasi-static formulation leaves out the waves that this scene is about",
+                "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
+            ),
+            when(
+                "drag",
+                *scene == SceneKind::SealedElement
+                    && *integrator == IntegratorKind::Explicit
+                    && settings.drag == Drag::Explicit,
+                "explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves",
+                "take `drag = \"implicit\"`",
+            ),
+            when(
+                "affine",
+                settings.affine && !has_moving_points,
+                "APIC needs points that move by explicit steps, in one set: a case of this sweep has none",
+                "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
+            ),
+            when(
+                "affine",
+                settings.affine && has_moving_points && by_limit,
+                "the critical step with APIC is not predicted: no share of it can be taken",
+                NAME_THE_STEP,
+            ),
+            when(
+                "stress_slopes",
+                settings.stress_slopes && !has_domains,
+                "stress slopes need GIMP domains that follow points which move by explicit steps, in one set: a case \
+                 of this sweep has no such domains",
+                "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
+            ),
+            when(
+                "stress_slopes",
+                settings.stress_slopes && has_domains && by_limit,
+                "the critical step with stress slopes is not predicted: no share of it can be taken",
+                NAME_THE_STEP,
+            ),
+            when(
+                "offset",
+                column.self_weight && points.offset != 0.0,
+                "domains shifted off their lattice do not integrate a weight exactly: the column would flow from the \
+                 start",
+                "leave `offset` out, or take `self_weight = false`",
+            ),
+            when(
+                "alternating",
+                points.alternating && column.dimensions > 1,
+                "cells with unequal numbers of points are those of a column in one dimension",
+                "leave `alternating` out, or take a column with `dimensions = 1`",
+            ),
+            when(
+                "sets",
+                two && !is_explicit,
+                "double-point MPM is integrated explicitly only",
+                "take the integrator \"explicit\", or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && configuration == Configuration::Total,
+                "shape functions on the initial configuration stay with the skeleton, and a second point set does not",
+                "take a method without the prefix TL-, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && method.has_projection(),
+                "the projection is of a pressure that the points of the skeleton carry",
+                "take the method \"VP\", or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && method.memory == Memory::Cells && configuration != Configuration::Frozen,
+                "cell averages need points that carry both phases, and here are two point sets",
+                "take a method without the suffix -cells, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && moves && !matches!(method.basis, Basis::Cpgimp | Basis::Cpdi),
+                "the domains of water points follow the water where points move, and this basis has none that follow",
+                "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && *scene == SceneKind::Mandel,
+                "a rigid plate is tied to one point set",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && *scene == SceneKind::Footing,
+                "the water under a footing stays with its soil",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "cells",
+                *scene == SceneKind::Footing && self.cells % 2 == 1,
+                "an odd number of cells under a footing: half of it is solved, and its middle lies on a node",
+                "take an even number",
+            ),
+            when(
+                "plate_width",
+                *scene == SceneKind::Footing && column.footing.width >= 2.0 * column.extent(),
+                "the layer ends under the footing: half of the footing lies on it",
+                "make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough",
+            ),
+            when(
+                "formulation",
+                *scene == SceneKind::Footing && *formulation != Formulation::QuasiStatic,
+                "a footing is pushed so slowly that nothing has inertia",
+                "leave `formulation` out",
+            ),
+            when(
+                "method",
+                *scene == SceneKind::Footing
+                    && column.footing.undrained == Undrained::TotalStress
+                    && method.strain.with_bbar().is_none(),
+                "the composite gradient between domain ends has no volume of its own: total stress needs one",
+                "take another method, or `undrained = \"two-phase\"`",
+            ),
+            when(
+                "conductivity_mean",
+                chord && !column.soils.is_empty(),
+                "the chord mean is taken along the compression of one soil, and the column has layers",
+                "take `conductivity_mean = \"points\"`",
+            ),
+            when(
+                "sets",
+                two && (*scene == SceneKind::Layered || !column.soils.is_empty()),
+                "the water of two point sets knows one soil",
+                "take another scene, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && column.self_weight,
+                "the weight of a column needs points that carry both phases",
+                "leave `self_weight` out, or take `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && chord,
+                "the chord mean is taken over points that carry both phases",
+                "take `conductivity_mean = \"points\"`, or `sets = 1`",
+            ),
+            when(
+                "sets",
+                two && off_lattice,
+                "shifted domains of the water do not end where the soil does",
+                "leave `offset` and `jitter` out, or take `sets = 1`",
+            ),
+        ]
+        .into_iter()
+        .flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+    use oedometer_mpm::method::Method;
+
+    #[test]
+    fn choices_of_moving_points_are_refused_where_points_move_and_nothing_heeds_them() {
+        use IntegratorKind::{Explicit, Implicit, SemiImplicit};
+        use SceneKind::XieLeo;
+        // Scene, method, integrator, point sets; then whether APIC and stress slopes are taken there.
+        for (scene, method, integrator, sets, takes_affine, takes_slopes) in [
+            (XieLeo, "GIMP", Explicit, 1, true, true),
+            (XieLeo, "GC-SRI-patch", Explicit, 1, true, true),
+            (XieLeo, "uGIMP", Explicit, 1, true, false),
+            (XieLeo, "MPM", Explicit, 1, true, false),
+            (XieLeo, "CPDI-SRI-patch", Explicit, 1, true, false),
+            (XieLeo, "GIMP", Explicit, 2, false, false),
+            (XieLeo, "GIMP", Implicit, 1, false, false),
+            (XieLeo, "GIMP", SemiImplicit, 1, false, false),
+            (XieLeo, "TL-GIMP", Explicit, 1, false, false),
+        ] {
+            let of = |affine, stress_slopes, time_step| {
+                let mut case = Case::seed(Task::Solve, scene);
+                case.method = Method::named(method).expect("a method").into();
+                (case.integrator, case.formulation) = (integrator, integrator.default_formulation());
+                case.time_step = time_step;
+                case.column.points.sets = sets;
+                (case.settings.affine, case.settings.stress_slopes) = (affine, stress_slopes);
+                let told = |refusal: Refusal| (refusal.key, refusal.help == NAME_THE_STEP);
+                case.refusals().map(told).collect::<Vec<_>>()
+            };
+            let place = format!("{scene:?} {method} {integrator:?} {sets}");
+            let (by_hand, by_limit) = (TimeStepRule::Seconds(1.0), TimeStepRule::Stable(0.5));
+            let wanted = |key, is_taken: bool, is_by_limit: bool| {
+                (!is_taken || is_by_limit).then_some((key, is_taken)).into_iter().collect::<Vec<_>>()
+            };
+            for (rule, is_by_limit) in [(by_hand, false), (by_limit, true)] {
+                assert_eq!(of(false, false, rule), [], "{place}");
+                let affine = wanted("affine", takes_affine, is_by_limit);
+                let slopes = wanted("stress_slopes", takes_slopes, is_by_limit);
+                assert_eq!(of(true, false, rule), affine, "{place}");
+                assert_eq!(of(false, true, rule), slopes, "{place}");
+                assert_eq!(of(true, true, rule), [affine, slopes].concat(), "{place}");
+            }
+        }
+    }
+
+    fn implicitly(case: &mut Case, formulation: Formulation) {
+        (case.integrator, case.formulation) = (IntegratorKind::Implicit, formulation);
+        case.time_step = TimeStepRule::Growth(0.1);
+    }
+
+    fn in_layers(case: &mut Case, mean: ConductivityMean) {
+        let layer = SoilLayer { thickness: 0.5, ..SoilLayer::default() };
+        case.column.soils = SoilLayers::of(&[layer; 2]).expect("two are few");
+        case.material.conductivity_mean = mean;
+    }
+
+    /// What is said of the cases of the table below that are refused, by their rows.
+    const TOLD: &str = r#"
+0 task: an attached solver has no critical step that could be searched: name methods of this program alone, or leave `task` out
+1 affine: the critical step with APIC is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+2 stress_slopes: the critical step with stress slopes is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+3 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
+4 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
+8 sets: the projection is of a pressure that the points of the skeleton carry: take the method "VP", or `sets = 1`
+9 sets: cell averages need points that carry both phases, and here are two point sets: take a method without the suffix -cells, or `sets = 1`
+10 sets: the chord mean is taken over points that carry both phases: take `conductivity_mean = "points"`, or `sets = 1`
+11 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
+12 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
+14 sets: the water of two point sets knows one soil: take another scene, or `sets = 1`
+15 conductivity_mean: the chord mean is taken along the compression of one soil, and the column has layers: take `conductivity_mean = "points"`
+18 drag: explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves: take `drag = "implicit"`
+21 formulation: the quasi-static formulation leaves out the waves that this scene is about: take "v-w" or "u-p", or the scene "terzaghi"
+23 alternating: cells with unequal numbers of points are those of a column in one dimension: leave `alternating` out, or take a column with `dimensions = 1`
+25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: take an even number
+26 plate_width: the layer ends under the footing: half of the footing lies on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
+28 method: the composite gradient between domain ends has no volume of its own: total stress needs one: take another method, or `undrained = "two-phase"`
+"#;
+
+    #[test]
+    fn a_combination_is_refused_by_its_own_key_sentence_and_help_and_what_is_near_it_is_taken() {
+        use Formulation::{QuasiStatic, UP};
+        use SceneKind::{DynamicColumn, Footing, Layered, SealedElement, Terzaghi, XieLeo};
+        type Change = fn(&mut Case);
+        let attached: Change = |case| {
+            let ogs = crate::Attached::new("ogs", "0123456789abcdef").expect("a plain name");
+            (case.method, case.task) = (crate::SolverName::Attached(ogs), Task::Stability);
+        };
+        let affine: Change =
+            |case| (case.settings.affine, case.time_step) = (true, TimeStepRule::Stable(0.5));
+        let slopes: Change =
+            |case| (case.settings.stress_slopes, case.time_step) = (true, TimeStepRule::Stable(0.5));
+        let two: Change = |case| case.column.points.sets = 2;
+        let chord: Change = |case| {
+            (case.column.points.sets, case.material.conductivity_mean) = (2, ConductivityMean::Chord);
+        };
+        let two_phase: Change = |case| case.column.footing.undrained = Undrained::TwoPhase;
+        let unequal: Change = |case| (case.column.points.alternating, case.column.dimensions) = (true, 2);
+        let table: [(SceneKind, &str, Change); 31] = [
+            (Terzaghi, "GIMP", attached),
+            (XieLeo, "GIMP", affine),
+            (XieLeo, "GIMP", slopes),
+            (XieLeo, "MPM", two),
+            (XieLeo, "uGIMP", two),
+            (XieLeo, "GIMP", two),
+            (XieLeo, "CPDI-SRI-patch", two),
+            (Terzaghi, "MPM", two),
+            (Terzaghi, "PPP", two),
+            (XieLeo, "GIMP-SRI-patch-cells", two),
+            (XieLeo, "GIMP", chord),
+            (Terzaghi, "GIMP", |case| (case.column.points.sets, case.column.points.offset) = (2, -0.25)),
+            (Terzaghi, "GIMP", |case| (case.column.points.sets, case.column.points.jitter) = (2, 0.25)),
+            (Terzaghi, "GIMP", |case| (case.column.points.jitter, case.column.points.offset) = (0.2, 0.2)),
+            (Layered, "GIMP", two),
+            (XieLeo, "GIMP", |case| in_layers(case, ConductivityMean::Chord)),
+            (Layered, "GIMP", |case| in_layers(case, ConductivityMean::Points)),
+            (XieLeo, "GIMP", |case| case.material.conductivity_mean = ConductivityMean::Chord),
+            (SealedElement, "GIMP", |case| case.settings.drag = Drag::Explicit),
+            (SealedElement, "GIMP", |case| case.settings.drag = Drag::Centred),
+            (DynamicColumn, "GIMP", |case| implicitly(case, UP)),
+            (DynamicColumn, "GIMP", |case| implicitly(case, QuasiStatic)),
+            (Terzaghi, "GIMP", |case| case.task = Task::Stability),
+            (Terzaghi, "GIMP", unequal),
+            (Footing, "GIMP-SRI", two),
+            (Footing, "GIMP-SRI", |case| case.cells = 5),
+            (Footing, "GIMP-SRI", |case| case.column.footing.width = 5.0),
+            (Footing, "GIMP-SRI", |case| case.column.footing.width = 4.999),
+            (Footing, "CE-SRI-patch", |_| {}),
+            (Footing, "CE-SRI-patch", two_phase),
+            (Footing, "GC-SRI-patch", |_| {}),
+        ];
+        let mut told = "\n".to_owned();
+        for (place, (scene, method, change)) in table.into_iter().enumerate() {
+            let mut case = Case { cells: 4, ..Case::seed(Task::Solve, scene) };
+            case.method = Method::named(method).expect("a method").into();
+            if case.is_explicit() {
+                case.time_step = TimeStepRule::Courant(0.4);
+            }
+            change(&mut case);
+            let lines =
+                case.refusals().map(|one| format!("{place} {}: {}: {}\n", one.key, one.why, one.help));
+            told.extend(lines);
+        }
+        assert_eq!(told, TOLD);
+    }
+
+    #[test]
+    fn where_nothing_moves_choices_of_moving_points_are_taken_and_named_as_idle() {
+        let seed = |integrator: IntegratorKind| {
+            let mut case = Case::seed(Task::Solve, SceneKind::Terzaghi);
+            (case.integrator, case.formulation) = (integrator, integrator.default_formulation());
+            case.time_step = integrator.default_rule();
+            case
+        };
+        let plain = seed(IntegratorKind::Implicit);
+        let mut idle = plain.clone();
+        idle.method = Method::named("TL-GC-SRI-patch").expect("a method").into();
+        (idle.settings.affine, idle.settings.stress_slopes) = (true, true);
+        idle.material.conductivity_mean = ConductivityMean::Chord;
+        idle.column.points.sets = 2;
+        assert_eq!(idle.refusals().next(), None);
+        assert_eq!(
+            (plain.idle_choices().len(), idle.idle_choices().len()),
+            (0, 5),
+            "{:?}",
+            idle.idle_choices()
+        );
+        let run = idle.without_idle_choices();
+        assert_eq!(Case { method: plain.method, ..run }, plain);
+        // Explicit steps show that two alike sets are one; unequal ones are a choice of their own.
+        let explicit = Case { column: idle.column.clone(), ..seed(IntegratorKind::Explicit) };
+        assert!(explicit.without_idle_choices().column.points.has_two_sets());
+        idle.column.points.water_per_cell = idle.points_per_cell + 1;
+        assert_eq!(idle.refusals().map(|refusal| refusal.key).collect::<Vec<_>>(), ["sets"]);
+    }
+}

@@ -1,0 +1,307 @@
+//! Tables from the file to their states: units, signs, places, and mistakes with their line.
+
+use super::SampledState;
+use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
+use crate::import::mapping::{Axes, Mapping, TableLayout};
+use crate::import::raw_row::SolvedBody;
+use crate::import::runs::runs_of;
+use crate::source::StudySource;
+
+const STRANGE: &str = r#"
+[columns]
+t = "day"
+y = "depth"
+p = "pwp"
+u_y = "settled"
+effective_stress = "sig"
+[units]
+time = "d"
+length = "cm"
+displacement = "mm"
+stress = "kPa"
+[sign]
+y = "down"
+p = "tension-positive"
+u_y = "down"
+effective_stress = "compression-positive"
+[position]
+y = "current"
+[csv]
+delimiter = ";"
+"#;
+
+fn states(mapping: &str, text: &str) -> Result<Vec<SampledState>, String> {
+    let source = StudySource { name: "map.toml".to_owned(), text: mapping.to_owned() };
+    let mapping = Mapping::read(&source).expect("a mapping");
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("result.csv");
+    std::fs::write(&path, text).expect("a file");
+    let frame = SolvedBody {
+        height: 1.0,
+        length: mapping.columns.x.is_some().then_some(2.0),
+        seconds_per_time_factor: 81.75,
+    };
+    let runs = runs_of(&[vec![path]], &mapping, frame);
+    runs.map(|mut runs| runs.remove(0).states).map_err(|error| error.to_string())
+}
+
+#[test]
+fn units_and_signs_become_those_of_this_program() {
+    let text = "# by a stranger\nday; depth; pwp; settled; sig\n1; 25; -3; 2; 4\n0.5; 50; -5; 1; 0\n";
+    let states = states(STRANGE, text).expect("rows");
+    assert_eq!(states.len(), 2, "by time");
+    assert_eq!(states[0].time, 43_200.0);
+    let later = &states[1];
+    assert_eq!((later.pressure[0], later.effective_stress[0]), (3e3, -4e3));
+    assert_eq!(later.displacement[0], -2e-3);
+    assert!((later.initial_height[0] - 0.752).abs() < 1e-15, "a point at 0.75 m has sunk by 2 mm");
+}
+
+#[test]
+fn what_is_no_number_or_outside_is_told_with_its_line() {
+    for (row, told) in [
+        ("1; 25; NaN; 2; 4", "result.csv:2: `NaN` in the column `pwp`"),
+        ("1; 25; ; 2; 4", "result.csv:2: `` in the column `pwp`"),
+        ("-1; 25; 3; 2; 4", "the time is negative"),
+        ("1; 250; 3; 2; 4", "outside the column of 1 m"),
+        ("1; 25; 3", "result.csv"),
+    ] {
+        let error = states(STRANGE, &format!("day; depth; pwp; settled; sig\n{row}\n")).expect_err(row);
+        assert!(error.contains(told), "{row}: {error}");
+    }
+    let error = states(STRANGE, "day; depth; pwp; settled\n").expect_err("a column is missing");
+    assert!(error.contains("no column `sig` (to leave it out, call"), "{error}");
+    assert!(error.contains("; the header has `day`, `depth`"), "{error}");
+    let error = states(STRANGE, "day; depth; pwp; settled; sig\n").expect_err("no rows");
+    assert!(error.contains("there are no rows"), "{error}");
+}
+
+#[test]
+fn places_along_a_layer_have_an_end_an_origin_and_a_range() {
+    let mapping = PLANE_CONVENTION
+        .replace("x = \"right\"\ny", "x = \"left\"\ny")
+        .replace("u_x = \"right\"", "u_x = \"left\"")
+        .replace("x = 0.0", "x = 5.0")
+        .replace("y = 0.0", "y = 2.0");
+    let text = "t,x,y,p,u_x,u_y\n1,5.5,2.25,3,0.1,0\n";
+    let states = states(&mapping, text).expect("a row");
+    assert_eq!((states[0].initial_distance[0], states[0].initial_height[0]), (1.5, 0.25));
+    assert_eq!(states[0].horizontal_displacement, [-0.1]);
+    let error = self::states(&mapping, "t,x,y,p,u_x,u_y\n1,7.5,2.25,3,0.1,0\n").expect_err("beyond");
+    assert!(error.contains("-0.5 m from the crest is outside the layer of 2 m"), "{error}");
+}
+
+#[test]
+fn a_repeated_row_is_told_from_a_second_column_of_samples() {
+    let text = "t,id,y,p,u_y\n1,1,0.5,3,0\n1,2,0.5,3,0\n1,2,0.5,4,0\n1,2,0.5,3,0\n1,3,0.25,3,0\n";
+    let state = &states(CONVENTION, text).expect("rows")[0];
+    assert_eq!(state.repeated, 1, "rows 1 and 2 differ in a column without meaning");
+    assert_eq!(
+        (state.pressure.len(), state.repeated_at.map(|at| at[0])),
+        (4, Some(0.5)),
+        "equal values count once"
+    );
+}
+
+#[test]
+fn an_origin_is_in_the_unit_of_the_places() {
+    let mapping = PLANE_CONVENTION
+        .replace("length = \"m\"", "length = \"cm\"")
+        .replace("x = 0.0", "x = 500.0")
+        .replace("y = 0.0", "y = 200.0");
+    assert!(mapping.contains("cm") && mapping.contains("500.0"), "{mapping}");
+    let states = states(&mapping, "t,x,y,p,u_x,u_y\n1,550,225,3,0.1,0.2\n").expect("a row");
+    assert!((states[0].initial_distance[0] - 0.5).abs() < 1e-12, "{states:?}");
+    assert!((states[0].initial_height[0] - 0.25).abs() < 1e-12, "{states:?}");
+}
+
+#[test]
+fn a_settlement_is_that_of_the_nearest_time_within_a_thousandth_of_it() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let mapping = format!("{STRANGE}[settlement]\nfile = \"curve.csv\"\nt = \"day\"\ns = \"mm\"\n");
+    let source = StudySource { name: "map.toml".to_owned(), text: mapping };
+    let mapping = Mapping::read(&source).expect("a mapping");
+    let rows = [1, 2, 3].map(|day| format!("{day}; 25; -3; 2; 4\n")).concat();
+    std::fs::write(at("result.csv"), format!("day; depth; pwp; settled; sig\n{rows}")).expect("a file");
+    // Half a thousandth off, two thousandths off, and two of which the nearer counts.
+    std::fs::write(at("curve.csv"), "day; mm\n1.0005; 7\n1.996; 8\n2.999; 9\n3.002; 10\n").expect("a file");
+    let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 81.75 };
+    let run = runs_of(&[vec![at("result.csv")]], &mapping, body).expect("rows").remove(0);
+    let found: Vec<Option<f64>> = run.states.iter().map(|state| state.surface_displacement).collect();
+    assert_eq!(found, [Some(-7.0 * 1e-3), None, Some(-9.0 * 1e-3)]);
+}
+
+#[test]
+fn a_settlement_curve_has_its_sign_and_unit_and_tells_what_it_lacks() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("result.csv"), "t,y,p,u_y\n60,0.5,3,0\n120,0.5,3,0\n").expect("a file");
+    let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 60.0 };
+    let run = |more: &str, curve: &str| {
+        std::fs::write(at("curve.csv"), curve).expect("a file");
+        let text = format!("settlement = {{ file = 'curve.csv'{more}\n");
+        let mapping = Mapping::read(&StudySource { name: "map.toml".to_owned(), text }).expect("a mapping");
+        runs_of(&[vec![at("result.csv")]], &mapping, body)
+            .map(|mut runs| runs.remove(0))
+            .map_err(|error| error.to_string())
+    };
+    for (more, curve, found) in [
+        (" }", "t,s\n60,0.25\n120,0.5\n", [Some(-0.25), Some(-0.5)]),
+        (", sign = 'down' }", "t,s\n120,0.5\n60,0.25\n", [Some(-0.25), Some(-0.5)]),
+        (", sign = 'up' }", "t,s\n60,-0.25\n", [Some(-0.25), None]),
+        (", t = 's', s = 't' }", "t,s\n0.5,120\n", [None, Some(-0.5)]),
+        (" }\nunits = { length = 'cm' }", "t,s\n60,25\n", [Some(-0.25), None]),
+        (" }\nunits = { length = 'cm', displacement = 'mm' }", "t,s\n60,250\n", [Some(-0.25), None]),
+        (" }", "t,s\n61,0.25\n", [None, None]),
+    ] {
+        let run = run(more, curve).unwrap_or_else(|told| panic!("{more}: {told}"));
+        let curves: Vec<Option<f64>> = run.states.iter().map(|state| state.surface_displacement).collect();
+        assert_eq!(curves, found, "{more}");
+        let matched = found.iter().flatten().count();
+        assert_eq!(run.expected.settlement, matched > 0, "{more}");
+        let note =
+            format!("settlement from curve.csv at {matched} of 2 times, the nearest within 0.1 % each");
+        assert_eq!((run.notes, run.unended), (vec![note], vec![]), "{more}");
+    }
+    assert_eq!(run(" }", "t,s\n60,0.25").expect("states").unended, [at("curve.csv")], "it may be cut");
+    let lacking = format!(
+        "{}: there is no column `s` of the settlement curve; the header has `t`, `w`",
+        at("curve.csv").display()
+    );
+    assert_eq!(run(" }", "t,w\n60,0.25\n").err(), Some(lacking));
+    let empty = run(" }", "t,s\n").err();
+    assert!(empty.is_some_and(|told| told.ends_with("curve.csv: there are no rows")));
+}
+
+#[test]
+fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
+    let names: Vec<String> = (0..32).map(|number| format!("c{number}")).collect();
+    let told = |header: &str| states(CONVENTION, &format!("{header}\n1\n")).expect_err("no column");
+    let listed =
+        |names: &[String]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let time = |listed: String| format!("result.csv: there is no column `t`; the header has {listed}");
+    assert!(told(&names[..30].join(",")).ends_with(&time(listed(&names[..30]))));
+    assert!(told(&names.join(",")).ends_with(&time(format!("{}, and 2 more", listed(&names[..30])))));
+    let told = told("t,y,u_y");
+    let how =
+        "to leave it out, call `score --without pressure`, or write `p = \"\"` to [columns] of a mapping";
+    assert!(
+        told.ends_with(&format!(
+            "result.csv: there is no column `p` ({how}); the header has `t`, `y`, `u_y`"
+        )),
+        "{told}"
+    );
+    let untimed = states("[columns]\ny = \"y\"\np = \"p\"\n", "y,p\n0.5,3\n").expect_err("no time");
+    let how = "add \"result.csv\" = … to [time] files, name a column `t`, or give --set-time-step if the name has the number of \
+               a step";
+    assert!(untimed.ends_with(&format!("result.csv: its time is declared nowhere: {how}")), "{untimed}");
+    let named =
+        states("[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\n", "t,y,p\n2,0.5,3\n").expect("a column `t`");
+    assert_eq!(named[0].time, 2.0);
+    // Rows that do not count are none, and rows of one value alone do.
+    let rows = "t,y,p,u_y,layer\n1,0.25,3,0,1\n1,0.5,4,0,2\n1,0.75,5,0,1\n";
+    let of = |layer: &str| states(&format!("{CONVENTION}[rows]\nequals = {{ layer = {layer} }}\n"), rows);
+    assert_eq!(of("1.0").expect("two rows")[0].pressure, [3.0, 5.0]);
+    assert_eq!(of("2.0").expect("a row")[0].pressure, [4.0]);
+    assert!(of("3.0").is_err_and(|told| told.ends_with("result.csv: there are no rows")));
+    let corners = states(&format!("{CONVENTION}[rows]\ncorners = true\n"), rows).expect_err("no cells");
+    assert!(corners.ends_with("result.csv: a table has no cells: take `corners` out of [rows]"), "{corners}");
+}
+
+#[test]
+fn a_table_ends_with_a_line_break_of_any_kind_or_has_nothing() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.csv");
+    for (text, is_ended) in [
+        ("t,y\n1,2\n", true),
+        ("t,y\r\n1,2\r\n", true),
+        ("t,y\r1,2\r", true),
+        ("t,y\n1,2", false),
+        ("t,y\n1,2 ", false),
+        ("t y\n1 2", false),
+    ] {
+        std::fs::write(&path, text).expect("a file");
+        let read = crate::import::csv_text::CsvText::read(&path, &TableLayout::default()).expect("a table");
+        assert_eq!(read.is_ended, is_ended, "{text:?}");
+    }
+    let what =
+        "does not end with a line break, so it may be cut inside its last number: end the last line with one";
+    assert_eq!(super::not_ended(&path), format!("{} {what}", path.display()));
+}
+
+#[test]
+fn patterns_stand_for_files_by_folder_and_number_and_a_name_with_a_star_for_itself() {
+    use crate::import::runs::{are_tables, files_of};
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for name in ["b/s_2.csv", "a/s_10.csv", "a/s_9.csv", "b/s_1.csv", "a/s.csv", "a/s_*.csv"] {
+        std::fs::create_dir_all(at(name).parent().expect("a folder")).expect("made");
+        std::fs::write(at(name), "t\n").expect("a file");
+    }
+    std::fs::create_dir(at("a/s_3.csv")).expect("a folder");
+    std::fs::write(at("a/x.vtk"), "# vtk DataFile Version 3.0\n").expect("a file");
+    let found = |pattern: &str| {
+        files_of(&[at(pattern)]).map(|mut all| all.remove(0)).map_err(|error| error.to_string())
+    };
+    let all = |names: &[&str]| Ok(names.iter().map(|name| at(name)).collect::<Vec<_>>());
+    assert_eq!(found("?/s_[0-9]*.csv"), all(&["a/s_9.csv", "a/s_10.csv", "b/s_1.csv", "b/s_2.csv"]));
+    assert_eq!(found("a/s_*.csv"), all(&["a/s_*.csv"]), "it is there");
+    assert_eq!(found("a/s?9.csv"), all(&["a/s_9.csv"]));
+    assert_eq!(found("none.csv"), all(&["none.csv"]), "whoever opens it tells that");
+    let told = format!("{}: no file matches this pattern", at("c/*.csv").display());
+    assert_eq!(found("c/*.csv"), Err(told));
+    let two = files_of(&[at("b/s_?.csv"), at("a/s.csv")]).expect("files");
+    assert_eq!(two.iter().map(Vec::len).collect::<Vec<_>>(), [2, 1], "each argument for itself");
+    assert_eq!(are_tables(&two).ok(), Some(true));
+    assert_eq!(are_tables(&[vec![at("a/s.csv"), at("a/x.vtk")]]).ok(), Some(false));
+    assert!(are_tables(&[vec![at("none.csv")]]).is_err());
+    // Tables do not stand among arrays, wherever they are given.
+    let mapping = Mapping::convention(Axes::Column).expect("a constant");
+    let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+    let told =
+        runs_of(&[vec![at("a/s.csv")], vec![at("a/x.vtk")]], &mapping, body).expect_err("both").to_string();
+    let why = "it is a table among files with arrays: score them separately";
+    assert_eq!(told, format!("{}: {why}", at("a/s.csv").display()));
+}
+
+#[test]
+fn what_is_left_out_is_in_no_state_and_expected_of_none() {
+    use crate::import::expected::Expected;
+    use crate::import::runs::Run;
+    use oedometer_case::quantity::Quantity;
+    let state = || SampledState {
+        pressure: vec![1.0],
+        effective_stress: vec![1.0],
+        displacement: vec![1.0],
+        horizontal_displacement: vec![1.0],
+        surface_displacement: Some(1.0),
+        ..SampledState::default()
+    };
+    for (quantity, left) in [
+        (Quantity::Pressure, [false, true, true, true, true]),
+        (Quantity::EffectiveStress, [true, false, true, true, true]),
+        (Quantity::Displacement, [true, true, false, false, true]),
+        (Quantity::Settlement, [true, true, true, true, false]),
+        (Quantity::LoadFactor, [true; 5]),
+    ] {
+        let states = vec![state(), state()];
+        let mut expected = Expected::of_states(&states);
+        expected.settlement = true;
+        let mut run = Run { states, expected, ..Run::default() };
+        run.leave_out(&[quantity]);
+        for state in &run.states {
+            let found = [
+                !state.pressure.is_empty(),
+                !state.effective_stress.is_empty(),
+                !state.displacement.is_empty(),
+                !state.horizontal_displacement.is_empty(),
+                state.surface_displacement.is_some(),
+            ];
+            assert_eq!(found, left, "{quantity:?}");
+        }
+        assert_eq!((run.expected.absent(&run.states), run.without), (vec![], vec![quantity]));
+        let bare = run.expected.absent(&[SampledState::default()]).len();
+        assert_eq!(bare, left.iter().filter(|is_left| **is_left).count(), "{quantity:?}");
+    }
+}

@@ -1,0 +1,429 @@
+//! Reads TOML into a type, and explains every mistake at its place by the type's JSON Schema.
+
+use crate::diagnostic::{Diagnostic, StudyError, nearest, one_of};
+use crate::source::StudySource;
+use crate::units::{has_unit, in_si, leading_number};
+use oedometer_case::keys::{KEYS, Key};
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use std::ops::{Deref, Range};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Deserializer, Error};
+
+/// A value with its place in the text.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct Placed<T>(Spanned<T>);
+
+/// A typed value with its place.
+pub type Typed<T> = Option<Placed<T>>;
+
+impl<T> Placed<T> {
+    /// A value at a place, in bytes of the text.
+    pub fn new(place: Range<usize>, value: T) -> Self {
+        Self(Spanned::new(place, value))
+    }
+
+    /// Its place, in bytes of the text.
+    pub fn span(&self) -> Range<usize> {
+        self.0.span()
+    }
+
+    /// The value, to be changed.
+    pub fn get_mut(&mut self) -> &mut T {
+        self.0.as_mut()
+    }
+}
+
+impl<T> Deref for Placed<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        self.0.get_ref()
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Placed<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        T::schema_name()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        T::json_schema(generator)
+    }
+}
+
+/// Keys that have another name now.
+const RENAMED: [(&str, &str); 2] = [("layers", "sets"), ("one_layer_within", "one_set_within")];
+/// What is said where no better help is known.
+const A_LINE: &str =
+    "a line is `key = value`: words and numbers with units stand in quotes, lists in [ ], comments after #";
+/// Longest excerpt of the text in a message, letters.
+const LONGEST_EXCERPT: usize = 40;
+
+impl StudySource {
+    /// Reads TOML into a type.
+    ///
+    /// # Errors
+    /// Every key that is not known, with the nearest one, and every value of a wrong kind; or where the text is not
+    /// TOML.
+    pub fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, StudyError> {
+        self.read_by(|root| T::deserialize(Deserializer::from(root)))
+    }
+
+    /// Reads TOML by a function, whose refusal the schema of its type explains. Numbers with units, like `"50 kPa"`,
+    /// reach it as numbers in SI units, where the schema names the unit of their key.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_by<T: JsonSchema>(
+        &self,
+        read: impl Fn(Spanned<DeTable<'_>>) -> Result<T, Error>,
+    ) -> Result<T, StudyError> {
+        let root = DeTable::parse(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))?;
+        read(root.clone()).or_else(|error| {
+            let mut mistakes = Mistakes { text: &self.text, found: Vec::new(), quantities: Vec::new() };
+            mistakes.of_table(&schema_of::<T>(), root.get_ref(), 0..0, "");
+            if mistakes.found.is_empty() && !mistakes.quantities.is_empty() {
+                return read(in_numbers(root, &mistakes.quantities))
+                    .map_err(|error| self.error(vec![self.syntax(&error)]));
+            }
+            if mistakes.found.is_empty() {
+                mistakes.found.push(self.syntax(&error));
+            }
+            Err(self.error(mistakes.found))
+        })
+    }
+
+    /// Reads TOML as it is.
+    ///
+    /// # Errors
+    /// Where the text is not TOML.
+    pub fn table(&self) -> Result<toml::Table, StudyError> {
+        toml::from_str(&self.text).map_err(|error| self.error(vec![self.syntax(&error)]))
+    }
+
+    /// A complaint of the parser, with what to write where the line shows it.
+    fn syntax(&self, error: &Error) -> Diagnostic {
+        let start = error.span().map_or(0, |span| span.start.min(self.text.len()));
+        let from = self.text.get(..start).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
+        let line = self.text.get(from..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+        let (message, help) = line_mistake(line);
+        let said = || error.message().lines().next().unwrap_or_default().to_owned();
+        Diagnostic { message: message.unwrap_or_else(said), span: error.span(), help: Some(help) }
+    }
+}
+
+/// What is wrong with a line that is not TOML, where the line shows it, and what to write instead.
+fn line_mistake(line: &str) -> (Option<String>, String) {
+    let line = line.trim_start();
+    if line.starts_with('{') && !line.contains('=') {
+        let help = "a study file is TOML: `oedometer new NAME` writes one";
+        return (Some("this looks like JSON".to_owned()), help.to_owned());
+    }
+    let Some((key, value)) = line.split_once('=') else { return (None, A_LINE.to_owned()) };
+    let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
+    let number = leading_number(value);
+    let rest = value[number.len()..].trim_start();
+    let write = |right: &str| format!("write `{key} = {}`", cut(right));
+    let shown = cut(value);
+    if has_unit(value) {
+        (Some(format!("`{shown}` needs quotes")), write(&format!("\"{value}\"")))
+    } else if !number.is_empty() && rest.starts_with(|c: char| c.is_alphabetic() || c == '%') {
+        let help = "a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like \"50 kPa\"; a \
+                    share as in 0.3";
+        (Some(format!("`{shown}` is not a plain number")), help.to_owned())
+    } else if value.starts_with(char::is_alphabetic) {
+        let quoted = write(&format!("\"{}\"", value.trim_end_matches(['"', '\''])));
+        (Some(format!("`{shown}` needs quotes")), quoted)
+    } else if value.contains(',') && !value.contains(['[', '{']) {
+        (Some(format!("`{shown}` is neither a number nor a list")), write(&format!("[{value}]")))
+    } else {
+        (None, A_LINE.to_owned())
+    }
+}
+
+/// A text with the numbers of quantities in place of the words that stand there.
+fn in_numbers<'a>(
+    mut root: Spanned<DeTable<'a>>,
+    quantities: &'a [(Range<usize>, String)],
+) -> Spanned<DeTable<'a>> {
+    fn replace<'a>(value: &mut Spanned<DeValue<'a>>, quantities: &'a [(Range<usize>, String)]) {
+        let place = value.span();
+        match value.as_mut() {
+            DeValue::Table(table) => table.iter_mut().for_each(|(_, one)| replace(one, quantities)),
+            DeValue::Array(list) => list.iter_mut().for_each(|one| replace(one, quantities)),
+            word @ DeValue::String(_) => {
+                let number = quantities.iter().find(|(span, _)| *span == place);
+                if let Some(Ok(number)) = number.map(|(_, text)| DeValue::parse(text)) {
+                    *word = number.into_inner();
+                }
+            }
+            _ => {}
+        }
+    }
+    root.as_mut().iter_mut().for_each(|(_, one)| replace(one, quantities));
+    root
+}
+
+/// Mistakes in a text, as they are found.
+struct Mistakes<'a> {
+    text: &'a str,
+    found: Vec<Diagnostic>,
+    /// Words that are numbers with units: their places, and the numbers in SI units.
+    quantities: Vec<(Range<usize>, String)>,
+}
+
+impl Mistakes<'_> {
+    /// The mistakes of a table under a key; the whole text has none.
+    fn of_table(&mut self, schema: &Value, table: &DeTable<'_>, place: Range<usize>, key: &str) {
+        let Some(properties) = schema["properties"].as_object() else { return };
+        for (name, value) in table {
+            if let Some(schema) = properties.get(name.get_ref().as_ref()) {
+                self.of_value(schema, value, name.get_ref());
+            } else {
+                let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+                let message = format!("unknown key `{}`", cut(name.get_ref()));
+                self.found.push(Diagnostic::at(name.span(), message, help_for_key(name.get_ref(), &known)));
+            }
+        }
+        for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+            if !table.contains_key(name) {
+                let whole = if key.is_empty() { "the study" } else { key };
+                let message = format!("`{name}` is missing in {whole}");
+                let example = example_of(&properties[name]);
+                self.found.push(Diagnostic::at(place.clone(), message, format!("add `{name} = {example}`")));
+            }
+        }
+    }
+
+    fn of_value(&mut self, schema: &Value, value: &Spanned<DeValue<'_>>, key: &str) {
+        let choices = schema["anyOf"].as_array();
+        let fits = |choice: &&Value| fits(choice, value.get_ref());
+        let schema = choices.and_then(|all| all.iter().rfind(fits)).unwrap_or(schema);
+        match value.get_ref() {
+            DeValue::Table(table) if kind_of(schema) == "object" => {
+                self.of_table(schema, table, value.span(), key);
+            }
+            DeValue::Array(list) if kind_of(schema) == "array" => {
+                for one in list {
+                    self.of_value(&schema["items"], one, key);
+                }
+            }
+            DeValue::String(word) if !names_of(schema).is_empty() => {
+                let names = names_of(schema);
+                if !names.contains(&word.as_ref()) {
+                    let message = format!("no {key} is called `{}`", cut(word));
+                    self.found.push(Diagnostic::at(value.span(), message, one_of(word, &names)));
+                }
+            }
+            DeValue::String(text) if schema["unit"].is_string() => {
+                match in_si(text, schema["unit"].as_str().unwrap_or_default()) {
+                    Ok(number) => self.quantities.push((value.span(), format!("{number:?}"))),
+                    Err((message, help)) => {
+                        self.found.push(Diagnostic::at(value.span(), format!("`{key}`: {message}"), help));
+                    }
+                }
+            }
+            other if self::fits(schema, other) => {}
+            _ => self.wrong_kind(schema, value, key),
+        }
+    }
+
+    fn wrong_kind(&mut self, schema: &Value, value: &Spanned<DeValue<'_>>, key: &str) {
+        let written = self.text.get(value.span()).unwrap_or_default().lines().next().unwrap_or_default();
+        let written = cut(written.trim());
+        let kind = kind_of(schema);
+        let is_block = schema["items"]["properties"].is_object();
+        let is_number = ["number", "integer"].contains(&kind);
+        let help = match value.get_ref() {
+            DeValue::Table(_) if is_block => {
+                format!("a block that may be repeated has two brackets: [[{key}]]")
+            }
+            DeValue::Array(_) if kind == "object" => {
+                format!("a table that appears once has one pair of brackets: [{key}]")
+            }
+            DeValue::Array(_) if Key::named(key, "sweep").is_some() => {
+                format!("several values belong in a [[sweep]]: `{key} = {written}`")
+            }
+            DeValue::String(word) if is_number => match word.trim().parse::<f64>() {
+                Ok(_) => format!("write it without quotes: `{key} = {word}`"),
+                Err(_) => format!(
+                    "it has no unit: write it as a plain number without quotes, like `{key} = {}`",
+                    example_of(schema)
+                ),
+            },
+            one if kind == "array" && fits(&schema["items"], one) => format!("write `{key} = [{written}]`"),
+            _ => format!("write it like `{key} = {}`", example_of(schema)),
+        };
+        let wanted = match kind {
+            "integer" => "a whole number",
+            "number" => "a number",
+            "boolean" => "true or false",
+            "array" => "a list",
+            "object" => "a table",
+            _ => "a word in quotes",
+        };
+        self.found.push(Diagnostic::at(
+            value.span(),
+            format!("`{key}` takes {wanted}, not `{written}`"),
+            help,
+        ));
+    }
+}
+
+/// The words that a schema allows, where it names them.
+fn names_of(schema: &Value) -> Vec<&str> {
+    let listed = schema["enum"].as_array().into_iter().flatten();
+    let described = schema["oneOf"].as_array().into_iter().flatten().map(|choice| &choice["const"]);
+    listed.chain(described).filter_map(Value::as_str).collect()
+}
+
+/// The kind of value that a schema describes.
+fn kind_of(schema: &Value) -> &str {
+    match schema["anyOf"].as_array().and_then(|choices| choices.first()) {
+        Some(first) => kind_of(first),
+        // Of a number with a unit the first kind is the number.
+        None => schema["type"].as_str().or(schema["type"][0].as_str()).unwrap_or("string"),
+    }
+}
+
+fn fits(schema: &Value, value: &DeValue<'_>) -> bool {
+    match value {
+        DeValue::String(_) => kind_of(schema) == "string",
+        DeValue::Integer(_) => ["integer", "number"].contains(&kind_of(schema)),
+        DeValue::Float(_) => kind_of(schema) == "number",
+        DeValue::Boolean(_) => kind_of(schema) == "boolean",
+        DeValue::Datetime(_) => false,
+        DeValue::Array(_) => kind_of(schema) == "array",
+        DeValue::Table(_) => kind_of(schema) == "object",
+    }
+}
+
+/// A value that a schema takes, as one writes it.
+fn example_of(schema: &Value) -> String {
+    if let Some(first) = schema["anyOf"].as_array().and_then(|choices| choices.first()) {
+        return example_of(first);
+    }
+    if let Some(word) = schema["enum"].as_array().and_then(|words| words.first()) {
+        return word.to_string();
+    }
+    match kind_of(schema) {
+        "integer" => "10".to_owned(),
+        "number" => "0.1".to_owned(),
+        "boolean" => "true".to_owned(),
+        "array" => format!("[{}]", example_of(&schema["items"])),
+        "object" => {
+            let required: Vec<&str> =
+                schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            let of_properties = schema["properties"].as_object().into_iter().flatten();
+            let shown =
+                of_properties.filter(|(name, _)| required.is_empty() || required.contains(&name.as_str()));
+            let shown: Vec<String> =
+                shown.take(2).map(|(name, inner)| format!("{name} = {}", example_of(inner))).collect();
+            format!("{{ {} }}", shown.join(", "))
+        }
+        _ => "\"...\"".to_owned(),
+    }
+}
+
+/// What to write in place of an unknown key.
+fn help_for_key(name: &str, known: &[&str]) -> String {
+    if let Some((_, new)) = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new)) {
+        return format!("it is called `{new}` now");
+    }
+    if let Some(near) = nearest(name, known.iter().copied()) {
+        return format!("did you mean `{near}`?");
+    }
+    match KEYS.iter().find(|key| key.name == name) {
+        Some(key) => match key.tables.iter().find(|table| **table != "sweep") {
+            Some(table) => format!("`{name}` belongs to [{table}]: `{table}.{name}`"),
+            None => format!("`{name}` belongs to [[sweep]]: `sweep.{name}`"),
+        },
+        None => format!("the keys here are {}", known.join(", ")),
+    }
+}
+
+/// The beginning of a text.
+fn cut(text: &str) -> &str {
+    text.char_indices().nth(LONGEST_EXCERPT).map_or(text, |(end, _)| &text[..end])
+}
+
+/// The JSON Schema of a type that is read from TOML, which has no null: a key is left out instead.
+pub fn schema_of<T: JsonSchema>() -> Value {
+    without_null(plain_schema_of::<T>())
+}
+
+/// The JSON Schema of a type in one piece.
+pub fn plain_schema_of<T: JsonSchema>() -> Value {
+    let settings = SchemaSettings::draft2020_12().for_deserialize();
+    let settings = settings.with(|settings| settings.inline_subschemas = true);
+    settings.into_generator().into_root_schema_for::<T>().to_value()
+}
+
+fn without_null(mut schema: Value) -> Value {
+    if let Some(list) = schema.as_array_mut() {
+        list.retain(|one| ![json!(null), json!("null"), json!({ "type": "null" })].contains(one));
+    }
+    let mut schema = each_part(schema, without_null);
+    if let Some(object) = schema.as_object_mut() {
+        for word in ["type", "anyOf"] {
+            let Some([one]) = object.get(word).and_then(Value::as_array).map(Vec::as_slice) else { continue };
+            match one.clone() {
+                Value::Object(choice) => {
+                    object.remove(word);
+                    // The description of the key takes precedence over that of its type.
+                    let own = std::mem::replace(object, choice);
+                    object.extend(own);
+                }
+                other => drop(object.insert(word.to_owned(), other)),
+            }
+        }
+    }
+    schema
+}
+
+/// A value with every part of it changed.
+pub fn each_part(value: Value, change: fn(Value) -> Value) -> Value {
+    match value {
+        Value::Array(list) => list.into_iter().map(change).collect(),
+        Value::Object(object) => object.into_iter().map(|(word, value)| (word, change(value))).collect(),
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_is_no_toml_is_told_by_what_it_shows() {
+        let plain = "a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like \"50 kPa\"; a share as in 0.3";
+        for (line, message, help) in [
+            (
+                "{\"title\": 1}",
+                Some("this looks like JSON"),
+                "a study file is TOML: `oedometer new NAME` writes one",
+            ),
+            ("  {", Some("this looks like JSON"), "a study file is TOML: `oedometer new NAME` writes one"),
+            ("{ a = 1", None, A_LINE),
+            ("porosity 0.3", None, A_LINE),
+            ("cells = [4, 8", None, A_LINE),
+            ("a = { b = 1, c = 2", None, A_LINE),
+            ("a = 0.3 0.4", None, A_LINE),
+            ("load=5 kPa # soft", Some("`5 kPa` needs quotes"), "write `load = \"5 kPa\"`"),
+            ("load = 5kpa", Some("`5kpa` is not a plain number"), plain),
+            ("n = 30%", Some("`30%` is not a plain number"), plain),
+            ("law = linear\"", Some("`linear\"` needs quotes"), "write `law = \"linear\"`"),
+            ("cells = 4, 8 # two", Some("`4, 8` is neither a number nor a list"), "write `cells = [4, 8]`"),
+        ] {
+            assert_eq!(line_mistake(line), (message.map(str::to_owned), help.to_owned()), "{line}");
+        }
+        let word = "x".repeat(45);
+        assert_eq!(line_mistake(&format!("a = {word}")).0, Some(format!("`{}` needs quotes", &word[..40])));
+    }
+}

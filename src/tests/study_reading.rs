@@ -1,0 +1,107 @@
+//! Tests of what is told of mistakes, and of numbers with units.
+
+use crate::study::check::Study;
+use crate::study::file::StudySource;
+
+const SOUND: &str = "title = \"t\"\nscene = \"terzaghi\"\n[material]\nporosity = 0.3\n\
+                     [[sweep]]\nmethod = [\"GIMP\"]\ncells = [4, 8]\n";
+
+fn refusal(text: &str) -> String {
+    let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+    Study::check(&source).expect_err(text).to_string()
+}
+
+/// The only complaint about a text: its line, what is wrong, and what would be right.
+fn complaint(text: &str) -> (usize, String, String) {
+    let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+    let mut found = Study::check(&source).expect_err(text).diagnostics;
+    assert_eq!(found.len(), 1, "{found:?}");
+    let one = found.remove(0);
+    let start = one.span.expect("a place").start;
+    (text[..start].matches('\n').count() + 1, one.message, one.help.expect("help"))
+}
+
+/// What stands in the sound study and what in its place, with ⏎ for the end of a line; the line of the mistake, what is
+/// wrong, and what would be right.
+const MISTAKES: &str = r#"
+porosity = 0.3 ¦ porosty = 0.3 ¦ 4 ¦ unknown key `porosty` ¦ did you mean `porosity`?
+porosity = 0.3 ¦ cells = 3 ¦ 4 ¦ unknown key `cells` ¦ `cells` belongs to [[sweep]]: `sweep.cells`
+porosity = 0.3 ¦ loading_time = 3 ¦ 4 ¦ unknown key `loading_time` ¦ `loading_time` belongs to [column]: `column.loading_time`
+porosity = 0.3 ¦ flip = 3 ¦ 4 ¦ unknown key `flip` ¦ `flip` belongs to [integrator]: `integrator.flip`
+[material] ¦ [timing]⏎colour = 3⏎[material] ¦ 4 ¦ unknown key `colour` ¦ the keys here are repeats
+porosity = 0.3 ¦ porosity = 30 % ¦ 4 ¦ `30 %` is not a plain number ¦ a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like "50 kPa"; a share as in 0.3
+porosity = 0.3 ¦ load = 5 kPa ¦ 4 ¦ `5 kPa` needs quotes ¦ write `load = "5 kPa"`
+porosity = 0.3 ¦ law = linear ¦ 4 ¦ `linear` needs quotes ¦ write `law = "linear"`
+porosity = 0.3 ¦ porosity = "0.3" ¦ 4 ¦ `porosity` takes a number, not `"0.3"` ¦ write it without quotes: `porosity = 0.3`
+porosity = 0.3 ¦ porosity = "30 %" ¦ 4 ¦ `porosity` takes a number, not `"30 %"` ¦ it has no unit: write it as a plain number without quotes, like `porosity = 0.1`
+porosity = 0.3 ¦ porosity = true ¦ 4 ¦ `porosity` takes a number, not `true` ¦ write it like `porosity = 0.1`
+porosity = 0.3 ¦ porosity = 2026-01-01 ¦ 4 ¦ `porosity` takes a number, not `2026-01-01` ¦ write it like `porosity = 0.1`
+porosity = 0.3 ¦ porosity = [0.3] ¦ 4 ¦ `porosity` takes a number, not `[0.3]` ¦ several values belong in a [[sweep]]: `porosity = [0.3]`
+porosity = 0.3 ¦ law = "linaer" ¦ 4 ¦ no law is called `linaer` ¦ did you mean `linear`? It can be `linear`, `log-linear`, `porosity-dependent`, `engineering`, `neo-hookean`, `preconsolidated`, `von-mises`
+porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write it like `law = "linear"`
+[material] ¦ integrator.mapping_back = 1⏎[material] ¦ 3 ¦ `mapping_back` takes true or false, not `1` ¦ write it like `mapping_back = true`
+[material] ¦ output.references = "terzaghi"⏎[material] ¦ 3 ¦ `references` takes a list, not `"terzaghi"` ¦ write `references = ["terzaghi"]`
+[4, 8] ¦ 4 ¦ 7 ¦ `cells` takes a list, not `4` ¦ write `cells = [4]`
+[4, 8] ¦ 4, 8 ¦ 7 ¦ `4, 8` is neither a number nor a list ¦ write `cells = [4, 8]`
+[4, 8] ¦ [4.5] ¦ 7 ¦ `cells` takes a whole number, not `4.5` ¦ write it like `cells = 10`
+[4, 8] ¦ ["8"] ¦ 7 ¦ `cells` takes a whole number, not `"8"` ¦ write it without quotes: `cells = 8`
+[4, 8] ¦ "four" ¦ 7 ¦ `cells` takes a list, not `"four"` ¦ write it like `cells = [10]`
+[4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = { courant = 0.1, growth = 0.1 }`
+[[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has two brackets: [[sweep]]
+title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
+[4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is called `sets` now
+[4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is called `one_set_within` now
+[4, 8] ¦ [4, 8]⏎[[expect]]⏎order = { minus = 1 } ¦ 9 ¦ `value` is missing in order ¦ add `value = 0.1`
+[4, 8] ¦ [4, 8]⏎[[result]]⏎name = "a"⏎files = ["b"] ¦ 8 ¦ `cells` is missing in result ¦ add `cells = [10]`
+[4, 8] ¦ [4, 8]⏎[[solver]]⏎name = "a"⏎result = "b" ¦ 8 ¦ `command` is missing in solver ¦ add `command = ["..."]`
+"#;
+
+#[test]
+fn every_mistake_is_told_at_its_line_with_what_to_write() {
+    for row in MISTAKES.trim().lines() {
+        let fields: Vec<String> = row.split(" ¦ ").map(|field| field.replace('⏎', "\n")).collect();
+        let [from, to, line, message, help] = &fields[..] else { panic!("{row}") };
+        assert!(SOUND.contains(from), "{row}");
+        let (at, told, right) = complaint(&SOUND.replacen(from, to, 1));
+        assert_eq!((&at.to_string(), &told, &right), (line, message, help), "{to}");
+    }
+    let told = refusal(&SOUND.replacen("[material]", "[[material]]", 1));
+    let parts =
+        ["`material` takes a table", "a table that appears once has one pair of brackets: [material]"];
+    assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+}
+
+#[test]
+fn numbers_with_units_make_the_cases_of_plain_numbers() {
+    let study = |text: &str| {
+        let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+        Study::check(&source).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let more = |material: &str, sweep: &str| {
+        let text = SOUND.replace("porosity = 0.3", material);
+        format!("case_seconds = {}\n{text}{sweep}", if sweep.contains('"') { "\"2 min\"" } else { "120" })
+    };
+    let plain = study(&more(
+        "porosity = 0.3\nyoungs_modulus = 1e6",
+        "hydraulic_conductivity = [1e-9, 1e-4]\ntime_step = [{ seconds = 120.0 }]\nload = [5e4]\n",
+    ));
+    let with_units = study(&more(
+        "porosity = 0.3\nyoungs_modulus = \"1 MPa\"",
+        "hydraulic_conductivity = [\"1e-9 m/s\", 1e-4]\ntime_step = [{ seconds = \"2 min\" }]\n\
+         load = [\"50 kPa\"]\n",
+    ));
+    assert_eq!(with_units.planned, plain.planned);
+    assert_eq!((with_units.planned.len(), with_units.case_seconds), (4, 120.0));
+    let told = refusal(&SOUND.replace("porosity = 0.3", "youngs_modulus = \"5 m\""));
+    let parts = ["t.toml:4:18", "^^^^^", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""];
+    assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    let told = refusal(&SOUND.replace("[4, 8]", "[4, 8]\nload = [5.0, \"2 days\"]"));
+    assert!(told.contains("t.toml:8:14") && told.contains("not a unit"), "{told}");
+}
+
+#[test]
+fn several_mistakes_are_told_at_once() {
+    let text = SOUND.replace("porosity", "porosty").replace("[4, 8]", "[4.5, \"8\"]");
+    let told = refusal(&text);
+    assert_eq!(told.matches("error: ").count(), 3, "{told}");
+}
