@@ -143,10 +143,8 @@ pub(crate) fn runs_with(
         }
         run.cells = Some(*cells);
     }
-    if mapping.is_sample_open
-        && let Some(sample) = runs.iter().find_map(|run| run.sample)
-    {
-        mapping.sample = sample;
+    if let Some(run) = runs.iter().find(|run| run.sample.is_some()) {
+        mapping.sample = run.sample(&mapping);
     }
     Ok((mapping, runs))
 }

@@ -118,8 +118,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     let Some(run) = runs.into_iter().next() else {
         return Err(Unread::Unreadable("the files hold no state".to_owned()));
     };
-    let open = run.sample.filter(|_| mapping.is_sample_open);
-    let sample = open.unwrap_or(mapping.sample);
+    let sample = run.sample(mapping);
     if let Some(why) = unfit(case, sample, &run) {
         return Err(Unread::Unreadable(why));
     }

@@ -44,6 +44,15 @@ pub struct Run {
     pub without: Vec<Quantity>,
 }
 
+impl Run {
+    /// What the samples are: as the mapping declares, or as the files show where it leaves that open. What lies on cells is
+    /// at no node, whatever is declared.
+    pub fn sample(&self, mapping: &Mapping) -> Sample {
+        let is_wrong = mapping.sample == Sample::Nodes && self.sample == Some(Sample::Centres);
+        self.sample.filter(|_| mapping.is_sample_open || is_wrong).unwrap_or(mapping.sample)
+    }
+}
+
 /// The files of each argument; `*` and `?` stand for what a shell would put there.
 ///
 /// # Errors

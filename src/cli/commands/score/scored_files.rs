@@ -69,10 +69,8 @@ pub fn read(
             run.cells = Some(cells);
         }
     }
-    if mapping.is_sample_open
-        && let Some(sample) = runs.iter().find_map(|run| run.sample)
-    {
-        mapping.sample = sample;
+    if let Some(run) = runs.iter().find(|run| run.sample.is_some()) {
+        mapping.sample = run.sample(&mapping);
     }
     Ok((mapping, runs))
 }
