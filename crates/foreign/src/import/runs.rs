@@ -491,6 +491,25 @@ mod tests {
     use oedometer_formats::Array;
 
     #[test]
+    fn places_are_as_declared_or_as_found_and_what_lies_on_cells_is_at_no_node() {
+        use Sample::{Centres, Nodes, Points};
+        let convention = Mapping::convention(crate::import::mapping::Axes::Column).expect("a constant");
+        for (declared, is_sample_open, shown, told) in [
+            (Nodes, false, None, Nodes),
+            (Nodes, false, Some(Nodes), Nodes),
+            (Nodes, false, Some(Centres), Centres),
+            (Points, false, Some(Centres), Points),
+            (Centres, false, Some(Nodes), Centres),
+            (Points, true, Some(Nodes), Nodes),
+            (Points, true, None, Points),
+        ] {
+            let mapping = Mapping { sample: declared, is_sample_open, ..convention.clone() };
+            let run = Run { sample: shown, ..Run::default() };
+            assert_eq!(run.sample(&mapping), told, "{declared:?} {shown:?}");
+        }
+    }
+
+    #[test]
     fn patterns_find_files_in_the_order_of_their_numbers() {
         let folder = tempfile::TempDir::new().expect("a folder");
         for name in ["a_10.vtk", "a_9.vtk", "b_1.vtk", "a_100.vtk"] {
