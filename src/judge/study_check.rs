@@ -13,6 +13,9 @@ use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, va
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
 use crate::judge::explanation::place_of_attached;
+use crate::judge::findings::QuantityWithin;
+use crate::judge::findings::convergence::{ConvergenceTable, convergence_tables};
+use crate::judge::findings::within::within;
 use crate::judge::paths::StudyPaths;
 use crate::judge::proposals::proposals;
 use crate::judge::score::diagnosis::diagnosis;
@@ -70,6 +73,10 @@ pub struct StudyCheck {
     pub warnings: Vec<String>,
     /// What seems to be wrong with the results of attached solvers; it stands before all else.
     pub diagnoses: Vec<String>,
+    /// What it takes to come within bounds of the error.
+    pub within: Vec<QuantityWithin>,
+    /// Errors and rates over the meshes, of a study with a few methods.
+    pub convergence: Vec<ConvergenceTable>,
 }
 
 /// How a check came out.
@@ -96,6 +103,7 @@ impl StudyCheck {
         tier: Tier,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
+        let paths = StudyPaths::of(records);
         let absent = Absent::among(records);
         let inputs = CaseInputs::of(records.iter().map(|record| &record.case));
         let golden = golden.map(|golden| absent.without(golden).beside(&inputs));
@@ -120,7 +128,9 @@ impl StudyCheck {
             }),
             // Partial results of a failed run are not judged.
             inputs: changes,
-            proposals: proposals(study, &StudyPaths::of(records)),
+            proposals: proposals(study, &paths),
+            within: if study.is_race { Vec::new() } else { within(study, records) },
+            convergence: convergence_tables(study, &paths),
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
                 Status::Ok if !study.is_race => soundness::complaints(record),
@@ -197,6 +207,8 @@ impl StudyCheck {
             taken_over: Vec::new(),
             warnings: Vec::new(),
             diagnoses: Vec::new(),
+            within: Vec::new(),
+            convergence: Vec::new(),
         }
     }
 

@@ -22,6 +22,13 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     finite(value, |v| minus(format!("{v:.decimals$}")))
 }
 
+/// A time factor: as it was typed, or with four digits where it comes from a time in days.
+pub fn time_factor(value: f64) -> String {
+    let typed = oedometer_soil::wording::typed(value);
+    let digits = typed.chars().filter(char::is_ascii_digit).collect::<String>();
+    if digits.trim_start_matches('0').len() <= 6 { typed } else { number(value) }
+}
+
 /// A share as a percentage: `0.012` is `1.20 %`.
 pub fn percent(share: f64) -> String {
     finite(share * 100.0, |v| {
@@ -133,6 +140,12 @@ mod tests {
         assert_eq!(told_apart([1.0, 1.0 + f64::EPSILON]), ["1.0000000000000000e0", "1.0000000000000002e0"]);
         assert_eq!(told_apart([0.5, 0.5]), ["5.00e-1"; 2]);
         assert_eq!(told_apart([0.0, 1e-30]), ["0", "1.00e-30"]);
+    }
+
+    #[test]
+    fn a_time_factor_of_a_time_in_days_has_four_digits() {
+        let told = [0.05, 0.0002, 1e-12, 0.123456, 0.152_190_825_688_073_4, 2.0].map(time_factor);
+        assert_eq!(told, ["0.05", "0.0002", "0.000000000001", "0.123456", "0.1522", "2"]);
     }
 
     #[test]

@@ -6,10 +6,11 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 3] = [
+const TEMPLATES: [(&str, &str); 4] = [
     ("paper", include_str!("../../templates/paper.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
     ("race-limits", include_str!("../../templates/race-limits.md")),
+    ("within", include_str!("../../templates/within.md")),
 ];
 
 /// An environment that knows every template and the filters that all share.

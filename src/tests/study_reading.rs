@@ -51,7 +51,7 @@ porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write
 title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
 [4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is called `sets` now
 [4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is called `one_set_within` now
-[4, 8] ¦ [4, 8]⏎[[expect]]⏎order = { minus = 1 } ¦ 9 ¦ `value` is missing in order ¦ add `value = 0.1`
+[4, 8] ¦ [4, 8]⏎[[expect]]⏎time_factor = 0.1⏎order = { minus = 1 } ¦ 10 ¦ `value` is missing in order ¦ add `value = 0.1`
 [4, 8] ¦ [4, 8]⏎[[result]]⏎name = "a"⏎files = ["b"] ¦ 8 ¦ `cells` is missing in result ¦ add `cells = [10]`
 [4, 8] ¦ [4, 8]⏎[[solver]]⏎name = "a"⏎result = "b" ¦ 8 ¦ `command` is missing in solver ¦ add `command = ["..."]`
 "#;

@@ -4,14 +4,19 @@ use crate::campaign::case_run::{ThisProgram, all_cores};
 use crate::campaign::runner::LongestCase;
 use crate::case::Case;
 use crate::case::outcome::{Course, Solver};
+use crate::case::planned::PlannedCase;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
+use crate::judge::findings::convergence::convergence_tables;
+use crate::judge::findings::within::within;
+use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::measure::record::record_of;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
+use crate::render::checks::verdicts::text_of_answers;
 use crate::render::tables::measures;
 use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
@@ -42,9 +47,9 @@ pub struct Arguments {
     /// Time integrator [default: explicit; implicit if explicit would take minutes and no wave requires it]
     #[arg(long)]
     integrator: Option<String>,
-    /// Cells over the height
-    #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
-    cells: i64,
+    /// Cells over the height; several meshes, like 5,10,20, are solved one after the other and compared
+    #[arg(long, default_value = "10", value_delimiter = ',', allow_negative_numbers = true)]
+    cells: Vec<i64>,
     /// Points per cell and direction
     #[arg(long, default_value_t = 2, allow_negative_numbers = true)]
     points_per_cell: i64,
@@ -65,26 +70,59 @@ pub struct Arguments {
 /// Solves and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let study = study_of(arguments)?;
-    let [planned] = study.planned.as_slice() else {
-        return Err(Ended::with(Exit::NothingSelected, "the command line describes several cases or none"));
-    };
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     tell_of_long(&study);
-    let case = &planned.case;
     let course = Course { threads: all_cores(), seconds: study.case_seconds, ..Course::alone() };
-    let record = record_of(case, &study.references, ThisProgram { kernel }.solve(case, &course)?)?;
-    match arguments.format {
-        SolveFormat::Csv => {
-            let errors = record.errors.iter().map(|row| row.csv_fields().to_vec());
-            // Of a footing the load itself is asked for, beside its error.
-            let is_footing = record.case.scene == SceneKind::Footing;
-            let loads = record.measures.iter().filter(|_| is_footing).map(|row| row.csv_fields().to_vec());
-            print_data(&csv_of(ERROR_COLUMNS, errors.chain(loads))?)?;
-        }
-        SolveFormat::Json => print_data(&json_of(&SolveJson::of(&record))?)?,
-        SolveFormat::Table => print_data(&measures::table_of(&record)?)?,
+    let solved = |planned: &PlannedCase| {
+        record_of(&planned.case, &study.references, ThisProgram { kernel }.solve(&planned.case, &course)?)
+    };
+    let records: Vec<Record> = study.planned.iter().map(solved).collect::<Result<_, _>>()?;
+    match records.as_slice() {
+        [] => return Err(Ended::with(Exit::NothingSelected, "the command line describes no case")),
+        [record] => print_one(record, arguments.format)?,
+        _ => print_meshes(&study, &records, arguments.format)?,
     }
-    for complaint in soundness::complaints(&record).iter().filter(|_| record.status == Status::Ok) {
+    records.iter().try_fold(Exit::Pass, |_, record| end_of(record))
+}
+
+/// A run with its errors and checks.
+fn print_one(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
+    match format {
+        SolveFormat::Csv => print_data(&csv_of(ERROR_COLUMNS, csv_rows(record))?),
+        SolveFormat::Json => print_data(&json_of(&SolveJson::of(record))?),
+        SolveFormat::Table => print_data(&measures::table_of(record)?),
+    }
+}
+
+/// Runs on several meshes: errors and rates, and what it takes to come within a bound.
+fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyhow::Result<()> {
+    match format {
+        SolveFormat::Csv => {
+            let columns: Vec<&str> = std::iter::once("cells").chain(ERROR_COLUMNS).collect();
+            let rows = records.iter().flat_map(|record| {
+                let cells = record.case.cells.to_string();
+                csv_rows(record).map(move |row| std::iter::once(cells.clone()).chain(row).collect::<Vec<_>>())
+            });
+            print_data(&csv_of(columns, rows)?)
+        }
+        SolveFormat::Json => print_data(&json_of(&records.iter().map(SolveJson::of).collect::<Vec<_>>())?),
+        SolveFormat::Table => {
+            let tables = convergence_tables(study, &StudyPaths::of(records));
+            print_data(text_of_answers(&within(study, records), &tables)?.trim_start_matches('\n'))
+        }
+    }
+}
+
+/// The errors of a run; of a footing the load itself is asked for, beside its error.
+fn csv_rows(record: &Record) -> impl Iterator<Item = Vec<String>> + '_ {
+    let is_footing = record.case.scene == SceneKind::Footing;
+    let loads = record.measures.iter().filter(move |_| is_footing).map(|row| row.csv_fields().to_vec());
+    record.errors.iter().map(|row| row.csv_fields().to_vec()).chain(loads)
+}
+
+/// Warns of what cannot be right, and ends with a failure where the run did.
+fn end_of(record: &Record) -> anyhow::Result<Exit> {
+    for complaint in soundness::complaints(record).iter().filter(|_| record.status == Status::Ok) {
         say!("warning: {complaint}");
     }
     if let Status::Failed(failure) = &record.status {
@@ -125,7 +163,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     }
     let mut sweep = vec![
         format!("method = [{}]", toml_of(arguments.method.as_str())),
-        format!("cells = [{}]", arguments.cells),
+        format!("cells = {:?}", arguments.cells),
         format!("points_per_cell = [{}]", arguments.points_per_cell),
     ];
     if let Some(integrator) = &arguments.integrator {
@@ -143,7 +181,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
 const OWN_OPTIONS: [(&str, &str); 5] = [
     ("method", "--method NAME"),
     ("integrator", "--integrator NAME"),
-    ("cells", "--cells NUMBER"),
+    ("cells", "--cells NUMBER[,NUMBER...]"),
     ("points_per_cell", "--points-per-cell NUMBER"),
     ("time_step", "--time-step RULE"),
 ];

@@ -4,7 +4,9 @@
 //! `findings.json` is written beside the page of a study, and `oedometer schema findings` describes it. Lengths are in m,
 //! pressures in Pa, times in s; errors are relative.
 
+pub mod convergence;
 mod series;
+pub mod within;
 
 use crate::case::Tier;
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
@@ -18,6 +20,7 @@ use oedometer_mpm::run::results::outcome::FailureKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use series::SeriesFinding;
+pub use within::QuantityWithin;
 
 /// Version of the layout; it rises when a field goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -43,8 +46,8 @@ pub struct Findings {
     pub series: Vec<SeriesFinding>,
     /// The error of each method over what makes the soil hard to compress, where the study sweeps it.
     pub stiffness: Vec<StiffnessFinding>,
-    /// For each quantity and bound the cheapest run within it.
-    pub within: Vec<WithinFinding>,
+    /// For each quantity and bound the cheapest choice of method, mesh and step within it.
+    pub within: Vec<QuantityWithin>,
 }
 
 /// An expectation with its verdict.
@@ -143,26 +146,6 @@ pub struct StiffnessValue {
     pub failed: Option<String>,
 }
 
-/// The cheapest run with an error within a bound at all outputs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct WithinFinding {
-    /// Quantity, places, norm, reference; its time factor is that of the largest error, its value that error.
-    pub error: ErrorRow,
-    /// The bound.
-    pub bound: f64,
-    /// Hash of the case.
-    pub case: String,
-    /// Point updates of the run, by which it is the cheapest; of equal ones that with the fewest cells.
-    pub point_updates: u64,
-    /// Largest step, s.
-    pub largest_step: f64,
-    /// Time of the output with the largest error, s.
-    pub seconds: f64,
-}
-
-/// Bounds for which the cheapest run is looked for.
-const BOUNDS: [f64; 3] = [0.05, 0.01, 0.001];
-
 impl Findings {
     /// Everything about a study, from its records and verdicts.
     ///
@@ -189,7 +172,7 @@ impl Findings {
             runs: records.iter().map(RunFinding::new).collect(),
             series: series::all_series(study, paths),
             stiffness,
-            within: within(records),
+            within: within::within(study, records),
         })
     }
 }
@@ -259,49 +242,6 @@ fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
     sweep.rows.iter().map(of_row).collect()
 }
 
-/// For each kind of error and bound the run with the fewest point updates whose largest error over its outputs is within.
-fn within(records: &[Record]) -> Vec<WithinFinding> {
-    let is_main = |row: &&ErrorRow| matches!(row.norm, crate::case::Norm::L2 | crate::case::Norm::Relative);
-    let sound = || records.iter().filter(|record| record.status.failure().is_none());
-    let rows = sound().flat_map(|record| {
-        record.errors.iter().filter(is_main).filter(|row| row.value.is_finite()).map(move |row| (record, row))
-    });
-    let kinds = crate::judge::paths::grouped(rows, |(_, row)| {
-        (row.quantity, row.sample, row.norm, row.reference.clone())
-    });
-    let mut found = Vec::new();
-    for (_, rows) in kinds {
-        let runs = crate::judge::paths::grouped(rows, |(record, _)| record.hash.clone());
-        let largest = |(_, rows): (String, Vec<(&Record, &ErrorRow)>)| {
-            // Every output must have the error.
-            let record = rows[0].0;
-            let is_whole = rows.len() == record.case.time_factors.len();
-            let largest = rows
-                .into_iter()
-                .map(|(_, row)| row)
-                .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
-            is_whole.then(|| (record.clone(), largest.clone()))
-        };
-        let runs: Vec<(Record, ErrorRow)> = runs.into_iter().filter_map(largest).collect();
-        for bound in BOUNDS {
-            let cost = |record: &Record| (record.counters.point_updates, record.case.cells);
-            let cheapest = runs
-                .iter()
-                .filter(|(_, row)| row.value.abs() <= bound)
-                .min_by_key(|(record, _)| cost(record));
-            found.extend(cheapest.map(|(record, row)| WithinFinding {
-                error: row.clone(),
-                bound,
-                case: record.hash.clone(),
-                point_updates: record.counters.point_updates,
-                largest_step: record.step_sizes.largest,
-                seconds: row.time_factor * record.case.seconds_per_time_factor(),
-            }));
-        }
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -322,9 +262,9 @@ mod tests {
         assert_eq!((found.runs.len(), found.left_out), (4, 0));
         let failure = found.runs[0].failure.as_ref().expect("it failed");
         assert_eq!((failure.kind.name(), failure.step), ("unstable", 3));
-        assert!(found.within.iter().all(|one| one.case != records[0].hash), "{:?}", found.within);
-        let bound = |bound: f64| found.within.iter().filter(|one| one.bound == bound).count();
-        assert!(bound(0.05) >= bound(0.01) && bound(0.05) > 0);
+        let choices =
+            || found.within.iter().flat_map(|one| &one.bounds).filter_map(|one| one.choice.as_ref());
+        assert!(choices().all(|choice| choice.case != records[0].hash) && choices().count() > 0);
         let two = |one: &&SeriesFinding| one.levels.len() == 2 && one.class == Class::NotEvaluable;
         assert!(found.series.iter().filter(two).count() >= 8, "two levels have no class but errors");
         let json = serde_json::to_string(&found).expect("plain data");

@@ -223,7 +223,7 @@ fn cost(refined: &Refined<'_>) -> String {
     let mut within: Vec<(f64, String)> = within.collect();
     within.sort_by(|a, b| a.0.total_cmp(&b.0));
     let ways = within.into_iter().map(|(_, way)| way).collect::<Vec<_>>().join(", ");
-    let (share, time) = (number::number(100.0 * WITHIN), refined.time_factor);
+    let (share, time) = (number::number(100.0 * WITHIN), number::time_factor(refined.time_factor));
     match ways.as_str() {
         "" => format!(" No run has an error of the pressure below {share} % at T_v = {time}."),
         _ => format!(
@@ -269,7 +269,7 @@ fn table(all: &[&Refined<'_>]) -> Table {
     });
     let at = all.iter().map(|refined| {
         let solution = labels::solution(refined.reference);
-        format!("{}: T_v = {}, against {solution}", refined.strain, refined.time_factor)
+        format!("{}: T_v = {}, against {solution}", refined.strain, number::time_factor(refined.time_factor))
     });
     let rows: Vec<Vec<Cell>> = rows.take(MOST_METHODS).collect();
     let norms = format!(

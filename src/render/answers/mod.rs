@@ -16,12 +16,13 @@ mod time_step;
 pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
+use crate::judge::findings::within::within as reached;
 use crate::judge::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
 use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::labels::distinct;
-use crate::render::report::{StudyResults, setting};
+use crate::render::report::{StudyResults, setting, within};
 use crate::render::table::{Mood, Table};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::count_of;
@@ -181,7 +182,10 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
         _ => String::new(),
     };
     let setting = match results {
-        [one] => setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n"),
+        [one] => {
+            let setting = setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n");
+            setting + &within::sentences(&reached(one.study, one.records)) + "\n\n"
+        }
         _ => String::new(),
     };
     let made = format!(

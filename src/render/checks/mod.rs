@@ -286,6 +286,8 @@ mod tests {
             taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
             diagnoses: Vec::new(),
+            within: Vec::new(),
+            convergence: Vec::new(),
         }
     }
 

@@ -2,18 +2,27 @@
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::{CaseChange, Change, Difference};
+use crate::judge::findings::QuantityWithin;
+use crate::judge::findings::convergence::ConvergenceTable;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::checks::{TITLES, failures_of};
+use crate::render::marked_text::paragraphs;
+use crate::render::report::within::sentences;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
+use crate::render::tables::convergence::table_of;
 use crate::render::tables::golden_changes::{self, judgement_of, summary};
 use crate::render::tables::uncertainties;
 use crate::render::{RenderError, number};
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
-/// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own.
-pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
+/// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own. A study that is checked
+/// alone shows its errors over the meshes, too.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result<String, RenderError> {
     let mut text = String::new();
     if let Some(why) = why_it_fails(check) {
         text += &wrapped(&format!("✗ {}: {why}", check.study), "", "  ");
@@ -28,6 +37,9 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     text += &text_of_inputs(check);
     text += &text_of_failures(check);
     text += &text_of_changes(check);
+    if is_alone {
+        text += &text_of_answers(&check.within, &check.convergence)?;
+    }
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
     }
@@ -38,7 +50,30 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>) -> String {
     if let Some(command) = next_command(check, file) {
         let _ = writeln!(text, "\nnext: {command}");
     }
-    text
+    Ok(text)
+}
+
+/// Errors over the meshes with their rates, and what it takes to come within a bound.
+///
+/// # Errors
+/// If a table cannot be written.
+pub fn text_of_answers(
+    within: &[QuantityWithin],
+    convergence: &[ConvergenceTable],
+) -> Result<String, RenderError> {
+    let mut text = String::new();
+    for table in convergence {
+        let _ = write!(text, "\n{}", table_of(table).to_text()?);
+    }
+    let sentences = sentences(within);
+    for paragraph in paragraphs(&sentences) {
+        let plain = paragraph.replace(['*', '`'], "");
+        let _ = write!(text, "\n{}", wrapped(&plain, "", "  "));
+    }
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// The checks of several studies as Markdown. `file_of` knows the file of a study.

@@ -31,7 +31,7 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         let DrawnPaths { paths, note } = drawn(&along_mesh);
         let labels = labels::path_labels(&paths);
         let (words, end) = (labels::measure(&measure), labels.subtitle_end());
-        chart.subtitle = Some(format!("{words}, T_v = {}{end}", measure.time_factor));
+        chart.subtitle = Some(format!("{words}, T_v = {}{end}", number::time_factor(measure.time_factor)));
         for (path, label) in paths.iter().zip(labels.each) {
             let point =
                 |record: &&Record| Some((record.counters.point_updates as f64, error(record, &measure)?));
@@ -82,8 +82,11 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
             ),
         ])
     });
-    let title =
-        format!("Cost, with the error of the {} at T_v = {}", labels::measure(measure), measure.time_factor);
+    let title = format!(
+        "Cost, with the error of the {} at T_v = {}",
+        labels::measure(measure),
+        number::time_factor(measure.time_factor)
+    );
     let header =
         "case | > error | > steps | > point updates | > wall, median | spread | > a point and step [ns]";
     Table::of(title, columns(header), rows)

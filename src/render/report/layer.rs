@@ -94,10 +94,11 @@ fn figure(
     } else {
         String::new()
     };
+    let time = number::time_factor(time_factor);
     let caption = match oscillation {
-        None => format!("Theory at T_v = {time_factor}. All these fields share one scale."),
+        None => format!("Theory at T_v = {time}. All these fields share one scale."),
         Some(index) => {
-            format!("{name} at T_v = {time_factor}: oscillation index {}.{beyond}", number::fixed(index, 2))
+            format!("{name} at T_v = {time}: oscillation index {}.{beyond}", number::fixed(index, 2))
         }
     };
     results.figure(&format!("field-{name}"), chart, caption)
@@ -166,7 +167,7 @@ fn sweep_figure(
             .with_labelled_ticks(sweep.values.iter().map(|ratio| (1.0 - 2.0 * ratio, ratio.to_string()))),
     };
     let (subject, word) = subject(showing);
-    let title = format!("{subject}, T_v = {time_factor}");
+    let title = format!("{subject}, T_v = {}", number::time_factor(time_factor));
     let label = match showing {
         Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
         Showing::Oscillation => "total variation over the exact one's (–)",
@@ -208,7 +209,8 @@ fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Ta
     });
     let note = (showing == Showing::Oscillation)
         .then(|| "Total variation over the exact one's, minus one.".to_owned());
-    Table::of(format!("{}, T_v = {time_factor}", subject(showing).0), columns, rows).notes(note)
+    Table::of(format!("{}, T_v = {}", subject(showing).0, number::time_factor(time_factor)), columns, rows)
+        .notes(note)
 }
 
 /// Top of the figure of loads, over the exact collapse load.

@@ -10,6 +10,7 @@ pub mod race;
 pub(crate) mod refinement;
 pub(crate) mod setting;
 pub(crate) mod theory_lines;
+pub(crate) mod within;
 
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;

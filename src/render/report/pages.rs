@@ -2,6 +2,7 @@
 
 use crate::case::Task;
 use crate::case::quantity::Norm;
+use crate::judge::findings;
 use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
@@ -9,7 +10,7 @@ use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::labels::grouped;
 use crate::render::report::{
-    StudyResults, checks, cost, layer, maps, race, refinement, setting, theory_lines,
+    StudyResults, checks, cost, layer, maps, race, refinement, setting, theory_lines, within,
 };
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::{runs, uncertainties};
@@ -165,6 +166,8 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let study = results.study;
     let mut blocks = unmet(results);
     let told = diagnoses(study, results.records);
+    // The race has a page and sentences of its own.
+    let reached = if study.is_race { Vec::new() } else { findings::within::within(study, results.records) };
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
@@ -199,9 +202,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
     let page = Page {
         title: study.title.clone(),
         lead: format!(
-            "{}\n\n{}[All studies](index.html). Run it again: `{}`.",
+            "{}\n\n{}{}[All studies](index.html). Run it again: `{}`.",
             study.summary,
             setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
+            within::sentences(&reached) + "\n\n",
             results.run_command()
         ),
         callout: Some(verdict(results, &told)),

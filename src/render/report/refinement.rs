@@ -145,7 +145,11 @@ fn figure(
         ChartAxis::log10(labels::error_axis(&measure)),
     );
     let labels = labels::path_labels(all).with_places(&summaries, sample);
-    chart.subtitle = Some(format!("T_v = {time_factor}, against {reference}{}", labels.subtitle_end()));
+    chart.subtitle = Some(format!(
+        "T_v = {}, against {reference}{}",
+        number::time_factor(time_factor),
+        labels.subtitle_end()
+    ));
     chart.size = Size::PANEL;
     for (summary, label) in summaries.iter().zip(&labels.each) {
         let points: Vec<(f64, f64)> =
@@ -289,7 +293,8 @@ fn orders_table(
     if !labels.shared.is_empty() {
         notes.insert(0, format!("all with {}", labels.shared));
     }
-    Table::of(format!("T_v = {time_factor}, against {reference}"), columns, rows).notes(notes)
+    Table::of(format!("T_v = {}, against {reference}", number::time_factor(time_factor)), columns, rows)
+        .notes(notes)
 }
 
 fn orders_row(

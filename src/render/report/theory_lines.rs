@@ -8,6 +8,7 @@ use crate::measure::theory::{
 };
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
+use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::StudyResults;
 use crate::render::report::labels::{QUOTED_CELLS, first_measure, grouped};
@@ -82,7 +83,7 @@ fn isochrone_name(results: &StudyResults<'_>, theory: &TheoryIsochrone) -> Strin
     if results.study.scene.is_large_strain() {
         format!("T_v = {:.3}, U = {:.0} %", theory.time_factor, 100.0 * theory.degree)
     } else {
-        format!("T_v = {}", theory.time_factor)
+        format!("T_v = {}", number::time_factor(theory.time_factor))
     }
 }
 

@@ -7,13 +7,15 @@ use crate::case::planned::Tier;
 use crate::cli::commands::check::refuse_unfinished;
 use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{json_of, say};
+use crate::cli::output::{json_of, print_data, say};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::study_files::tell_of_passed_over;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
+use crate::judge::findings::convergence::convergence_tables;
+use crate::judge::findings::within::within;
 use crate::judge::race::RaceFindings;
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
@@ -21,6 +23,7 @@ use crate::record::provenance::Machine;
 use crate::record::store::RecordStore;
 use crate::record::whole_file::write_rebuildable;
 use crate::render::answers::{Answers, Making, answer_page, matrix_page};
+use crate::render::checks::verdicts::text_of_answers;
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::pages::{index_page, study_page};
@@ -101,6 +104,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let changes =
         changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
     let written = write_files(&arguments.out, &results, changes.as_deref(), making, start)?;
+    if let [one] = results.as_slice() {
+        let tables = convergence_tables(one.study, &one.paths);
+        print_data(text_of_answers(&within(one.study, one.records), &tables)?.trim_start_matches('\n'))?;
+    }
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
     let mut tally = Tally::default();

@@ -1,0 +1,122 @@
+//! The errors of a method over its meshes with the rate from each to the next, as a solver prints them at the end of a run.
+
+use crate::case::{Quantity, Sample};
+use crate::judge::paths::{Path, StudyPaths, first_measure};
+use crate::study::check::Study;
+use crate::study::expectation::Axis;
+use oedometer_convergence::Class;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most methods, with their points and steps, that are printed.
+const MOST_TABLES: usize = 8;
+
+/// The errors of one method, its points and its steps over its meshes, at the last output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ConvergenceTable {
+    /// What the runs share.
+    pub runs: String,
+    /// Reference.
+    pub reference: String,
+    /// Time factor.
+    pub time_factor: f64,
+    /// Time, s.
+    pub seconds: f64,
+    /// Cells over the height, from coarse to fine.
+    pub cells: Vec<usize>,
+    /// Each quantity that has an error on every mesh.
+    pub columns: Vec<ConvergenceColumn>,
+}
+
+/// A quantity over the meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ConvergenceColumn {
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Places.
+    pub sample: Sample,
+    /// Errors, one per mesh.
+    pub errors: Vec<f64>,
+    /// Orders between neighbours, one fewer.
+    pub rates: Vec<Option<f64>>,
+    /// Class of the series.
+    pub class: Class,
+}
+
+/// The tables of a study: one per path over the mesh with two levels or more; empty where a study has more than a person reads.
+pub fn convergence_tables(study: &Study, paths: &StudyPaths<'_>) -> Vec<ConvergenceTable> {
+    let Some(reference) = study.references.first() else { return Vec::new() };
+    let paths = paths.along(Axis::Cells);
+    if study.is_race || paths.len() > MOST_TABLES {
+        return Vec::new();
+    }
+    paths.iter().filter_map(|path| table_of(path, reference.name())).collect()
+}
+
+fn table_of(path: &Path<'_>, reference: &str) -> Option<ConvergenceTable> {
+    let first = &path.records.first().filter(|_| path.records.len() > 1)?;
+    let time_factor = *first.case.time_factors.last()?;
+    let main = first.main_sample();
+    let asked = [
+        (Quantity::Pressure, main),
+        (Quantity::EffectiveStress, main),
+        (Quantity::Displacement, Sample::Nodes),
+        (Quantity::Settlement, Sample::Surface),
+        (Quantity::LoadFactor, Sample::Surface),
+    ];
+    let columns = asked.into_iter().filter_map(|(quantity, sample)| {
+        let measure = path.own_measure(&first_measure(quantity, sample, reference, time_factor));
+        let summary = path.summary(&measure);
+        let errors: Option<Vec<f64>> = summary.series.levels().iter().map(|level| level.error).collect();
+        let errors = errors.filter(|errors| errors.len() == path.records.len())?;
+        let rates = summary.pairs.iter().map(|rate| rate.as_ref().ok().copied()).collect();
+        let class = summary.classification.class;
+        Some(ConvergenceColumn { quantity, sample: measure.sample, errors, rates, class })
+    });
+    let columns: Vec<ConvergenceColumn> = columns.collect();
+    (!columns.is_empty()).then(|| ConvergenceTable {
+        runs: path.label(),
+        reference: reference.to_owned(),
+        time_factor,
+        seconds: time_factor * first.case.seconds_per_time_factor(),
+        cells: path.records.iter().map(|record| record.case.cells).collect(),
+        columns,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::solved;
+
+    #[test]
+    fn every_mesh_has_its_error_and_the_rate_to_it() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\n[[sweep]]\nmethod = ['VP']\nintegrator = ['implicit']\n\
+                    cells = [4]\n";
+        let (study, mut records) = solved("s", text);
+        for record in &mut records {
+            for row in &mut record.errors {
+                let order = if row.quantity == Quantity::Pressure { 2 } else { 1 };
+                row.value = -(row.time_factor / record.case.cells as f64).powi(order);
+            }
+        }
+        let tables = convergence_tables(&study, &StudyPaths::of(&records));
+        assert_eq!(tables.len(), 2, "one mesh is no series");
+        let table = &tables[0];
+        assert_eq!((table.cells.as_slice(), table.time_factor), (&[4, 8, 16][..], 0.1));
+        let quantities: Vec<_> = table.columns.iter().map(|column| column.quantity).collect();
+        let four =
+            [Quantity::Pressure, Quantity::EffectiveStress, Quantity::Displacement, Quantity::Settlement];
+        assert_eq!(quantities, four);
+        assert!((table.columns[0].errors[1] - 1.5625e-4).abs() < 1e-15);
+        for (column, order) in table.columns.iter().zip([2.0, 1.0, 1.0, 1.0]) {
+            assert_eq!(column.rates.len(), 2);
+            assert!(
+                column.rates.iter().all(|rate| rate.is_some_and(|rate| (rate - order).abs() < 1e-12)),
+                "{column:?}"
+            );
+        }
+        assert_eq!(table.columns[1].class, Class::Asymptotic, "the method promises first order");
+    }
+}

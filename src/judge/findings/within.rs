@@ -1,0 +1,211 @@
+//! What reaches a bound: for each quantity the cheapest choice of method, mesh and step whose error stays within it at every
+//! output, in every problem of the study.
+
+use crate::case::{Case, Quantity, Sample};
+use crate::judge::paths::{first_norm, grouped};
+use crate::record::calibration::cost_of;
+use crate::record::{ErrorRow, Record};
+use crate::study::check::Study;
+use oedometer_mpm::run::TimeStepRule;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Bounds for which the cheapest choice is looked for.
+const BOUNDS: [f64; 2] = [0.01, 0.001];
+
+/// The quantities that a user asks for, in their order; a displacement only where nothing settles.
+const ASKED: [Quantity; 5] = [
+    Quantity::Settlement,
+    Quantity::LoadFactor,
+    Quantity::Displacement,
+    Quantity::Pressure,
+    Quantity::EffectiveStress,
+];
+
+/// A quantity and what it takes to come within bounds of its error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct QuantityWithin {
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Places at which it is compared.
+    pub sample: Sample,
+    /// Reference.
+    pub reference: String,
+    /// The bounds, the largest first.
+    pub bounds: Vec<BoundWithin>,
+    /// The choice with the least error.
+    pub best: WithinFinding,
+}
+
+/// A bound and the cheapest choice within it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BoundWithin {
+    /// Relative error.
+    pub bound: f64,
+    /// `None` where no choice stays within it.
+    pub choice: Option<WithinFinding>,
+}
+
+/// Method, mesh and step, with the largest error over all outputs and problems.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WithinFinding {
+    /// Method or attached solver.
+    pub method: String,
+    /// Integrator.
+    pub integrator: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Points in a cell.
+    pub points_per_cell: usize,
+    /// Largest step of the run with the largest error, s; 0 where an attached solver does not tell it.
+    pub largest_step: f64,
+    /// Largest error.
+    pub error: f64,
+    /// Time factor of the output that has it.
+    pub time_factor: f64,
+    /// Time of that output, s.
+    pub seconds: f64,
+    /// Counted work of the run with the largest error, s.
+    pub cost: f64,
+    /// Hash of that run's case.
+    pub case: String,
+}
+
+/// What it takes in a study, for each quantity that has errors against the scene's own reference.
+pub fn within(study: &Study, records: &[Record]) -> Vec<QuantityWithin> {
+    let Some(reference) = study.references.first() else { return Vec::new() };
+    let mut found: Vec<QuantityWithin> = Vec::new();
+    for quantity in ASKED {
+        if quantity == Quantity::Displacement && !found.is_empty() {
+            continue;
+        }
+        found.extend(quantity_within(records, quantity, reference.name()));
+    }
+    found
+}
+
+fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> Option<QuantityWithin> {
+    let rows = |record: &Record| {
+        let is_of = |row: &&ErrorRow| {
+            row.quantity == quantity && row.norm == first_norm(quantity) && row.reference == reference
+        };
+        record.errors.iter().filter(is_of).cloned().collect::<Vec<_>>()
+    };
+    let main = records.first()?.main_sample();
+    let samples: Vec<Sample> = records.iter().flat_map(rows).map(|row| row.sample).collect();
+    let sample = samples.iter().copied().find(|sample| *sample == main).or(samples.first().copied())?;
+    let problems = grouped(records, |record| problem(&record.case)).len();
+    let choices = grouped(records, |record| choice(&record.case));
+    let choices: Vec<WithinFinding> = choices
+        .into_iter()
+        .filter(|(_, runs)| runs.len() >= problems)
+        .filter_map(|(_, runs)| {
+            let largest = runs.into_iter().map(|record| {
+                let rows: Vec<ErrorRow> =
+                    rows(record).into_iter().filter(|row| row.sample == sample).collect();
+                let is_whole = record.status.failure().is_none()
+                    && rows.len() == record.case.time_factors.len()
+                    && rows.iter().all(|row| row.value.is_finite());
+                let largest = rows.into_iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+                Some((record, largest.filter(|_| is_whole)?))
+            });
+            let all: Vec<(&Record, ErrorRow)> = largest.collect::<Option<_>>()?;
+            let (record, row) = all.into_iter().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()))?;
+            Some(WithinFinding::new(record, &row))
+        })
+        .collect();
+    let best = choices.iter().min_by(|a, b| a.error.total_cmp(&b.error))?.clone();
+    let bounds = BOUNDS.map(|bound| {
+        let fits = choices.iter().filter(|choice| choice.error <= bound);
+        let cheapest = fits.min_by(|a, b| a.cost.total_cmp(&b.cost).then(a.cells.cmp(&b.cells)));
+        BoundWithin { bound, choice: cheapest.cloned() }
+    });
+    Some(QuantityWithin { quantity, sample, reference: reference.to_owned(), bounds: bounds.to_vec(), best })
+}
+
+impl WithinFinding {
+    fn new(record: &Record, row: &ErrorRow) -> Self {
+        let case = &record.case;
+        Self {
+            method: case.method.to_string(),
+            integrator: case.integrator.name().to_owned(),
+            cells: case.cells,
+            points_per_cell: case.points_per_cell,
+            largest_step: record.step_sizes.largest,
+            error: row.value.abs(),
+            time_factor: row.time_factor,
+            seconds: row.time_factor * case.seconds_per_time_factor(),
+            // What another program costs is not counted: its coarsest mesh stands first.
+            cost: if case.is_attached() { 0.0 } else { cost_of(record) },
+            case: record.hash.clone(),
+        }
+    }
+}
+
+/// A number for what is solved, whoever solves it and on whatever mesh.
+fn problem(case: &Case) -> u64 {
+    case.number_with(|case| {
+        let seed = Case::seed(case.task, case.scene);
+        (case.method, case.integrator, case.formulation) = (seed.method, seed.integrator, seed.formulation);
+        (case.settings, case.cells, case.points_per_cell) = (seed.settings, seed.cells, seed.points_per_cell);
+        (case.time_step, case.time_factors) = (seed.time_step, seed.time_factors);
+    })
+}
+
+/// A number for who solves it, on which mesh and by which steps, whatever the problem.
+fn choice(case: &Case) -> u64 {
+    case.number_with(|case| {
+        let seed = Case::seed(case.task, case.scene);
+        (case.column, case.material, case.time_factors) = (seed.column, seed.material, seed.time_factors);
+        if let TimeStepRule::Seconds(_) = case.time_step {
+            case.time_step = seed.time_step;
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, solved};
+
+    /// Errors are laid down; the cost is counted, so that 4 cells are cheaper than 8 and those than 16.
+    #[test]
+    fn the_cheapest_choice_is_within_the_bound_at_every_output_and_in_every_soil() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.5]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\nyoungs_modulus = [1e6, 1e7]\n";
+        let (study, mut records) = solved("s", text);
+        let mut lay = |errors: [f64; 3], odd: Option<(usize, f64)>| {
+            for (place, record) in records.iter_mut().enumerate() {
+                let level = [4, 8, 16].iter().position(|cells| *cells == record.case.cells).expect("a mesh");
+                for row in &mut record.errors {
+                    let is_odd = odd.filter(|(at, _)| *at == place && row.time_factor == 0.5);
+                    row.value = is_odd.map_or(errors[level], |(_, value)| value);
+                }
+            }
+            within(&study, &records)
+        };
+        let cells = |found: &[QuantityWithin]| {
+            let of = |bound: &BoundWithin| bound.choice.as_ref().map(|choice| choice.cells);
+            [of(&found[0].bounds[0]), of(&found[0].bounds[1])]
+        };
+        let found = lay([0.05, -0.008, 0.0009], None);
+        let asked: Vec<_> = found.iter().map(|one| (one.quantity, one.sample)).collect();
+        assert_eq!(
+            asked,
+            [
+                (Quantity::Settlement, Sample::Surface),
+                (Quantity::Pressure, Sample::Points),
+                (Quantity::EffectiveStress, Sample::Points)
+            ]
+        );
+        assert_eq!(cells(&found), [Some(8), Some(16)]);
+        assert_eq!(found[0].best.cells, 16);
+        // One soil, one time: beyond the bound in one of them is beyond it.
+        let of_eight = [2, 3].map(|place| cells(&lay([0.05, 0.008, 0.0009], Some((place, 0.02)))));
+        assert!(of_eight.contains(&[Some(16), Some(16)]), "{of_eight:?}");
+        let found = lay([0.05, 0.02, 0.011], None);
+        assert_eq!((cells(&found), found[0].best.error), ([None, None], 0.011));
+        records.iter_mut().for_each(|record| record.status = failed_at(1));
+        assert_eq!(within(&study, &records), [], "nothing is said of runs that failed");
+    }
+}

@@ -1,0 +1,76 @@
+//! What it takes to come within a bound, in sentences from their template.
+
+use crate::case::Quantity;
+use crate::judge::findings::QuantityWithin;
+use crate::render::report::labels;
+use crate::render::{number, templates};
+use minijinja::value::Serde;
+use oedometer_soil::wording::duration;
+use serde::Serialize;
+
+/// What the template is filled with.
+#[derive(Serialize)]
+struct Quantities<'a> {
+    quantities: &'a [QuantityWithin],
+}
+
+/// Lightly marked paragraphs, one per quantity.
+pub fn sentences(quantities: &[QuantityWithin]) -> String {
+    let mut environment = templates::environment();
+    environment.add_filter("quantity", |quantity: Serde<Quantity>| {
+        labels::capitalised(labels::quantity(quantity.0))
+    });
+    environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
+    environment.add_filter("duration", duration);
+    environment.add_filter("error", number::percent);
+    environment.add_filter("time_factor", number::time_factor);
+    templates::render(&environment, "within", &Quantities { quantities })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Sample;
+    use crate::judge::findings::within::{BoundWithin, WithinFinding};
+
+    #[test]
+    fn a_quantity_is_told_with_method_mesh_step_and_time_or_with_the_least_error() {
+        let choice = |error: f64, largest_step: f64| WithinFinding {
+            method: "GC-SRI-patch".to_owned(),
+            integrator: "implicit".to_owned(),
+            cells: 10,
+            points_per_cell: 2,
+            largest_step,
+            error,
+            time_factor: 0.152_190_825_688_073_4,
+            seconds: 180.0 * 86400.0,
+            cost: 1e-3,
+            case: "abc".to_owned(),
+        };
+        let told = |bounds: [Option<f64>; 2], step: f64| {
+            let bounds = [0.01, 0.001].into_iter().zip(bounds);
+            let bounds = bounds
+                .map(|(bound, error)| BoundWithin { bound, choice: error.map(|error| choice(error, step)) });
+            let quantity = QuantityWithin {
+                quantity: Quantity::Settlement,
+                sample: Sample::Surface,
+                reference: "terzaghi".to_owned(),
+                bounds: bounds.collect(),
+                best: choice(0.02, step),
+            };
+            sentences(&[quantity]).trim().to_owned()
+        };
+        let within = "**Settlement** within 1 % at every output: `GC-SRI-patch`, implicit, 10 cells";
+        let largest = "(largest 0.40 %, at T_v = 0.1522, 180 days)";
+        assert_eq!(
+            told([Some(0.004), None], 864_000.0),
+            format!("{within}, steps up to 10 days {largest}; within 0.1 %: no run.")
+        );
+        assert_eq!(told([Some(0.004), None], 0.0), format!("{within} {largest}; within 0.1 %: no run."));
+        assert_eq!(
+            told([None, None], 0.0),
+            "**Settlement** within 1 %: no run; within 0.1 %: no run. The least error is 2.00 %, of `GC-SRI-patch`, implicit, \
+             on 10 cells."
+        );
+    }
+}
