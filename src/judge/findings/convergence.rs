@@ -2,6 +2,7 @@
 
 use crate::case::{Quantity, Sample};
 use crate::judge::paths::{Path, StudyPaths, first_measure};
+use crate::record::Record;
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::Class;
@@ -75,13 +76,18 @@ fn table_of(path: &Path<'_>, reference: &str) -> Option<ConvergenceTable> {
     });
     let columns: Vec<ConvergenceColumn> = columns.collect();
     (!columns.is_empty()).then(|| ConvergenceTable {
-        runs: path.label(),
+        runs: label_without_cells(first),
         reference: reference.to_owned(),
         time_factor,
         seconds: time_factor * first.case.seconds_per_time_factor(),
         cells: path.records.iter().map(|record| record.case.cells).collect(),
         columns,
     })
+}
+
+/// What the runs of a path over the mesh share: method, integrator, points, steps and all else that is not by default.
+fn label_without_cells(record: &Record) -> String {
+    record.case.label().replace(&format!(" cells={}", record.case.cells), "")
 }
 
 #[cfg(test)]
@@ -104,6 +110,7 @@ mod tests {
         let tables = convergence_tables(&study, &StudyPaths::of(&records));
         assert_eq!(tables.len(), 2, "one mesh is no series");
         let table = &tables[0];
+        assert_eq!(table.runs, "MPM implicit points=2 growth=0.05");
         assert_eq!((table.cells.as_slice(), table.time_factor), (&[4, 8, 16][..], 0.1));
         let quantities: Vec<_> = table.columns.iter().map(|column| column.quantity).collect();
         let four =

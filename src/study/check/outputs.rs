@@ -4,7 +4,7 @@ use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
 use crate::study::expectation::Selection;
 use crate::study::reading::{Placed, Typed};
-use oedometer_soil::wording::typed;
+use oedometer_soil::wording::{duration, typed};
 use std::ops::{Range, RangeInclusive};
 
 /// Least time factor beside the undrained start: of shorter times steps no longer advance the sum.
@@ -117,9 +117,15 @@ impl Checker<'_> {
                 let is_possible = TIME_FACTORS.contains(&factor);
                 if !is_possible {
                     let unit = case.seconds_per_time_factor();
-                    let message = format!("{} s is T_v = {factor:.3e}", typed(*time));
+                    let message = format!("{} ({} s) is T_v = {factor:.3e}", duration(*time), typed(*time));
+                    let whose = if case.column.soils.is_empty() {
+                        "for this soil and height"
+                    } else {
+                        "for the soil of [material] over the whole height: give the soil of a typical layer there, too"
+                    };
                     let help = format!(
-                        "T_v = c_v t/H² lies between 0 and 100, and T_v = 1 is {unit:.3e} s for this soil and height"
+                        "T_v = c_v t/H² lies between 0 and 100, and T_v = 1 is {} ({unit:.3e} s) {whose}",
+                        duration(unit)
                     );
                     self.complain(place.clone(), message, help);
                 }
