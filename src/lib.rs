@@ -80,39 +80,55 @@
 //!
 //! # A study from Rust
 //!
-//! What `oedometer check` does with a file, on a text: run its cases, judge what it expects.
+//! What `oedometer check` does with a file, on the text of README's study: run its cases, judge what it expects. Where a solver of
+//! your own in Rust takes the place of a method, [`run_study_with`] runs it.
 //!
 //! ```
 //! use oedometer::{GoldenError, RunOptions, Study, StudyCheck, StudySource, Tier, run_study};
 //!
 //! let text = r#"
-//! title = "How fast the error falls with the mesh"
+//! title = "my-study: how fast the error falls with the mesh"
 //! scene = "terzaghi"
-//! output = { time_factors = [0.1] }
+//!
+//! [column]
+//! height = 1.0
+//! load = 1.0
+//!
+//! [material]
+//! youngs_modulus = 1.0e6
+//! poissons_ratio = 0.3
+//! porosity = 0.3
+//! hydraulic_conductivity = 1.0e-4
+//! water_bulk_modulus = 2.2e9
+//!
+//! [output]
+//! time_factors = [0.05, 0.1, 0.2, 0.5, 1.0]
 //!
 //! [[sweep]]
-//! method = ["GC-SRI-patch"]
+//! method = ["MPM", "GC-SRI-patch"]
 //! integrator = ["implicit"]
-//! cells = [10, 20, 40]
-//! time_step = [{ growth = 0.005 }]
+//! cells = [5, 10, 20, 40]
+//! points_per_cell = [2]
+//! time_step = [{ growth = 0.01 }]
 //!
 //! [[expect]]
 //! method = "GC-SRI-patch"
-//! integrator = "implicit"
 //! quantity = "pressure"
 //! time_factor = 0.1
 //! order = { value = 2.0, minus = 0.2, plus = 0.2 }
+//! at = { cells = 10, below = 1.0e-2 }
 //! "#;
-//! let source = StudySource { name: "first.toml".to_owned(), text: text.to_owned() };
-//! let study = Study::check(&source).expect("a sound study");
+//! let source = StudySource { name: "my-study.toml".to_owned(), text: text.to_owned() };
+//! let study = Study::check(&source)?;
 //! let report = run_study(&study, &RunOptions::whole(Tier::Full, 1), None, &|_| {});
 //!
-//! let golden = Err(GoldenError::Missing("golden/first.csv".into()));
+//! let golden = Err(GoldenError::Missing("golden/my-study.csv".into()));
 //! let check = StudyCheck::new(&study, &report.records, Tier::Full, golden);
 //! let verdict = &check.judgements[0].verdict;
 //! assert!(verdict.pass, "{}", verdict.reason);
 //! let order = verdict.classification.order.expect("a converging series has an order");
 //! assert!((order - 2.0).abs() < 0.2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 // Tests and benches may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

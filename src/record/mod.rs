@@ -156,7 +156,7 @@ pub struct ErrorRow {
 pub const ERROR_COLUMNS: [&str; 6] = ["time_factor", "quantity", "sample", "norm", "reference", "value"];
 
 impl ErrorRow {
-    /// Its fields in the order of [`ERROR_COLUMNS`].
+    /// Its fields in the order of `ERROR_COLUMNS`.
     pub fn csv_fields(&self) -> [String; 6] {
         [
             self.time_factor.to_string(),

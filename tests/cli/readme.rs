@@ -602,3 +602,19 @@ fn every_page_of_the_manual_is_in_the_book_once() {
         assert_eq!(count, usize::from(page != "SUMMARY.md"), "{page}");
     }
 }
+
+/// The study from Rust on the front page of the library is README's, without its comments.
+#[test]
+fn the_study_from_rust_is_that_of_the_readme() {
+    let plain = |lines: &mut dyn Iterator<Item = &str>| -> Vec<String> {
+        let lines = lines.map(|line| line.split('#').next().unwrap_or_default().trim_end().to_owned());
+        lines.filter(|line| !line.is_empty()).collect()
+    };
+    let (_, study) = blocks(&readme(), "toml").remove(0);
+    let page = text_of("src/lib.rs");
+    let shown = page.lines().skip_while(|line| !line.ends_with("r#\"")).skip(1);
+    let shown = shown
+        .take_while(|line| !line.starts_with("//! \"#"))
+        .map(|line| line.trim_start_matches("//!").trim_start());
+    assert_eq!(plain(&mut { shown }), plain(&mut study.iter().map(String::as_str)));
+}

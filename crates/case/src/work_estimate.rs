@@ -36,7 +36,7 @@ pub const READING_SECONDS: f64 = 4e-3;
 /// Time assumed for a case whose work is not counted, s: it cannot be estimated.
 const UNKNOWN_SECONDS: f64 = 5.0;
 
-/// Time that a case will take on one core of the machine that [`step_cost`](crate::step_cost) names, s.
+/// Time that a case will take on one core of the machine that [`seconds_per_step`] was measured on, s.
 pub fn estimated_seconds(case: &Case) -> f64 {
     if !case.counts_work() {
         return UNKNOWN_SECONDS;

@@ -220,7 +220,7 @@ pub struct SettlementSeries {
     /// CSV file, relative to the results or to the current folder; the result itself by default.
     #[serde(default)]
     pub file: String,
-    /// Column of the time, in the unit of [units]; `t` by default.
+    /// Column of the time, in the unit of `[units]`; `t` by default.
     #[serde(default = "time_column")]
     pub t: String,
     /// Column of the settlement, in the unit of displacements; `s` by default.
