@@ -112,7 +112,8 @@ impl<'a> CaseRunner<'a> {
         // end it with all that it has started. Where the system refuses, they do what they did.
         let _ = stop::heed_signals();
         let observe = |done: u64, expected: u64| (course.observe)(done, expected) && !stop::is_over();
-        other.solve(case, &Course { place: place.as_deref(), observe: &observe, ..course })
+        let outcome = other.solve(case, &Course { place: place.as_deref(), observe: &observe, ..course })?;
+        Ok(outcome.held_to(case))
     }
 }
 
@@ -122,7 +123,7 @@ impl<'a> CaseRunner<'a> {
 /// ```
 /// use oedometer::exact::exact_error::ExactError;
 /// use oedometer::{Case, Course, Outcome, Sample, Snapshot, Solver, Study, StudySource, Tier, run_study_with};
-/// use oedometer::{CheckEnd, GoldenFile, StudyCheck};
+/// use oedometer::{CheckEnd, GoldenFile, Norm, Quantity, StudyCheck};
 ///
 /// /// A solver that leaves the load on the water, whatever the time.
 /// struct Undrained;
@@ -149,6 +150,8 @@ impl<'a> CaseRunner<'a> {
 /// "#;
 /// let study = Study::check(&StudySource { name: "mine.toml".to_owned(), text: text.to_owned() }).expect("sound");
 /// let records = run_study_with(&study, "mine", &Undrained)?;
+/// let error = records[0].error(Quantity::Pressure, Sample::Points, Norm::L2, "terzaghi", 0.1).expect("measured");
+/// assert!(error.value > 0.1);
 /// let check = StudyCheck::new(&study, &records, Tier::Full, Ok(GoldenFile::of("mine", &records, "as found")));
 /// assert_eq!(check.end(), CheckEnd::Failed, "water leaves at the top");
 /// # Ok::<(), ExactError>(())

@@ -10,6 +10,7 @@ pub mod outcome;
 pub mod planned;
 pub mod quantity;
 pub mod solver;
+pub mod whole_states;
 pub mod work_estimate;
 
 pub use keys::{KEYS, Key, Kind, Value};

@@ -108,8 +108,15 @@ pub struct Inside {
 }
 
 impl Outcome {
-    /// States at the outputs of a case, from a solver that says no more.
-    pub fn of_states(snapshots: Vec<Snapshot>, sample: Sample) -> Self {
+    /// States at the outputs of a case, from a solver that says no more. Places without volumes stand for equal ones.
+    pub fn of_states(mut snapshots: Vec<Snapshot>, sample: Sample) -> Self {
+        for state in &mut snapshots {
+            for samples in [&mut state.points, &mut state.centres, &mut state.nodes] {
+                if samples.volume.is_empty() {
+                    samples.volume = vec![1.0; samples.initial_height.len()];
+                }
+            }
+        }
         Self { sample: Some(sample), snapshots, ..Self::of_end(Status::Ok) }
     }
 

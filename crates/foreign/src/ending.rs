@@ -18,6 +18,7 @@ use crate::process::{Ending, Finished, last_lines};
 use crate::reading::Unread;
 use crate::solver::ExternalSolver;
 use crate::started_processes::named;
+use oedometer_case::whole_states::SAME_TIME;
 use oedometer_case::{Case, Sample};
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 use oedometer_soil::wording::{short, typed};
@@ -229,8 +230,6 @@ fn last_words(run: &Finished) -> String {
     }
 }
 
-/// How far, relative, a state may lie from the output that it stands for.
-const SAME_TIME: f64 = 1e-3;
 /// Distance between neighbouring samples, over the cell size, from which on a cell between them has none.
 const GAP: f64 = 1.5;
 /// Distance of the last samples from base and surface, over the cell size, from which on the last cell has none.

@@ -1,0 +1,148 @@
+//! Whether the states that a solver left can be compared: one at each output, with lists that belong to each other.
+
+use crate::Case;
+use crate::outcome::{Outcome, Status};
+use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use oedometer_soil::wording::{count_of, short, typed};
+
+/// How far, relative, a state may lie from the output that it stands for.
+pub const SAME_TIME: f64 = 1e-3;
+
+impl Outcome {
+    /// The outcome, or its failure where its states are not whole: nothing of them is compared then.
+    #[must_use]
+    pub fn held_to(self, case: &Case) -> Self {
+        let is_open = self.status == Status::Ok && self.inside.is_none();
+        match is_open.then(|| lack_of(case, &self.snapshots)).flatten() {
+            Some(why) => Self {
+                status: Status::Failed(Failure::of_attached(FailureKind::Incomplete, why)),
+                snapshots: Vec::new(),
+                ..self
+            },
+            None => self,
+        }
+    }
+}
+
+/// What states lack of a case, as a sentence.
+fn lack_of(case: &Case, states: &[Snapshot]) -> Option<String> {
+    let outputs = &case.time_factors;
+    if states.len() != outputs.len() {
+        let left = count_of(states.len(), "state", "states");
+        return Some(format!("the solver left {left} for {}", count_of(outputs.len(), "output", "outputs")));
+    }
+    outputs.iter().zip(states).find_map(|(output, state)| {
+        let time_factor = state.time / case.seconds_per_time_factor();
+        let is_near = (time_factor - output).abs() <= SAME_TIME * output;
+        let other = || Some(format!("the state is that of T_v = {}", short(time_factor)));
+        let lack = if is_near { lack_of_state(state) } else { other() };
+        lack.map(|lack| format!("at T_v = {}, {lack}", typed(*output)))
+    })
+}
+
+fn lack_of_state(state: &Snapshot) -> Option<String> {
+    let kinds = [("points", &state.points), ("centres", &state.centres), ("nodes", &state.nodes)];
+    let is_bare = |samples: &Samples| samples.initial_height.is_empty();
+    if kinds.iter().all(|(_, samples)| is_bare(samples)) && state.settlement.is_nan() {
+        return Some("there is no sample and no settlement".to_owned());
+    }
+    kinds.into_iter().find_map(|(kind, samples)| {
+        lack_of_samples(samples)
+            .map(|lack| format!("{lack} for {}", count_of(places_in(samples), kind, kind)))
+    })
+}
+
+fn places_in(samples: &Samples) -> usize {
+    samples.initial_height.len()
+}
+
+/// A list that is no field of its places: of another length, or with a value that is no number.
+fn lack_of_samples(samples: &Samples) -> Option<String> {
+    let places = places_in(samples);
+    let plane = samples.plane.as_ref();
+    let of_displacement = samples.displacement_height.as_ref().map_or(places, Vec::len);
+    let lists = [
+        ("heights", &samples.initial_height[..], places, true),
+        ("volumes", &samples.volume, places, true),
+        ("pressures", &samples.pressure, places, false),
+        ("effective stresses", &samples.effective_stress, places, false),
+        ("displacements", &samples.displacement, of_displacement, false),
+        ("distances", plane.map_or(&[], |plane| &plane.initial_distance), places, plane.is_some()),
+        (
+            "horizontal displacements",
+            plane.map_or(&[], |plane| &plane.horizontal_displacement),
+            plane.and_then(|plane| plane.displacement_distance.as_ref()).map_or(places, Vec::len),
+            false,
+        ),
+    ];
+    lists.into_iter().find_map(|(name, list, wanted, is_needed)| {
+        if list.len() != wanted && (is_needed || !list.is_empty()) {
+            return Some(format!("the list of {name} has {}", count_of(list.len(), "number", "numbers")));
+        }
+        let wrong = list.iter().find(|value| !value.is_finite());
+        wrong.map(|value| format!("the list of {name} has {value}"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Sample, Task};
+    use oedometer_mpm::scene::SceneKind;
+
+    /// What is wrong with states.
+    type Change<'a> = &'a dyn Fn(&mut Vec<Snapshot>);
+
+    #[test]
+    fn states_that_are_not_whole_are_a_failure_by_what_they_lack() {
+        let case =
+            Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
+        let mut whole = Snapshot { time: 0.1 * case.seconds_per_time_factor(), ..Snapshot::default() };
+        whole.settlement = f64::NAN;
+        whole.points.initial_height = vec![0.25, 0.75];
+        whole.points.pressure = vec![0.5, 0.2];
+        let told = |change: &dyn Fn(&mut Vec<Snapshot>)| {
+            let mut states = vec![whole.clone()];
+            change(&mut states);
+            let outcome = Outcome::of_states(states, Sample::Points).held_to(&case);
+            assert_eq!(outcome.snapshots.is_empty(), outcome.status != Status::Ok);
+            outcome.status.failure().map(|failure| failure.reason.clone())
+        };
+        let rows: [(Change<'_>, &str); 9] = [
+            (&|states| states.clear(), "the solver left 0 states for 1 output"),
+            (&|states| states.extend_from_within(..), "the solver left 2 states for 1 output"),
+            (&|states| states[0].time *= 1.002, "at T_v = 0.1, the state is that of T_v = 0.1002"),
+            (&|states| states[0].time = f64::NAN, "at T_v = 0.1, the state is that of T_v = NaN"),
+            (
+                &|states| states[0].points = Samples::default(),
+                "at T_v = 0.1, there is no sample and no settlement",
+            ),
+            (
+                &|states| states[0].points.pressure.truncate(1),
+                "at T_v = 0.1, the list of pressures has 1 number for 2 points",
+            ),
+            (
+                &|states| states[0].points.volume = vec![1.0],
+                "at T_v = 0.1, the list of volumes has 1 number for 2 points",
+            ),
+            (
+                &|states| states[0].points.pressure[1] = f64::NAN,
+                "at T_v = 0.1, the list of pressures has NaN for 2 points",
+            ),
+            (
+                &|states| states[0].nodes.displacement = vec![0.0],
+                "at T_v = 0.1, the list of displacements has 1 number for 0 nodes",
+            ),
+        ];
+        for (change, wanted) in rows {
+            assert_eq!(told(change).as_deref(), Some(wanted));
+        }
+        assert_eq!(told(&|_| ()), None);
+        assert_eq!(told(&|states| states[0].time *= 1.0009), None, "near enough");
+        let curve = |states: &mut Vec<Snapshot>| {
+            (states[0].points, states[0].settlement) = (Samples::default(), 1e-6);
+        };
+        assert_eq!(told(&curve), None, "a settlement alone");
+    }
+}
