@@ -5,20 +5,23 @@ use crate::record::Record;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 use oedometer_soil::wording::duration;
 
 /// A quantity of a case: its symbol, unit and value in SI.
 type Stated = (&'static str, &'static str, fn(&Case) -> f64);
+/// The same of a soil.
+type StatedOfSoil = (&'static str, &'static str, fn(&Material) -> f64);
 
-/// What is stated of every scene, in the order in which it is read.
-const STATED: [Stated; 7] = [
-    ("H", "m", |case| case.column.height),
-    ("q", "Pa", |case| case.column.load),
-    ("E", "Pa", |case| case.material.youngs_modulus),
-    ("ν", "", |case| case.material.poissons_ratio),
-    ("n", "", |case| case.material.porosity),
-    ("k", "m/s", |case| case.material.hydraulic_conductivity),
-    ("K_w", "Pa", |case| case.material.water_bulk_modulus),
+/// What is stated of every body, in the order in which it is read.
+const STATED: [Stated; 2] = [("H", "m", |case| case.column.height), ("q", "Pa", |case| case.column.load)];
+/// What is stated of its soil.
+const OF_SOIL: [StatedOfSoil; 5] = [
+    ("E", "Pa", |soil| soil.youngs_modulus),
+    ("ν", "", |soil| soil.poissons_ratio),
+    ("n", "", |soil| soil.porosity),
+    ("k", "m/s", |soil| soil.hydraulic_conductivity),
+    ("K_w", "Pa", |soil| soil.water_bulk_modulus),
 ];
 
 /// The inputs of all cases in one sentence, ranges where they differ, and what they come to; `None` where nothing was run.
@@ -28,7 +31,33 @@ pub fn sentence(records: &[Record]) -> Option<String> {
         let text = range(&cases, value, |value| with_unit(value, unit))?;
         Some(format!("*{symbol}* = {text}"))
     });
-    let inputs = stated.collect::<Vec<_>>().join(", ");
+    // What all layers share is the body's, and what differs is said layer by layer.
+    let differs = |value: fn(&Material) -> f64| {
+        let mut soils = cases.iter().map(|case| case.soils());
+        soils.any(|soils| soils.iter().any(|(_, soil)| value(soil) != value(&soils[0].1)))
+    };
+    let of_soil =
+        OF_SOIL.iter().filter(|(_, _, value)| !differs(*value)).filter_map(|(symbol, unit, value)| {
+            let text = range(&cases, |case| value(&case.soils()[0].1), |value| with_unit(value, unit))?;
+            Some(format!("*{symbol}* = {text}"))
+        });
+    let mut inputs = stated.chain(of_soil).collect::<Vec<_>>().join(", ");
+    let layered = OF_SOIL.iter().filter(|(_, _, value)| differs(*value)).collect::<Vec<_>>();
+    if let Some(case) = cases.first().filter(|_| !layered.is_empty()) {
+        let layer = |(thickness, soil): &(f64, Material)| {
+            let own = layered
+                .iter()
+                .map(|(symbol, unit, value)| format!("*{symbol}* = {}", with_unit(value(soil), unit)));
+            format!("{} with {}", with_unit(*thickness, "m"), own.collect::<Vec<_>>().join(", "))
+        };
+        let layers = case.soils().iter().map(layer).collect::<Vec<_>>().join("; ");
+        let varied = if cases.iter().any(|other| other.column.soils != case.column.soils) {
+            ", first case"
+        } else {
+            ""
+        };
+        inputs += &format!("; layers from the base up{varied}: {layers}");
+    }
     let settlement =
         range(&cases, |case| 1e3 * final_settlement(case).unwrap_or(0.0), |value| with_unit(value, "mm"))
             .map(|text| format!("the surface settles by {text} in the end"));
@@ -111,6 +140,19 @@ mod tests {
             "{several}"
         );
         assert_eq!(sentence(&[]), None);
+    }
+
+    #[test]
+    fn layers_are_told_by_what_differs_among_them() {
+        let records = records_of(
+            "title = 't'\nscene = 'layered'\noutput.time_factors = [0.1]\ncolumn.height = 3.0\n[[column.soils]]\nthickness = 1.0\n\
+             youngs_modulus = 2e6\n[[column.soils]]\nthickness = 2.0\nyoungs_modulus = 5e6\n[[sweep]]\nmethod = ['GIMP']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        );
+        let told = sentence(&records).expect("a setting");
+        let layers =
+            "*K_w* = 2.2 GPa; layers from the base up: 1 m with *E* = 2 MPa; 2 m with *E* = 5 MPa: T_v = 1";
+        assert!(told.contains(layers) && told.matches("*E*").count() == 2, "{told}");
     }
 
     #[test]
