@@ -1,6 +1,6 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
-use crate::judge::explanation::place_of_attached;
+use crate::judge::explanation::place_in_kept;
 use crate::judge::verdict::{BELOW, Check, IN, Judgement, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
 use crate::measure::statistics::{larger, largest};
@@ -179,7 +179,7 @@ fn error_found(range: &ErrorRange, record: &Record) -> Check {
     let what = format!("{quantity} {} {sample} at T_v = {time}", measure.norm);
     let found = value_found(&what, Some(row.value.abs()), range.bounds);
     let mut check = Check { name: "error".to_owned(), ..found };
-    if let Some(place) = place_of_attached(record, row).filter(|_| !check.pass) {
+    if let Some(place) = place_in_kept(record, row).filter(|_| !check.pass) {
         check.reason = format!("{}; {place}", check.reason);
     }
     check

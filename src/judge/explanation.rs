@@ -199,7 +199,7 @@ pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, E
 }
 
 /// Where most of an error lies, as a sentence, in a record that `explain` cannot make again.
-pub fn place_of_attached(record: &Record, row: &ErrorRow) -> Option<String> {
+pub fn place_in_kept(record: &Record, row: &ErrorRow) -> Option<String> {
     if record.can_be_made_again() {
         return None;
     }
@@ -285,15 +285,15 @@ mod tests {
         let is_meant =
             |row: &&ErrorRow| (row.quantity, row.sample) == (Quantity::Pressure, crate::case::Sample::Points);
         let row = rows.iter().find(is_meant).expect("an error");
-        assert_eq!(place_of_attached(&record, row), None, "a run of this program can be made again");
+        assert_eq!(place_in_kept(&record, row), None, "a run of this program can be made again");
         record = record.made_outside(crate::record::AttachedRun::default());
         let told = format!(
             "most of the error of pressure at T_v = 0.1 lies at ζ = 0.3125 (height 1.375 m): {computed} for {exact}, 90 % of \
              the squared error"
         );
-        assert_eq!(place_of_attached(&record, row), Some(told));
+        assert_eq!(place_in_kept(&record, row), Some(told));
         let settlement = rows.iter().find(|row| row.quantity == Quantity::Settlement).expect("an error");
-        assert_eq!(place_of_attached(&record, settlement), None, "a settlement has a single place");
-        assert_eq!(place_of_attached(&record, &ErrorRow { time_factor: 0.2, ..row.clone() }), None);
+        assert_eq!(place_in_kept(&record, settlement), None, "a settlement has a single place");
+        assert_eq!(place_in_kept(&record, &ErrorRow { time_factor: 0.2, ..row.clone() }), None);
     }
 }

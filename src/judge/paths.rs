@@ -1,7 +1,7 @@
 //! Groups the records of a study into paths along an axis, with their series of errors.
 
 use crate::case::{Norm, Quantity, Sample, step_label};
-use crate::judge::explanation::place_of_attached;
+use crate::judge::explanation::place_in_kept;
 use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
@@ -204,7 +204,7 @@ impl<'a> Path<'a> {
     /// Where most of the error lies at the level that a demand bounds, where that cannot be made again.
     pub(crate) fn place(&self, demand: &SeriesDemand, measure: &Measure) -> Option<String> {
         let record = self.bounded_level(demand);
-        place_of_attached(record, measure.error(record)?)
+        place_in_kept(record, measure.error(record)?)
     }
 
     /// What the runs of the path share, in words, the method first.

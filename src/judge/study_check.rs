@@ -1,5 +1,5 @@
 //! A study compared with its expectations, its golden values, and what must hold for any record; and what seems to be wrong
-//! with the results of its attached solvers, as `score` tells it of files.
+//! with the results of other programs, as `score` tells it of files.
 
 use crate::campaign::runner::RunError;
 use crate::campaign::taken_over::TakenOver;
@@ -12,7 +12,7 @@ use crate::golden::inputs::{CaseInputs, InputChange};
 use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, values_of};
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
-use crate::judge::explanation::place_of_attached;
+use crate::judge::explanation::place_in_kept;
 use crate::judge::findings::QuantityWithin;
 use crate::judge::findings::convergence::{ConvergenceTable, convergence_tables};
 use crate::judge::findings::within::within;
@@ -67,11 +67,11 @@ pub struct StudyCheck {
     pub expected: usize,
     /// Cases that were not begun, because nobody allowed their programs to start.
     pub held_back: usize,
-    /// Results of attached solvers that were not made for this check.
+    /// Results that were not made for this check.
     pub taken_over: Vec<TakenOver>,
     /// Warnings, which fail nothing.
     pub warnings: Vec<String>,
-    /// What seems to be wrong with the results of attached solvers; it stands before all else.
+    /// What seems to be wrong with the results of other programs; it stands before all else.
     pub diagnoses: Vec<String>,
     /// What it takes to come within bounds of the error.
     pub within: Vec<QuantityWithin>,
@@ -145,15 +145,14 @@ impl StudyCheck {
         }
     }
 
-    /// Adds the places with the largest errors of attached solvers.
+    /// Adds the places with the largest errors of records that cannot be made again.
     fn with_places(mut self, records: &[Record]) -> Self {
         for group in &mut self.groups {
             let (label, measure) = parts(&group.worst.name);
-            let record =
-                records.iter().find(|record| record.attached.is_some() && record.case.label() == label);
+            let record = records.iter().find(|record| record.case.label() == label);
             group.place = record.and_then(|record| {
                 let row = record.errors.iter().find(|row| measure_name(row) == measure)?;
-                place_of_attached(record, row)
+                place_in_kept(record, row)
             });
         }
         self
@@ -167,7 +166,7 @@ impl StudyCheck {
         self
     }
 
-    /// Adds the results of attached solvers that were taken over.
+    /// Adds the results that were taken over.
     #[must_use]
     pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
         self.taken_over = taken_over.to_vec();
@@ -257,10 +256,10 @@ fn slowness(golden: &GoldenFile, seconds: f64) -> Option<String> {
     })
 }
 
-/// Sentences on the attached solvers among records; of each with the same soil and body the finest mesh is looked at.
+/// Sentences on the other programs among records; of each with the same soil and body the finest mesh is looked at.
 pub fn diagnoses(study: &Study, records: &[Record]) -> Vec<String> {
     let mut finest: BTreeMap<String, &Record> = BTreeMap::new();
-    for record in records.iter().filter(|record| record.attached.is_some()) {
+    for record in records.iter().filter(|record| record.outside_run().is_some()) {
         let rest = Case { cells: 0, ..record.case.clone() };
         let known = finest.entry(rest.label()).or_insert(record);
         if known.case.cells < record.case.cells {
@@ -286,7 +285,7 @@ fn of_record(study: &Study, record: &Record) -> Vec<String> {
     diagnosis(&parameters, reference.of_soil(&case.material), &states, &mapping).unwrap_or_default()
 }
 
-/// A snapshot of an attached solver as the state that it was made of.
+/// A snapshot as the state that it was made of.
 fn state_of(snapshot: &Snapshot, record: &Record) -> SampledState {
     let Some(samples) = record.main_sample().of(snapshot) else { return SampledState::default() };
     let plane = samples.plane.clone().unwrap_or_default();

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Working folders of attached programs, within that of a study's results.
+/// Working folders of other programs, within that of a study's results.
 const CASES: &str = "cases";
 /// File of a record in a folder of its case, in the layout of version 0.2.
 const RECORD_OF_OLD: &str = "record.json";
@@ -61,7 +61,7 @@ impl RecordStore {
         &self.folder
     }
 
-    /// Folder in which the attached program of a case works, by the hash of the case.
+    /// Folder in which the program of a case works, by the hash of the case.
     pub fn folder_of(&self, hash: &str) -> PathBuf {
         self.folder.join(CASES).join(hash)
     }

@@ -145,11 +145,6 @@ impl Case {
         self.method.own().is_some()
     }
 
-    /// Whether an external solver solves it.
-    pub fn is_attached(&self) -> bool {
-        !self.has_integrator()
-    }
-
     /// Whether its work is counted, and can be estimated.
     pub fn counts_work(&self) -> bool {
         self.has_integrator()

@@ -146,7 +146,7 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
 }
 
 /// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. What this build solved already is taken
-/// from a folder of results, and what attached solvers did where the study declares by what they are known.
+/// from a folder of results, and what other programs did where the study declares by what they are known.
 fn run_all(
     studies: &[Study],
     jobs: usize,

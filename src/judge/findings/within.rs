@@ -49,7 +49,7 @@ pub struct BoundWithin {
 /// Method, mesh and step, with the largest error over all outputs and problems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WithinFinding {
-    /// Method or attached solver.
+    /// Method, or name of another solver.
     pub method: String,
     /// Integrator.
     pub integrator: String,
@@ -57,7 +57,7 @@ pub struct WithinFinding {
     pub cells: usize,
     /// Points in a cell.
     pub points_per_cell: usize,
-    /// Largest step of the run with the largest error, s; 0 where an attached solver does not tell it.
+    /// Largest step of the run with the largest error, s; 0 where another solver does not tell it.
     pub largest_step: f64,
     /// Largest error.
     pub error: f64,
@@ -136,7 +136,7 @@ impl WithinFinding {
             time_factor: row.time_factor,
             seconds: row.time_factor * case.seconds_per_time_factor(),
             // What another program costs is not counted: its coarsest mesh stands first.
-            cost: if case.is_attached() { 0.0 } else { cost_of(record) },
+            cost: if case.counts_work() { cost_of(record) } else { 0.0 },
             case: record.hash.clone(),
         }
     }

@@ -20,8 +20,7 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let mut blocks = Vec::new();
     let Some(measure) = measure_of(results) else { return blocks };
     let mut along_mesh = results.paths.along(Axis::Cells).to_vec();
-    // The work of an attached solver is not counted.
-    along_mesh.retain(|path| path.records.iter().all(|record| !record.case.is_attached()));
+    along_mesh.retain(|path| path.records.iter().all(|record| record.case.counts_work()));
     if along_mesh.len() > 1 {
         let mut chart = Chart::new(
             "Error against work",
@@ -75,11 +74,7 @@ fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
             labels::counted(record, record.counters.point_updates),
             Cell::Seconds(wall.median),
             format!("{:.3} … {:.3} s, {} runs", wall.minimum, wall.maximum, wall.count).into(),
-            Cell::of(
-                updates.map(|updates| 1e9 * wall.median / updates),
-                Cell::Number,
-                "of an attached solver",
-            ),
+            Cell::of(updates.map(|updates| 1e9 * wall.median / updates), Cell::Number, labels::NOT_COUNTED),
         ])
     });
     let title = format!(

@@ -38,7 +38,7 @@ pub struct StudyResults<'a> {
     pub unsound: Vec<(String, String)>,
     /// The file of the study, as it was given.
     pub file: String,
-    /// Results of attached solvers that were there before, as sentences.
+    /// Results that were there before, as sentences.
     pub taken_over: Vec<String>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> StudyResults<'a> {
         }
     }
 
-    /// Adds the results of attached solvers that were not made for this page.
+    /// Adds the results that were not made for this page.
     #[must_use]
     pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
         self.taken_over = TakenOver::sentences(taken_over);

@@ -178,12 +178,12 @@ fn figure(
     Some(results.figure(&name, chart, caption))
 }
 
-/// The paths of this program, and those of attached solvers that have an error of the kind.
+/// The paths of this program, and those of others that have an error of the kind.
 fn measured<'a>(all: &[Path<'a>], measure: &Measure) -> Vec<Path<'a>> {
     let has = |path: &&Path<'_>| {
-        let is_attached = path.records.iter().any(|record| record.case.is_attached());
         let measure = path.own_measure(measure);
-        !is_attached || path.series(&measure).levels().iter().any(|level| level.error.is_some())
+        path.records.iter().all(|record| record.case.has_integrator())
+            || path.series(&measure).levels().iter().any(|level| level.error.is_some())
     };
     all.iter().filter(has).cloned().collect()
 }

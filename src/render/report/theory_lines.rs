@@ -123,7 +123,7 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
     }
     let caption = format!(
         "Markers: {} of {} on {} cells. Lines: theory{}.",
-        if record.case.is_attached() { record.main_sample().name() } else { "material points" },
+        if record.case.has_integrator() { "material points" } else { record.main_sample().name() },
         record.case.method,
         record.case.cells,
         if results.study.scene.has_waves() { ", in the colour of its time" } else { "" }
