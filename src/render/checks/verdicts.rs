@@ -70,9 +70,6 @@ pub fn text_of_answers(
         let plain = paragraph.replace(['*', '`'], "");
         let _ = write!(text, "\n{}", wrapped(&plain, "", "  "));
     }
-    if !text.is_empty() {
-        text.push('\n');
-    }
     Ok(text)
 }
 
