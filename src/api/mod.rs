@@ -127,7 +127,9 @@ pub(crate) fn runs_with(
         }
         mapping.time.step = Some(step);
     }
-    let each = if meaning.cells.is_empty() || !is_tables { given.len().max(1) } else { 1 };
+    // With as many numbers of cells as files each file is a mesh.
+    let is_by_mesh = !meaning.cells.is_empty() && (is_tables || meaning.cells.len() == given.len());
+    let each = if is_by_mesh { 1 } else { given.len().max(1) };
     let runs: Result<Vec<Vec<Run>>, _> =
         given.chunks(each).map(|some| runs_of(some, &mapping, body)).collect();
     let mut runs = runs?.concat();
@@ -259,6 +261,17 @@ mod tests {
             let (found, _) =
                 runs_with(std::slice::from_ref(file), &meaning, body, Axes::Column).expect("a state");
             assert_eq!(found.declared_by, wanted);
+        }
+        // Names that differ by numbers alone are steps of one mesh, unless each has its cells.
+        let later = file.with_file_name(
+            file.file_name().and_then(|name| name.to_str()).expect("a name").replace('4', "8"),
+        );
+        std::fs::copy(&file, &later).expect("a copy");
+        for (cells, count) in [(vec![], 1), (vec![5, 10], 2)] {
+            let meaning = Meaning { time_step: Some(0.5), cells, ..Meaning::default() };
+            let found =
+                runs_with(&[file.clone(), later.clone()], &meaning, body, Axes::Column).expect("states");
+            assert_eq!(found.1.len(), count, "{:?}", meaning.cells);
         }
         // What the files show of their places goes over what a preset takes for granted, and not over a mapping's word.
         let foreign = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign/kratos-vtk");

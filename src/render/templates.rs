@@ -1,6 +1,6 @@
 //! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
 
-use crate::render::number;
+use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
 use serde::Serialize;
@@ -14,7 +14,7 @@ const TEMPLATES: [(&str, &str); 4] = [
 ];
 
 /// An environment that knows every template and the filters that all share.
-pub(crate) fn environment() -> Environment<'static> {
+pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_filter("percent", |share: f64| number::rounded_percent(share));
@@ -23,13 +23,30 @@ pub(crate) fn environment() -> Environment<'static> {
         format!("{sign}{:.1} %", 100.0 * share.abs())
     });
     for (name, text) in TEMPLATES {
-        environment.add_template(name, text).expect("a test renders every template");
+        environment.add_template(name, text)?;
     }
-    environment
+    Ok(environment)
 }
 
 /// A template filled with findings: lightly marked paragraphs.
-pub(crate) fn render(environment: &Environment<'_>, name: &str, findings: &impl Serialize) -> String {
-    let template = environment.get_template(name).expect("a name of this program");
-    template.render(Value::from(Serde(findings))).expect("a test renders every branch")
+pub(crate) fn render(
+    environment: &Environment<'_>,
+    name: &str,
+    findings: &impl Serialize,
+) -> Result<String, RenderError> {
+    Ok(environment.get_template(name)?.render(Value::from(Serde(findings)))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_template_without_its_finding_is_an_error() {
+        let environment = environment().expect("templates of this program");
+        for name in TEMPLATES.map(|(name, _)| name).into_iter().chain(["no such template"]) {
+            let told = render(&environment, name, &()).expect_err(name).to_string();
+            assert!(told.starts_with("a sentence of the page cannot be written: "), "{told}");
+        }
+    }
 }

@@ -19,12 +19,12 @@ use crate::history::comparison::StudyComparison;
 use crate::judge::findings::within::within as reached;
 use crate::judge::race::RaceFindings;
 use crate::record::provenance::{Origins, Provenance};
+use crate::render::RenderError;
 use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::labels::distinct;
 use crate::render::report::{StudyResults, setting, within};
 use crate::render::table::{Mood, Table};
-use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
@@ -160,11 +160,11 @@ fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
 /// The answer page.
 ///
 /// # Errors
-/// When a reference refuses a case.
-pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
+/// When a reference refuses a case, or a template its findings.
+pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
     let results = answers.results;
     let all = [
-        race::answer(answers.race),
+        race::answer(answers.race)?,
         cost::answer(results),
         paper::answer(results)?,
         what_changed(answers.changes),
@@ -184,7 +184,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     let setting = match results {
         [one] => {
             let setting = setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n");
-            setting + &within::sentences(&reached(one.study, one.records)) + "\n\n"
+            setting + &within::sentences(&reached(one.study, one.records))? + "\n\n"
         }
         _ => String::new(),
     };
@@ -194,7 +194,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, ExactError> {
     );
     // With a race its sentences stand first, and how it was made at the end.
     let (lead, footer) = match answers.race.filter(|findings| !findings.situations.is_empty()) {
-        Some(findings) => (race::lead(findings), made),
+        Some(findings) => (race::lead(findings)?, made),
         None => (format!("{setting}{made}"), String::new()),
     };
     Ok(Page {

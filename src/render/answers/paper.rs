@@ -11,8 +11,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
 use crate::render::report::{StudyResults, theory_lines};
-use crate::render::templates;
-use oedometer_exact::exact_error::ExactError;
+use crate::render::{RenderError, templates};
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::Column;
 use oedometer_soil::material::Material;
@@ -35,7 +34,7 @@ struct PaperRun<'a> {
 }
 
 /// Four figures with the theory line, and how far the runs are from it.
-pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
+pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, RenderError> {
     let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (LARGE_STRAIN_FIGURE, true)]
         .into_iter()
         .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
@@ -71,7 +70,7 @@ pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, ExactError> {
     let mut shown = vec![Block::Figures(figures)];
     if runs.iter().any(|(number, _)| *number == LARGE_STRAIN_FIGURE) {
         let printed = PublishedEquations::new()?;
-        shown.push(Block::Paragraph(templates::render(&templates::environment(), "paper", &printed)));
+        shown.push(Block::Paragraph(templates::render(&templates::environment()?, "paper", &printed)?));
     }
     Ok(Some(QUESTION.told(&sentences.join(" "), studies, shown)))
 }

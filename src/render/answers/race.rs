@@ -12,7 +12,7 @@ use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section, slug};
 use crate::render::report::labels::capitalised;
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
-use crate::render::templates;
+use crate::render::{RenderError, templates};
 use minijinja::Environment;
 use minijinja::value::Serde;
 
@@ -46,13 +46,13 @@ fn words_of(family: &str) -> &str {
 }
 
 /// The sentences at the head of the page.
-pub(crate) fn lead(findings: &RaceFindings) -> String {
-    templates::render(&environment(findings), "race-answers", findings)
+pub(crate) fn lead(findings: &RaceFindings) -> Result<String, RenderError> {
+    templates::render(&environment(findings)?, "race-answers", findings)
 }
 
 /// The templates with what the race's need to know.
-fn environment(findings: &RaceFindings) -> Environment<'static> {
-    let mut environment = templates::environment();
+fn environment(findings: &RaceFindings) -> Result<Environment<'static>, RenderError> {
+    let mut environment = templates::environment()?;
     let titles: Vec<(String, String)> =
         findings.situations.iter().map(|one| (one.name.clone(), one.title.clone())).collect();
     environment.add_filter("title_of", move |name: String| {
@@ -60,7 +60,7 @@ fn environment(findings: &RaceFindings) -> Environment<'static> {
     });
     environment.add_filter("reason", |reason: Serde<Reason>| reason.0.words().to_owned());
     environment.add_filter("change", |change: Serde<Change>| change_words(&change.0));
-    environment
+    Ok(environment)
 }
 
 /// What is changed, in words.
@@ -82,11 +82,8 @@ fn quantity_words(quantity: RaceQuantity) -> &'static str {
 }
 
 /// The profiles with a switch, a panel per family, and what the answers rest on.
-pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
-    let findings = findings?;
-    if findings.situations.is_empty() {
-        return None;
-    }
+pub(crate) fn answer(findings: Option<&RaceFindings>) -> Result<Answer, RenderError> {
+    let Some(findings) = findings.filter(|findings| !findings.situations.is_empty()) else { return Ok(None) };
     let named = named(findings);
     let mut views: Vec<(String, Vec<Block>)> = [3, 0, 1, 2]
         .map(|place| RaceQuantity::EACH[place])
@@ -108,7 +105,7 @@ pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
         .into_iter()
         .map(|(family, situations)| panel(family, &situations, &named))
         .collect();
-    let limits = templates::render(&environment(findings), "race-limits", findings);
+    let limits = templates::render(&environment(findings)?, "race-limits", findings)?;
     let mut blocks = vec![
         Block::Switch(views),
         Block::Figures(panels),
@@ -119,7 +116,7 @@ pub(crate) fn answer(findings: Option<&RaceFindings>) -> Answer {
         "[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
     );
     blocks.push(Block::Paragraph(link));
-    Some(Section::new(QUESTION.heading, QUESTION.id, blocks))
+    Ok(Some(Section::new(QUESTION.heading, QUESTION.id, blocks)))
 }
 
 /// The methods with a colour: the best of the moving ones, then those that a reader looks for.
@@ -512,7 +509,7 @@ mod tests {
             situation("waves-b", &costs),
             situation("layer-c", &locked),
         ]);
-        let told = lead(&findings);
+        let told = lead(&findings).expect("filled");
         for part in [
             "**Where points move through the mesh, take `MPM`:** it reaches 1 % of pressure, effective stress and settlement in \
              100 % of the situations, and in 33 % at no more than twice the cost of the fastest method (3 situations in 3 \
@@ -522,7 +519,9 @@ mod tests {
         ] {
             assert!(told.contains(part), "{part}\n{told}");
         }
-        let limits = templates::render(&environment(&findings), "race-limits", &findings);
+        let limits = environment(&findings)
+            .and_then(|environment| templates::render(&environment, "race-limits", &findings))
+            .expect("filled");
         for part in [
             "**`MPM`** (points move through the mesh) reaches 1 % in every situation.",
             "**`TL-GC-SRI-patch`** (the mesh follows the soil) does not reach 1 % in 1 of 3 situations: the layer-c (locks).",
@@ -531,7 +530,7 @@ mod tests {
             assert!(limits.contains(part), "{part}\n{limits}");
         }
         findings.answers.clear();
-        assert!(lead(&findings).contains("No method reaches 1 % in any situation."));
+        assert!(lead(&findings).expect("filled").contains("No method reaches 1 % in any situation."));
     }
 
     #[test]

@@ -65,7 +65,7 @@ pub fn text_of_answers(
     for table in convergence {
         let _ = write!(text, "\n{}", table_of(table).to_text()?);
     }
-    let sentences = sentences(within);
+    let sentences = sentences(within)?;
     for paragraph in paragraphs(&sentences) {
         let plain = paragraph.replace(['*', '`'], "");
         let _ = write!(text, "\n{}", wrapped(&plain, "", "  "));

@@ -6,6 +6,8 @@ use crate::judge::findings;
 use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
+use crate::measure::statistics::larger;
+use crate::render::RenderError;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::labels::grouped;
@@ -16,7 +18,6 @@ use crate::render::table::{Cell, Mood, Table, columns};
 use crate::render::tables::{runs, uncertainties};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
-use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
@@ -116,7 +117,7 @@ fn numbers_section(results: &[StudyResults<'_>]) -> Section {
     for reference in results.iter().flat_map(|one| one.records).flat_map(|record| &record.references) {
         let entry = used.entry(reference.name.as_str()).or_default();
         entry.0 = entry.0.max(reference.terms);
-        entry.1 = entry.1.max(reference.tail_bound);
+        entry.1 = larger(entry.1, reference.tail_bound);
     }
     let references = used.iter().map(|(name, (terms, tail))| {
         vec![Cell::Code((*name).to_owned()), Cell::Count(*terms as u64), Cell::Error(*tail)]
@@ -161,8 +162,8 @@ const MOST_OPEN: usize = 4;
 /// The page of a study.
 ///
 /// # Errors
-/// When a reference refuses a case.
-pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
+/// When a reference refuses a case, or a template its findings.
+pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
     let study = results.study;
     let mut blocks = unmet(results);
     let told = diagnoses(study, results.records);
@@ -205,7 +206,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, ExactError> {
             "{}\n\n{}{}[All studies](index.html). Run it again: `{}`.",
             study.summary,
             setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
-            within::sentences(&reached) + "\n\n",
+            within::sentences(&reached)? + "\n\n",
             results.run_command()
         ),
         callout: Some(verdict(results, &told)),

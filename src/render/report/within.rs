@@ -3,7 +3,7 @@
 use crate::case::Quantity;
 use crate::judge::findings::QuantityWithin;
 use crate::render::report::labels;
-use crate::render::{number, templates};
+use crate::render::{RenderError, number, templates};
 use minijinja::value::Serde;
 use oedometer_soil::wording::duration;
 use serde::Serialize;
@@ -15,8 +15,11 @@ struct Quantities<'a> {
 }
 
 /// Lightly marked paragraphs, one per quantity.
-pub fn sentences(quantities: &[QuantityWithin]) -> String {
-    let mut environment = templates::environment();
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn sentences(quantities: &[QuantityWithin]) -> Result<String, RenderError> {
+    let mut environment = templates::environment()?;
     environment.add_filter("quantity", |quantity: Serde<Quantity>| {
         labels::capitalised(labels::quantity(quantity.0))
     });
@@ -58,7 +61,7 @@ mod tests {
                 bounds: bounds.collect(),
                 best: choice(0.02, step),
             };
-            sentences(&[quantity]).trim().to_owned()
+            sentences(&[quantity]).expect("filled").trim().to_owned()
         };
         let within = "**Settlement** within 1 % at every output: `GC-SRI-patch`, implicit, 10 cells";
         let largest = "(largest 0.40 %, at T_v = 0.1522, 180 days)";

@@ -47,7 +47,9 @@ pub fn read(
         let seconds: Vec<f64> = times.iter().map(|factor| factor * body.seconds_per_time_factor).collect();
         mapping.follow_case(&seconds, body.seconds_per_time_factor);
     }
-    let is_by_mesh = arguments.cells.is_some() && is_tables;
+    // With as many numbers of cells as arguments each argument is a mesh.
+    let is_each = |cells: &String| is_tables || cells.split(',').count() == given.len();
+    let is_by_mesh = arguments.cells.as_ref().is_some_and(is_each);
     let mut runs = if is_by_mesh || steps.len() > 1 {
         // Each argument is a mesh.
         if let Some(cells) = arguments.cells.as_ref().filter(|_| is_tables) {
