@@ -473,3 +473,33 @@ fn a_projection_that_slows_waves_is_warned_of_where_waves_are_what_is_solved() {
         );
     }
 }
+
+#[test]
+fn several_meshes_are_solved_in_turn_and_a_failed_one_hides_no_other() {
+    let line =
+        ["solve", "terzaghi", "--integrator", "implicit", "--cells", "5,10,20", "--time-factor", "0.1"];
+    let (code, out, err) = told(&line);
+    assert_eq!(code, 0, "{err}");
+    let rates: Vec<&str> =
+        out.lines().filter(|line| line.starts_with("| 5 ") || line.starts_with("| 20 ")).collect();
+    assert!(rates.len() == 2 && rates[0].matches("e-").count() == 3 && rates[1].contains("2.0"), "{out}");
+    assert!(out.contains("Settlement within 1 % at every output: GC-SRI-patch, implicit, 10 cells"), "{out}");
+    let (_, all) = json(&line);
+    let cells: Vec<_> =
+        all.as_array().expect("a list").iter().map(|one| one["case"]["cells"].clone()).collect();
+    assert_eq!(cells, [5, 10, 20]);
+    let (_, csv, _) = told(&[line.as_slice(), &["--format", "csv"]].concat());
+    assert!(csv.starts_with("cells,time_factor,") && csv.contains("\n20,0.1,pressure,"), "{csv}");
+    // A step beyond the limit of the finer mesh alone.
+    let (code, out, err) = told(&[
+        "solve",
+        "terzaghi",
+        "--cells",
+        "4,16",
+        "--time-step",
+        "seconds=7e-5",
+        "--time-factor",
+        "0.01",
+    ]);
+    assert!(code == 3 && err.contains("the case failed (unstable)"), "{code} {out} {err}");
+}
