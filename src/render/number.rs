@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_time_factor_of_a_time_in_days_has_four_digits() {
-        let told = [0.05, 0.0002, 1e-12, 0.123456, 0.152_190_825_688_073_4, 2.0].map(time_factor);
+        let told = [0.05, 0.0002, 1e-12, 0.123_456, 0.152_190_825_688_073_4, 2.0].map(time_factor);
         assert_eq!(told, ["0.05", "0.0002", "0.000000000001", "0.123456", "0.1522", "2"]);
     }
 

@@ -56,7 +56,7 @@ pub fn sentence(records: &[Record]) -> Option<String> {
         } else {
             ""
         };
-        inputs += &format!("; layers from the base up{varied}: {layers}");
+        inputs.extend(["; layers from the base up", varied, ": ", &layers]);
     }
     let settlement =
         range(&cases, |case| 1e3 * final_settlement(case).unwrap_or(0.0), |value| with_unit(value, "mm"))
