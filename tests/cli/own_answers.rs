@@ -39,7 +39,10 @@ fn a_study_of_the_step_says_its_order_and_from_where_it_is_unstable() {
     let page = steps("explicit", "0.001", &["8e-5", "4e-5", "2e-5", "1e-5", "5e-6"]);
     let told = answer(&page, "## What does the time step change?");
     assert!(told.contains("`GC-SRI-patch` ends unstable from Δt = 8e-5 s on."), "{told}");
-    assert!(told.contains("| Δt = 4e-5 s |") && told.contains("| Δt = 5e-6 s |"), "{told}");
+    assert!(
+        told.contains("with Δt = 4e-5 s and by") && told.contains("with Δt = 5e-6 s: the mesh"),
+        "{told}"
+    );
     assert!(!told.contains("too few"), "the order is of the stable steps: {told}");
     let page = steps("implicit", "0.2", &["0.4", "0.2", "0.1"]);
     let told = answer(&page, "## What does the time step change?");
@@ -58,7 +61,6 @@ fn a_sweep_of_the_soil_says_what_each_input_changes() {
         "`youngs_modulus` multiplies the settlement in the end by 0.25, the time of consolidation by 0.25",
         "`porosity` changes nothing by more than 1 %",
         "`hydraulic_conductivity` multiplies the time of consolidation by 0.01. Evidence: [`short`]",
-        "| `youngs_modulus` | `MPM` | 500 kPa → 2 MPa |",
     ] {
         assert!(told.contains(sentence), "{sentence}: {told}");
     }

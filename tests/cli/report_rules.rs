@@ -125,7 +125,7 @@ fn every_question_is_answered_by_a_sentence_and_a_short_table_or_not_put() {
     let converges =
         tables(&page).into_iter().find(|table| table.title.starts_with("Order")).expect("a table");
     assert!(
-        converges.rows.len() == 10 && converges.notes.iter().any(|note| note.starts_with("3 more: ")),
+        converges.rows.len() == 5 && converges.notes.iter().any(|note| note.starts_with("8 more: ")),
         "{converges:?}"
     );
 }

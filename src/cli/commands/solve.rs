@@ -181,7 +181,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
 const OWN_OPTIONS: [(&str, &str); 5] = [
     ("method", "--method NAME"),
     ("integrator", "--integrator NAME"),
-    ("cells", "--cells NUMBER[,NUMBER...]"),
+    ("cells", "--cells NUMBER"),
     ("points_per_cell", "--points-per-cell NUMBER"),
     ("time_step", "--time-step RULE"),
 ];

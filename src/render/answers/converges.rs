@@ -271,12 +271,15 @@ fn table(all: &[&Refined<'_>]) -> Table {
         let solution = labels::solution(refined.reference);
         format!("{}: T_v = {}, against {solution}", refined.strain, number::time_factor(refined.time_factor))
     });
-    let rows: Vec<Vec<Cell>> = rows.take(MOST_METHODS).collect();
+    let mut rows: Vec<Vec<Cell>> = rows.collect();
+    let more = rows.len().saturating_sub(MOST_METHODS);
+    rows.truncate(MOST_METHODS);
     let norms = format!(
         "{}; relative L_2 norm over the volume, |s/s_exact − 1| of the settlement",
         at.collect::<Vec<_>>().join("; ")
     );
-    let notes = [norms, labels::class_meanings(&rows)].into_iter().filter(|note| !note.is_empty());
+    let others = if more > 0 { format!("{more} more: on the pages of the studies") } else { String::new() };
+    let notes = [norms, labels::class_meanings(&rows), others].into_iter().filter(|note| !note.is_empty());
     Table::of(format!("Order on the finest three meshes, error on {QUOTED_CELLS} cells"), columns, rows)
         .notes(notes)
 }
