@@ -10,7 +10,7 @@ use crate::render::checks::{TITLES, failures_of};
 use crate::render::marked_text::paragraphs;
 use crate::render::report::within::sentences;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::render::tables::convergence::table_of;
+use crate::render::tables::convergence;
 use crate::render::tables::golden_changes::{self, judgement_of, summary};
 use crate::render::tables::uncertainties;
 use crate::render::{RenderError, number};
@@ -59,11 +59,13 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
 /// If a table cannot be written.
 pub fn text_of_answers(
     within: &[QuantityWithin],
-    convergence: &[ConvergenceTable],
+    tables: &[ConvergenceTable],
 ) -> Result<String, RenderError> {
     let mut text = String::new();
-    for table in convergence {
-        let _ = write!(text, "\n{}", table_of(table).to_text()?);
+    for table in tables {
+        let heading = wrapped(&convergence::heading(table), "", "  ");
+        let classes = wrapped(&convergence::classes(table), "", "  ");
+        let _ = write!(text, "\n{heading}\n{}\n{classes}", convergence::table_of(table).to_text()?);
     }
     let sentences = sentences(within)?;
     for paragraph in paragraphs(&sentences) {

@@ -1,12 +1,12 @@
 //! Errors, rates and classes over the meshes, for a terminal and for Markdown.
 
-use crate::judge::findings::convergence::ConvergenceTable;
+use crate::judge::findings::convergence::{ConvergenceColumn, ConvergenceTable};
 use crate::render::number;
 use crate::render::report::labels;
 use crate::render::table::{Cell, Table, TableColumn};
 use oedometer_soil::wording::duration;
 
-/// A row per mesh, an error and a rate per quantity, and the classes at the end.
+/// A row per mesh, an error and a rate per quantity.
 pub fn table_of(found: &ConvergenceTable) -> Table {
     let mut columns = vec![TableColumn::text("cells")];
     for column in &found.columns {
@@ -27,10 +27,18 @@ pub fn table_of(found: &ConvergenceTable) -> Table {
         }
         rows.push(row);
     }
-    let classes = found.columns.iter().flat_map(|column| [column.class.name().into(), "".into()]);
-    rows.push(std::iter::once("class".into()).chain(classes).collect());
-    let time = number::time_factor(found.time_factor);
-    let title =
-        format!("{}, T_v = {time} ({}), against {}", found.runs, duration(found.seconds), found.reference);
-    Table::of(title, columns, rows)
+    Table::of("", columns, rows)
+}
+
+/// What the runs share, and at which time they are compared with what.
+pub fn heading(found: &ConvergenceTable) -> String {
+    let (time, clock) = (number::time_factor(found.time_factor), duration(found.seconds));
+    format!("{}, T_v = {time} ({clock}), against {}", found.runs, found.reference)
+}
+
+/// The class of each series in words.
+pub fn classes(found: &ConvergenceTable) -> String {
+    let class =
+        |column: &ConvergenceColumn| format!("{} {}", labels::quantity(column.quantity), column.class.name());
+    format!("class: {}", found.columns.iter().map(class).collect::<Vec<_>>().join(", "))
 }

@@ -43,7 +43,7 @@ const CLEARLY: f64 = 5.0;
 /// Factor from one change of the order to the next from which on it does not slow down.
 const GROWS: f64 = 1.1;
 
-/// How far an order runs before it counts: about that of a fifth of the finest error.
+/// How far an order has risen over four levels before it counts, beyond what noise of a per cent of the errors does.
 const GONE: f64 = 0.1;
 
 /// The second term of a candidate.
@@ -118,9 +118,7 @@ fn runs_away(case: &EvaluableSeries) -> Option<Classification> {
     let changes: Vec<f64> = case.pairs.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let [.., first, second, last] = *changes.as_slice() else { return None };
     let grows = |from: f64, to: f64| from > 0.0 && to > GROWS * from;
-    // Changes that grow like a geometric series have gone so far in all.
-    let gone = last * last / (last - second);
-    (grows(first, second) && grows(second, last) && gone >= GONE).then(|| {
+    (grows(first, second) && grows(second, last) && first + second + last >= GONE).then(|| {
         let reason = format!("the orders {} rise faster and faster", orders(&case.pairs));
         let found = Classification::new(Class::PreAsymptotic, reason)
             .advise("add a finer level: a second term of the other sign takes over");
