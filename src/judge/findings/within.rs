@@ -98,7 +98,7 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
     let choices = grouped(records, |record| choice(&record.case));
     let choices: Vec<WithinFinding> = choices
         .into_iter()
-        .filter(|(_, runs)| runs.len() >= problems)
+        .filter(|(_, runs)| grouped(runs, |record| problem(&record.case)).len() == problems)
         .filter_map(|(_, runs)| {
             let largest = runs.into_iter().map(|record| {
                 let rows: Vec<ErrorRow> =
@@ -115,9 +115,12 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
         })
         .collect();
     let best = choices.iter().min_by(|a, b| a.error.total_cmp(&b.error))?.clone();
+    // Beside another program, whose work is not counted, the coarsest mesh stands first.
+    let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
     let bounds = BOUNDS.map(|bound| {
         let fits = choices.iter().filter(|choice| choice.error <= bound);
-        let cheapest = fits.min_by(|a, b| a.cost.total_cmp(&b.cost).then(a.cells.cmp(&b.cells)));
+        let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
+        let cheapest = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)));
         BoundWithin { bound, choice: cheapest.cloned() }
     });
     Some(QuantityWithin { quantity, sample, reference: reference.to_owned(), bounds: bounds.to_vec(), best })
@@ -135,7 +138,7 @@ impl WithinFinding {
             error: row.value.abs(),
             time_factor: row.time_factor,
             seconds: row.time_factor * case.seconds_per_time_factor(),
-            // What another program costs is not counted: its coarsest mesh stands first.
+            // What another program costs is not counted.
             cost: if case.counts_work() { cost_of(record) } else { 0.0 },
             case: record.hash.clone(),
         }
