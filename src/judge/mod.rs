@@ -16,4 +16,5 @@ pub mod race;
 pub mod score;
 pub mod soundness;
 pub mod study_check;
+pub mod study_results;
 pub mod verdict;

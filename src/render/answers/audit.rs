@@ -4,12 +4,12 @@
 use crate::case::Case;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
+use crate::judge::study_results::StudyResults;
 use crate::record::{Record, Status};
 use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, first_measure, grouped};
 use crate::study::expectation::Axis;
 use oedometer_exact::reference::ReferenceKind;

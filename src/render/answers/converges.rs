@@ -5,6 +5,7 @@ use crate::case::Case;
 use crate::case::contender::PAPERS;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::render::answers::{Answer, Question, short, study_with_most};
 use crate::render::number;
@@ -12,7 +13,7 @@ use crate::render::page::{Block, Figure};
 use crate::render::report::labels::{
     self, CONVERGENCE, QUOTED_CELLS, distinct, first_measure, grouped, is_settled, order_or_class,
 };
-use crate::render::report::{StudyResults, refinement};
+use crate::render::report::refinement;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure};
 use oedometer_convergence::{Class, Classification};

@@ -4,10 +4,11 @@
 use crate::case::contender::PAPERS;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
+use crate::judge::study_results::StudyResults;
 use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::{StudyResults, cost};
+use crate::render::report::cost;
 
 const QUESTION: Question = Question { heading: "What does accuracy cost?", id: "cost" };
 

@@ -3,10 +3,10 @@
 
 use crate::case::keys::{Key, Value};
 use crate::judge::comparison::twins::{Twins, TwinsOfSituation, by_situation, twins};
+use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks::has_burst;
 use crate::render::answers::{Answer, Question, short};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_soil::wording::count_of;
 

@@ -1,11 +1,11 @@
 //! Which method locks, from which Poisson's ratio, and by how much? Answered where a study sweeps it in the plane.
 
 use crate::judge::comparison::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow, SweptStiffness};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest as largest_of;
 use crate::render::answers::{self, Answer, Question};
 use crate::render::number;
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_soil::wording::{count_of, short, typed};

@@ -5,9 +5,10 @@ use crate::case::Case;
 use crate::case::keys::{Key, Kind, Value};
 use crate::case::quantity::Quantity;
 use crate::judge::paths::{first_error, grouped};
+use crate::judge::study_results::StudyResults;
 use crate::record::{Record, Status};
 use crate::render::answers::{Answer, Question, study_with_most};
-use crate::render::report::{StudyResults, setting};
+use crate::render::report::setting;
 use oedometer_soil::wording;
 
 const QUESTION: Question = Question { heading: "What does the soil change?", id: "soil" };

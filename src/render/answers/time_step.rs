@@ -2,10 +2,10 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::Path;
+use crate::judge::study_results::StudyResults;
 use crate::record::{Record, Status};
 use crate::render::answers::{Answer, Question, study_with_most};
 use crate::render::number;
-use crate::render::report::StudyResults;
 use crate::render::report::labels::{self, first_measure, grouped, order_or_class, path_labels};
 use crate::render::report::refinement::{longest_paths, shown_time};
 use crate::study::expectation::{Axis, NEXT_FINER};

@@ -5,13 +5,15 @@ use crate::case::IntegratorKind;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::peers::{self, Comparison, Peer};
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::spread;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::Block;
+use crate::render::report::figure_of;
+use crate::render::report::labels;
 use crate::render::report::labels::{DrawnPaths, drawn};
-use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
 
@@ -40,7 +42,7 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
                        same by one banded map of the grid. Order p in h gives e ~ W^(−p/2), because a mesh twice as fine \
                        has twice the points and twice the steps.";
         blocks.push(Block::Heading("Error against work".to_owned()));
-        blocks.push(Block::Figure(results.figure("work", chart, caption)));
+        blocks.push(Block::Figure(figure_of(results, "work", chart, caption)));
         blocks.extend(note.map(Block::Paragraph));
     }
     let is_timed = |record: &&Record| !record.wall_alone().is_empty() && record.status == Status::Ok;
@@ -98,7 +100,7 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     }
     let mut blocks = vec![
         Block::Heading("Error against wall time".to_owned()),
-        Block::Figure(results.figure("wall-time", chart_of(&precision), caption(&precision))),
+        Block::Figure(figure_of(results, "wall-time", chart_of(&precision), caption(&precision))),
         Block::Table(cheapest_table(&precision)),
     ];
     if peers::solve_their_column(&precision.runs) {

@@ -2,12 +2,13 @@
 //! of the skeleton; of a footing the load-settlement curves of all methods.
 
 use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
+use crate::judge::study_results::StudyResults;
 use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::StudyResults;
+use crate::render::report::figure_of;
 use crate::render::report::labels::grouped;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use oedometer_exact::exact_error::ExactError;
@@ -101,7 +102,7 @@ fn figure(
             format!("{name} at T_v = {time}: oscillation index {}.{beyond}", number::fixed(index, 2))
         }
     };
-    results.figure(&format!("field-{name}"), chart, caption)
+    figure_of(results, &format!("field-{name}"), chart, caption)
 }
 
 /// Reach of the colours over the largest exact value.
@@ -188,7 +189,7 @@ fn sweep_figure(
         chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
     let name = format!("{word}-{}", words_of(sweep.stiffness).1);
-    results.figure(&name, chart, format!("{title}."))
+    figure_of(results, &name, chart, format!("{title}."))
 }
 
 fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
@@ -253,7 +254,7 @@ pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
     );
     vec![
         Block::Heading("Load and settlement".to_owned()),
-        Block::Figures(vec![results.figure("load-settlement", chart, caption)]),
+        Block::Figures(vec![figure_of(results, "load-settlement", chart, caption)]),
     ]
 }
 

@@ -2,10 +2,11 @@
 
 use crate::judge::comparison::stability_map::{MapAxis, MapScale, maps_of};
 use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE, Way, mapped_soils};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::median;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
-use crate::render::report::StudyResults;
+use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
 use crate::render::tables::runs;
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,9 +32,10 @@ pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
             soils.len(),
             only.name
         ))),
-        _ => figures.push(results.figure("cheapest method", cheapest, CAPTION)),
+        _ => figures.push(figure_of(results, "cheapest method", cheapest, CAPTION)),
     }
-    figures.extend(broken(&soils).map(|chart| results.figure("where runs break", chart, CAPTION_OF_BROKEN)));
+    figures
+        .extend(broken(&soils).map(|chart| figure_of(results, "where runs break", chart, CAPTION_OF_BROKEN)));
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
@@ -168,7 +170,7 @@ pub fn critical_steps(results: &StudyResults<'_>) -> Vec<Block> {
             "Lines: spectral radius of the step operator. Marks: bisection of runs. Largest difference {:.2} %.",
             100.0 * map.largest_deviation
         );
-        figures.push(results.figure(&map.shared, chart, caption));
+        figures.push(figure_of(results, &map.shared, chart, caption));
     }
     vec![
         Block::Heading("Critical step, predicted and observed".to_owned()),

@@ -5,9 +5,10 @@ use crate::judge::race::finish::RaceQuantity;
 use crate::judge::race::sensitivity::{OTHER_THRESHOLDS, THRESHOLD};
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question, RaceFindings};
+use crate::judge::study_results::StudyResults;
 use crate::render::chart::{Chart, ChartAxis, Series, Size};
 use crate::render::page::{Block, Figure};
-use crate::render::report::StudyResults;
+use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
 
 /// Words of an entry that arrives.
@@ -80,7 +81,7 @@ fn figure(
     let is_drawn = !drawn.is_empty();
     chart.series.extend(drawn.into_iter().map(|(name, points)| Series::new(name, points)));
     let caption = "Each marker is a mesh, twice as fine as the one before. Counted work is in seconds of the calibration.";
-    is_drawn.then(|| results.figure(&format!("race-{}", quantity.name()), chart, caption))
+    is_drawn.then(|| figure_of(results, &format!("race-{}", quantity.name()), chart, caption))
 }
 
 /// Every contender with its measures, the best first.

@@ -3,12 +3,14 @@
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::levels::{LevelError, LevelValue, levels_of};
 use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::judge::study_results::StudyResults;
 use crate::record::Record;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
+use crate::render::report::figure_of;
+use crate::render::report::labels;
 use crate::render::report::labels::{DrawnPaths, drawn, first_measure, grouped};
-use crate::render::report::{StudyResults, labels};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::WINDOW;
@@ -175,7 +177,7 @@ fn figure(
     } else {
         captions(&summaries, &labels.each)
     };
-    Some(results.figure(&name, chart, caption))
+    Some(figure_of(results, &name, chart, caption))
 }
 
 /// The paths of this program, and those of others that have an error of the kind.

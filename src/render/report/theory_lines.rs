@@ -1,6 +1,7 @@
 //! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::measure::theory::{
     TheoryIsochrone, computed_consolidation, computed_isochrone, constant_recovery_error,
@@ -10,7 +11,7 @@ use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
-use crate::render::report::StudyResults;
+use crate::render::report::figure_of;
 use crate::render::report::labels::{QUOTED_CELLS, first_measure, grouped};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
@@ -128,7 +129,7 @@ pub fn isochrones(results: &StudyResults<'_>, record: &Record) -> Result<Figure,
         record.case.cells,
         if results.study.scene.has_waves() { ", in the colour of its time" } else { "" }
     );
-    Ok(results.figure(&format!("isochrones-{}", record.case.method), chart, caption))
+    Ok(figure_of(results, &format!("isochrones-{}", record.case.method), chart, caption))
 }
 
 /// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
@@ -152,7 +153,7 @@ pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Fi
     }
     let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their stresses and \
                    hardly in their settlement.";
-    Ok(results.figure("consolidation", chart, caption))
+    Ok(figure_of(results, "consolidation", chart, caption))
 }
 
 /// Markers of one run on a curve of consolidation.

@@ -28,7 +28,8 @@ use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
 use crate::render::report::pages::{index_page, study_page};
 
-use crate::render::report::{StudyResults, race};
+use crate::judge::study_results::StudyResults;
+use crate::render::report::race;
 use crate::study::check::Study;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -90,7 +91,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let file = typed_name(&study.name, &chosen);
             StudyResults::new(study, &report.records, tier_of(study, report))
                 .from_file(file)
-                .with_taken_over(&report.taken_over)
+                .with_taken_over(TakenOver::sentences(&report.taken_over))
         })
         .collect::<Vec<_>>();
     let making = Making {
