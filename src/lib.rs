@@ -176,6 +176,7 @@ pub use golden::compare::compare;
 pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;
+pub use judge::answers::ReportFindings;
 pub use judge::race::RaceFindings;
 pub use judge::score::score;
 pub use judge::soundness;

@@ -124,6 +124,29 @@ pub(crate) fn grouped<T, K: Clone + Eq + Hash>(
     groups
 }
 
+/// Items in the order of their first appearance, each once.
+pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for item in items {
+        if !seen.contains(&item) {
+            seen.push(item);
+        }
+    }
+    seen
+}
+
+/// The times of the outputs that all paths have.
+pub(crate) fn common_times(all: &[Path<'_>]) -> Vec<f64> {
+    let first = all[0].records[0].case.time_factors.iter().copied();
+    first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
+}
+
+/// The time of the figures and of the table that stands open: the middle one of those that all paths have.
+pub(crate) fn shown_time(all: &[Path<'_>]) -> Option<f64> {
+    let times = all.first().map_or(Vec::new(), |_| common_times(all));
+    times.get(times.len().saturating_sub(1) / 2).copied()
+}
+
 /// Size of a record's level: cell size (m), time step (s), spacing of points in cells, or
 /// compressibility of the water (1/Pa).
 pub fn level_size(record: &Record, axis: Axis) -> f64 {

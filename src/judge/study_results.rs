@@ -2,11 +2,13 @@
 
 use crate::case::planned::Tier;
 use crate::judge::findings::Findings;
-use crate::judge::paths::StudyPaths;
+use crate::judge::paths::{Path, StudyPaths};
 use crate::judge::soundness;
 use crate::judge::verdict::{Judgement, judge_paths};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
+use crate::study::expectation::Axis;
+use oedometer_convergence::WINDOW;
 use oedometer_exact::ExactError;
 
 /// A study with its records and the judgements on them.
@@ -72,6 +74,13 @@ impl<'a> StudyResults<'a> {
     /// Whether the study has an expectation against a reference.
     pub(crate) fn asks_for(&self, reference: &str) -> bool {
         self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
+    }
+
+    /// The paths of at least three levels along an axis: two levels have no order.
+    pub(crate) fn refined(&self, axis: Axis) -> Vec<Path<'a>> {
+        let mut paths = self.paths.along(axis).to_vec();
+        paths.retain(|path| path.records.len() >= WINDOW);
+        paths
     }
 
     /// How many of its expectations are met.

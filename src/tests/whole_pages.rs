@@ -10,7 +10,7 @@ use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::tests::assert_snapshot;
 use crate::{
-    Answers, Making, RaceFindings, StudyResults, Tier, answer_page, figures, index_page, junit, measures,
+    Answers, Making, ReportFindings, StudyResults, Tier, answer_page, figures, index_page, junit, measures,
 };
 use crate::{render_html, render_markdown, study_page, verdicts};
 use oedometer_soil::wording::short;
@@ -317,7 +317,7 @@ fn the_first_pages_are_what_they_were() {
     let all: Vec<(Study, Vec<Record>)> = texts.iter().map(|text| (study(*text), records(*text))).collect();
     let results: Vec<StudyResults<'_>> =
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Ci)).collect();
-    let race = RaceFindings::from_studies(all.iter().map(|(study, records)| (study, records.as_slice())));
+    let findings = ReportFindings::new(&results).expect("sound cases");
     let making = Making {
         date: "2026-11-22".to_owned(),
         processor: "a processor (2 threads)".to_owned(),
@@ -326,7 +326,7 @@ fn the_first_pages_are_what_they_were() {
         cases_run: 17,
         left_out: 5,
     };
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: race.as_ref() };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
     let front = answer_page(&answers).expect("a page");
     let mut text = render_markdown(&index_page(&results)).expect("Markdown");
     text += &render_markdown(&front).expect("Markdown");

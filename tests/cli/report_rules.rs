@@ -3,8 +3,8 @@
 
 use crate::program::{call, folder_with};
 use oedometer::{
-    Answers, Block, Making, Page, RaceFindings, Record, RunOptions, Study, StudyResults, StudySource, Table,
-    Tier, answer_page, matrix_page, render_html, render_markdown, run_study, study_page,
+    Answers, Block, Making, Page, RaceFindings, Record, ReportFindings, RunOptions, Study, StudyResults,
+    StudySource, Table, Tier, answer_page, matrix_page, render_html, render_markdown, run_study, study_page,
 };
 use std::fs;
 use std::sync::LazyLock;
@@ -85,9 +85,9 @@ static PAIRED: LazyLock<(Study, Vec<Record>)> = LazyLock::new(|| study_of("pairi
 fn page_of(all: &[&(Study, Vec<Record>)]) -> Page {
     let results: Vec<StudyResults<'_>> =
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
-    let race = RaceFindings::from_studies(all.iter().map(|(study, records)| (study, records.as_slice())));
+    let findings = ReportFindings::new(&results).expect("sound cases");
     let making = Making::default();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: race.as_ref() };
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
     answer_page(&answers).expect("a page")
 }
 

@@ -5,9 +5,9 @@
 
 use crate::program::assert_snapshot;
 use oedometer::{
-    Answers, Block, GoldenFile, Making, Page, Provenance, Record, RunOptions, Study, StudyCheck,
-    StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures, render_html,
-    render_markdown, run_study, study_page, values_of, verdicts,
+    Answers, Block, GoldenFile, Making, Page, Provenance, Record, ReportFindings, RunOptions, Study,
+    StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures,
+    render_html, render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
@@ -116,7 +116,8 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     let (study, records) = small_study();
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, race: None };
+    let findings = ReportFindings::new(&results).expect("sound cases");
+    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
     assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");

@@ -5,8 +5,8 @@ use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
+use crate::judge::answers::ReportFindings;
 use crate::judge::findings::Findings;
-use crate::judge::race::RaceFindings;
 use crate::study::file::StudyFile;
 use crate::study::reading::{each_part, plain_schema_of, schema_of as schema_of_toml};
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ pub enum Document {
     Mapping,
     /// The file that tells an attached solver its case
     Case,
-    /// What a report has found of the race: findings.json beside the front page
+    /// Everything that a report has found: findings.json beside the front page
     Findings,
     /// What is found about a study: NAME.findings.json beside its page
     StudyFindings,
@@ -48,7 +48,7 @@ pub fn schema_of(document: Document) -> Value {
         Document::Study => (schema_of_toml::<StudyFile>(), "oedometer study"),
         Document::Record => (plain_schema_of::<PrintedRecord<'_>>(), "oedometer record"),
         Document::Case => (plain_schema_of::<CaseFile>(), "oedometer case"),
-        Document::Findings => (plain_schema_of::<RaceFindings>(), "oedometer findings"),
+        Document::Findings => (plain_schema_of::<ReportFindings>(), "oedometer findings"),
         Document::StudyFindings => (plain_schema_of::<Findings>(), "oedometer study findings"),
         Document::Mapping => (schema_of_toml::<Mapping>(), "oedometer mapping"),
     };

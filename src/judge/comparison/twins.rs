@@ -6,6 +6,8 @@ use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::median;
 use crate::record::{Record, Status};
 use oedometer_soil::elementary;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// Two runs that are equal in everything but one input.
@@ -126,7 +128,8 @@ const USUAL_INERTIA: f64 = 1e-9;
 /// A last output before this time factor is a very early one.
 const EARLY: f64 = 1e-3;
 /// What makes a run hard, in the order of a report: the easy ones first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Situation {
     /// Small strain in a usual soil, points on their lattice.
     Usual,

@@ -1,33 +1,32 @@
-//! The answer page: what a reader asks of the records of all studies. Each question has a sentence, a short table or a
-//! figure, and a link to the study that shows it.
+//! The answer page: what a reader asks of the records of all studies. Each question has a sentence from its template, a
+//! short table or a figure, and a link to the study that shows it.
 //!
-//! Every sentence is made from records. A question that the records do not answer is not put.
+//! Every number comes from the findings. A question that the records do not answer is not put.
 
 mod audit;
 mod converges;
-mod cost;
 mod double_point;
 mod locking;
-pub(crate) mod paper;
+mod paper;
 mod race;
-mod soil;
-mod time_step;
 
 pub use race::matrix_page;
 
 use crate::history::comparison::StudyComparison;
+use crate::judge::answers::cost::{CostFinding, timed_study};
+use crate::judge::answers::time_step::TimeStepFinding;
+use crate::judge::answers::{ReportFindings, VerdictFinding};
 use crate::judge::findings::within::within as reached;
-use crate::judge::race::RaceFindings;
+use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::record::provenance::{Origins, Provenance};
-use crate::render::RenderError;
 use crate::render::history_tables::comparison_tables;
-use crate::render::page::{Block, Callout, Page, Section, slug};
-use crate::render::report::labels::distinct;
-use crate::render::report::{setting, within};
+use crate::render::page::{Block, Callout, Figure, Page, Section, slug};
+use crate::render::report::{cost, setting, within};
 use crate::render::table::{Mood, Table};
+use crate::render::{RenderError, templates};
 use oedometer_soil::wording::count_of;
-use std::fmt::Write;
+use serde::Serialize;
 
 /// What the answer page is made of.
 pub struct Answers<'a> {
@@ -37,8 +36,8 @@ pub struct Answers<'a> {
     pub changes: Option<&'a [StudyComparison]>,
     /// When, where and by which command.
     pub making: &'a Making,
-    /// What the race has found, where there was one.
-    pub race: Option<&'a RaceFindings>,
+    /// What the records answer.
+    pub findings: &'a ReportFindings,
 }
 
 /// When, where and by which command a report was made.
@@ -113,13 +112,9 @@ struct Question {
     id: &'static str,
 }
 
-/// The answer of the records to a question: a section, a sentence first, then a short table or figures. `None` where they
-/// have none: what was not asked is not answered.
-pub(crate) type Answer = Option<Section>;
-
 impl Question {
     /// The answer: a sentence with links to the studies that show it, then what is shown.
-    fn told<'s>(
+    fn answered<'s>(
         self,
         sentence: &str,
         studies: impl IntoIterator<Item = &'s str>,
@@ -142,16 +137,6 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
 }
 
-/// The study that has most of what answers a question, the first of equals. The race has an answer of its own.
-fn study_with_most<'a, T, W: PartialOrd>(
-    results: &'a [StudyResults<'a>],
-    found: impl Fn(&'a StudyResults<'a>) -> Option<(W, T)>,
-) -> Option<(&'a StudyResults<'a>, T)> {
-    let studies = results.iter().filter(|one| !one.study.is_race);
-    let all = studies.filter_map(|one| found(one).map(|(worth, found)| (worth, (one, found))));
-    all.reduce(|most, next| if next.0 > most.0 { next } else { most }).map(|(_, found)| found)
-}
-
 /// Links to the pages of studies, each once, in running text.
 fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
     let links = distinct(studies).into_iter().map(|study| format!("[`{study}`]({})", page_of(study)));
@@ -163,107 +148,101 @@ fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
 /// # Errors
 /// When a reference refuses a case, or a template its findings.
 pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
-    let results = answers.results;
+    let (results, findings) = (answers.results, answers.findings);
+    let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
     let all = [
-        race::answer(answers.race)?,
-        cost::answer(results),
-        paper::answer(results)?,
-        what_changed(answers.changes),
-        locking::answer(results)?,
-        converges::answer(results),
-        time_step::answer(results),
-        soil::answer(results),
-        audit::answer(results),
-        double_point::answer(results),
+        race.map(race::section).transpose()?,
+        findings.cost.as_ref().map(|cost| cost_section(cost, results)).transpose()?,
+        findings.paper.as_ref().map(|paper| paper::section(paper, results)).transpose()?,
+        answers.changes.map(changes_section).transpose()?,
+        findings.locking.as_ref().map(locking::section).transpose()?,
+        findings.converges.as_ref().map(|converges| converges::section(converges, results)).transpose()?,
+        findings.time_step.as_ref().map(time_step_section).transpose()?,
+        findings.audit.as_ref().map(audit::section).transpose()?,
+        findings.double_point.as_ref().map(double_point::section).transpose()?,
     ];
-    let sections = all.into_iter().flatten().collect();
+    let mut sections: Vec<Section> = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
     let few = match results.len() {
         1..=FEW_STUDIES => format!(": {}", links_to(results.iter().map(|one| one.study.name.as_str()))),
-        _ => String::new(),
-    };
-    let setting = match results {
-        [one] => {
-            let setting = setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n");
-            setting + &within::sentences(&reached(one.study, one.records))? + "\n\n"
-        }
         _ => String::new(),
     };
     let made = format!(
         "**How was it made?** {}\n\n[All studies, with every table and figure](studies/index.html){few}",
         answers.making.words(results)
     );
+    let verdict = verdict(&findings.verdict)?;
+    let mut page = Page { title: "Convergence report".to_owned(), is_wide: true, ..Page::default() };
     // With a race its sentences stand first, and how it was made at the end.
-    let (lead, footer) = match answers.race.filter(|findings| !findings.situations.is_empty()) {
-        Some(findings) => (race::lead(findings)?, made),
-        None => (format!("{setting}{made}"), String::new()),
-    };
-    Ok(Page {
-        title: "Convergence report".to_owned(),
-        lead,
-        callout: Some(verdict(results)).filter(|_| footer.is_empty()),
-        sections: sections_with(sections, (!footer.is_empty()).then(|| verdict(results))),
-        footer,
-        is_wide: true,
-        ..Page::default()
-    })
+    if let Some(race) = race {
+        (page.lead, page.footer) = (race::lead(race)?, made);
+        sections.push(Section {
+            heading: "Is everything as expected?".to_owned(),
+            id: "expected".to_owned(),
+            mood: Some(verdict.0),
+            blocks: vec![Block::Paragraph(verdict.1)],
+        });
+    } else {
+        (page.lead, page.callout) = (format!("{}{made}", setting_of(results)?), Some(verdict));
+    }
+    page.sections = sections;
+    Ok(page)
 }
 
-/// The sections, with the verdict on all expectations as the last one where it does not stand at the head.
-fn sections_with(mut sections: Vec<Section>, verdict: Option<Callout>) -> Vec<Section> {
-    sections.extend(verdict.map(|(mood, text)| Section {
-        heading: "Is everything as expected?".to_owned(),
-        id: "expected".to_owned(),
-        mood: Some(mood),
-        blocks: vec![Block::Paragraph(text)],
-    }));
-    sections
+/// The setting of a report of one study, and what it takes to come within bounds.
+fn setting_of(results: &[StudyResults<'_>]) -> Result<String, RenderError> {
+    let [one] = results else { return Ok(String::new()) };
+    let setting = setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n");
+    Ok(setting + &within::sentences(&reached(one.study, one.records))? + "\n\n")
 }
 
 /// Studies up to which the head of the page names each.
 const FEW_STUDIES: usize = 6;
 
 /// Whether everything is as expected, in one sentence that names what is not.
-fn verdict(results: &[StudyResults<'_>]) -> Callout {
-    let sum = |of: fn(&StudyResults<'_>) -> usize| results.iter().map(of).sum::<usize>();
-    let judged = sum(|one| one.judgements.len());
-    let unsound = sum(|one| one.unsound.len());
-    let failing: Vec<&str> =
-        results.iter().filter(|one| !one.passes()).map(|one| one.study.name.as_str()).collect();
-    let met = match judged {
-        0 => "No expectations".to_owned(),
-        _ => format!("{} of {judged} expectations met", results.iter().map(StudyResults::met).sum::<usize>()),
-    };
-    let studies = count_of(results.len(), "study", "studies");
-    let runs = count_of(sum(|one| one.records.len()), "run", "runs");
-    let mut text = format!("**{met}** in {studies} of {runs}.");
-    if unsound > 0 {
-        let _ = write!(text, " {}.", count_of(unsound, "check of runs fails", "checks of runs fail"));
-    }
-    if !failing.is_empty() {
-        let _ = write!(text, " Not as expected: `{}`.", failing.join("`, `"));
-    }
-    let mood = if judged == 0 && failing.is_empty() { Mood::Note } else { Mood::of(failing.is_empty()) };
-    (mood, text)
+fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
+    let passes = verdict.failing.is_empty();
+    let mood = if verdict.expectations == 0 && passes { Mood::Note } else { Mood::of(passes) };
+    Ok((mood, templates::sentence("verdict", verdict)?))
 }
 
-const CHANGES: Question = Question { heading: "What changed?", id: "changes" };
+/// The cheapest run within each tolerance, all timed runs in a figure, and other programs.
+fn cost_section(cost: &CostFinding, results: &[StudyResults<'_>]) -> Result<Section, RenderError> {
+    let question = Question { heading: "What does accuracy cost?", id: "cost" };
+    let sentence = templates::sentence("cost", cost)?;
+    let figure = timed_study(results).map(|(_, precision)| {
+        let (chart, caption) = (cost::chart_of(&precision), cost::caption(&precision));
+        Block::Figure(Figure::new("readme-cost", chart, caption))
+    });
+    let mut blocks: Vec<Block> = figure.into_iter().collect();
+    if let Some(peers) = &cost.peers {
+        blocks.push(Block::Paragraph(templates::sentence("peers", peers)?));
+    }
+    Ok(question.answered(&sentence, [cost.study.as_str()], blocks))
+}
+
+/// The order in the step, and what the step leaves of the error.
+fn time_step_section(found: &TimeStepFinding) -> Result<Section, RenderError> {
+    let question = Question { heading: "What does the time step change?", id: "time-step" };
+    Ok(question.answered(&templates::sentence("time-step", found)?, [found.study.as_str()], Vec::new()))
+}
+
+/// How many studies changed.
+#[derive(Serialize)]
+struct Changes {
+    changed: usize,
+    worse: usize,
+}
 
 /// The studies that differ, as `oedometer compare` shows them.
-fn what_changed(changes: Option<&[StudyComparison]>) -> Answer {
-    let changes = changes?;
-    if changes.is_empty() {
-        let text = "Nothing: every value that these studies share with the golden values agrees within its tolerance.";
-        return Some(CHANGES.told(text, [], Vec::new()));
-    }
+fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderError> {
+    let question = Question { heading: "What changed?", id: "changes" };
     let worse = changes.iter().filter(|one| one.is_regression()).count();
-    let sentence = format!(
-        "Against the golden values {} changed, of which {worse} got worse.",
-        count_of(changes.len(), "study", "studies")
-    );
+    let sentence = templates::sentence("changes", &Changes { changed: changes.len(), worse })?;
     let tables = comparison_tables(changes, ["the golden values", "this report"]);
+    let tables = if changes.is_empty() { Vec::new() } else { tables };
     let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
-    Some(CHANGES.told(&sentence, [], tables.into_iter().map(block).collect()))
+    Ok(question.answered(&sentence, [], tables.into_iter().map(block).collect()))
 }
 
 #[cfg(test)]
@@ -286,12 +265,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_expected_is_neither_met_nor_failed() {
-        let (mood, text) = verdict(&[]);
-        assert_eq!((mood, text.as_str()), (Mood::Note, "**No expectations** in 0 studies of 0 runs."));
-    }
-
-    #[test]
     fn a_table_of_the_answers_ends_after_ten_rows_and_says_where_the_others_are() {
         let table =
             |rows: usize| Table::of("", columns("a"), (0..rows).map(|row| vec![Cell::Count(row as u64)]));
@@ -308,7 +281,7 @@ mod tests {
         };
         let changes = [("worse", 0.3), ("better", 0.1)]
             .map(|(name, error)| StudyComparison::of(name, &state(0.2), &state(error)));
-        let Some(section) = what_changed(Some(&changes)) else { panic!("they differ") };
+        let section = changes_section(&changes).expect("a section");
         let [Block::Paragraph(told), Block::Table(table), ..] = &section.blocks[..] else {
             panic!("{section:?}")
         };
@@ -316,8 +289,7 @@ mod tests {
         assert_eq!(table.title, "the golden values → this report");
         let trends: Vec<_> = table.rows.iter().map(|row| [row[0].show(), row[1].show()]).collect();
         assert_eq!(trends, [["worse", "✗ regressed"], ["better", "✓ improved"]]);
-        assert!(format!("{:?}", what_changed(Some(&[]))).contains("Nothing"));
-        assert!(what_changed(None).is_none());
+        assert_eq!(changes_section(&[]).expect("a section").blocks.len(), 1);
     }
 
     /// A small study with expectations of which some are met.
@@ -340,7 +312,8 @@ mod tests {
             let results = |((study, records), wrong): &(&'_ (Study, Vec<Record>), usize)| {
                 let mut one = StudyResults::new(study, records, Tier::Full);
                 one.unsound = vec![("a case".to_owned(), "why".to_owned()); *wrong];
-                let (mood, text) = verdict(&[one]);
+                let findings = ReportFindings::new(&[one]).expect("sound cases");
+                let (mood, text) = verdict(&findings.verdict).expect("a verdict");
                 format!("{mood:?} {text}")
             };
             all.iter().map(results).collect::<Vec<_>>()
@@ -362,8 +335,9 @@ mod tests {
                 .map(|(study, records)| StudyResults::new(study, records, Tier::Full))
                 .collect();
             let making = Making::default();
-            let page =
-                answer_page(&Answers { results: &results, changes: None, making: &making, race: None });
+            let findings = ReportFindings::new(&results).expect("sound cases");
+            let answers = Answers { results: &results, changes: None, making: &making, findings: &findings };
+            let page = answer_page(&answers);
             let lead = page.expect("a page").lead;
             let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
             assert_eq!(listed.matches("](studies/").count(), links, "{lead}");
@@ -418,32 +392,11 @@ mod tests {
     }
 
     #[test]
-    fn of_equals_the_first_study_answers_the_race_none_and_every_study_is_linked_once() {
-        let all = ["a", "b", "c", "d"].map(|name| study(name, &[]));
-        let found = |worths: [Option<usize>; 4], race: usize| {
-            let mut studies: Vec<Study> = all.iter().map(|(study, _)| study.clone()).collect();
-            studies[race].is_race = true;
-            let results: Vec<_> =
-                studies.iter().map(|study| StudyResults::new(study, &[], Tier::Full)).collect();
-            let place =
-                |one: &StudyResults<'_>| results.iter().position(|other| other.study.name == one.study.name);
-            study_with_most(&results, |one| Some((worths[place(one)?]?, one.study.name.clone())))
-                .map(|(one, found)| (one.study.name.clone(), found))
-        };
-        let is = |name: &str| Some((name.to_owned(), name.to_owned()));
-        assert_eq!(found([Some(1), Some(3), Some(3), Some(2)], 3), is("b"));
-        assert_eq!(found([Some(3), Some(1), Some(3), None], 3), is("a"));
-        assert_eq!(found([Some(3), None, Some(1), Some(4)], 0), is("d"));
-        assert_eq!(found([Some(3), None, None, None], 0), None);
-        let section = CHANGES.told("So it is.", ["b", "a_x", "b"], vec![Block::Code("c".to_owned())]);
+    fn every_study_is_linked_once() {
+        let question = Question { heading: "What changed?", id: "changes" };
+        let section = question.answered("So it is.", ["b", "a_x", "b"], vec![Block::Code("c".to_owned())]);
         let text = "So it is. Evidence: [`b`](studies/b.html), [`a_x`](studies/a_x.html).".to_owned();
-        assert_eq!(
-            section,
-            Section::new(
-                "What changed?",
-                "changes",
-                vec![Block::Paragraph(text), Block::Code("c".to_owned())]
-            )
-        );
+        let blocks = vec![Block::Paragraph(text), Block::Code("c".to_owned())];
+        assert_eq!(section, Section::new("What changed?", "changes", blocks));
     }
 }

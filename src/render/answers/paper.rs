@@ -1,26 +1,15 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
-use crate::case::Case;
-use crate::case::contender::PAPERS;
-use crate::case::quantity::{Quantity, Sample};
-use crate::judge::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations};
+use crate::judge::answers::paper::{PaperFinding, PaperRun, paper_runs};
 use crate::judge::study_results::StudyResults;
 use crate::record::{Record, Status};
-use crate::render::answers::{Answer, Question};
+use crate::render::answers::Question;
 use crate::render::chart::{Size, Style};
-use crate::render::number;
-use crate::render::page::{Block, Figure};
-use crate::render::report::labels::{self, QUOTED_CELLS, first_measure};
-use crate::render::report::theory_lines;
+use crate::render::page::{Block, Figure, Section};
+use crate::render::report::{labels, theory_lines};
 use crate::render::{RenderError, templates};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
-use oedometer_soil::material::Material;
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
-
-/// Number of the figure at large strain.
-const LARGE_STRAIN_FIGURE: u32 = 4;
 
 /// Methods of a figure of consolidation, the paper's first.
 const MOST_METHODS: usize = 3;
@@ -28,89 +17,26 @@ const MOST_METHODS: usize = 3;
 /// The size of one figure of four in a row.
 const QUARTER: Size = Size { width: 400.0, plot_height: 300.0, equal_units: false };
 
-/// The paper's column at small or at large strain: its run of the paper's method on ten cells.
-struct PaperRun<'a> {
-    results: &'a StudyResults<'a>,
-    record: &'a Record,
-}
-
-/// Four figures with the theory line, and how far the runs are from it.
-pub fn answer(results: &[StudyResults<'_>]) -> Result<Answer, RenderError> {
-    let runs: Vec<(u32, PaperRun<'_>)> = [(3, false), (LARGE_STRAIN_FIGURE, true)]
-        .into_iter()
-        .filter_map(|(number, is_large)| Some((number, run_of(results, is_large)?)))
-        .collect();
-    if runs.is_empty() {
-        return Ok(None);
-    }
+/// How far the runs are from theory, the figures with the theory's lines, and how far the printed equations are from it.
+pub fn section(paper: &PaperFinding, results: &[StudyResults<'_>]) -> Result<Section, RenderError> {
     let mut figures = Vec::new();
-    let mut sentences = Vec::new();
-    for (number, run) in &runs {
-        let own = run.results.study.references[0];
-        figures.push(quarter(
-            theory_lines::isochrones(run.results, run.record)?,
-            &format!("{number}a"),
-            own.name(),
-        ));
-        let shown = beside(run);
-        figures.push(quarter(
-            theory_lines::consolidation(run.results, &shown)?,
-            &format!("{number}b"),
-            own.name(),
-        ));
-        if let Some((error, at)) = largest_error(run.record, own.name()) {
-            sentences.push(format!(
-                "Figs {number}a and {number}b: on {QUOTED_CELLS} cells the pressure of `{PAPERS}` is within {} of {} at every \
-                 output (relative L_2 error at the points; the largest at T_v = {at}).",
-                number::percent(error),
-                labels::solution(own.name())
-            ));
-        }
+    for run in paper_runs(results) {
+        let (number, theory) = (run.number, run.reference());
+        let isochrones = theory_lines::isochrones(run.results, run.record)?;
+        figures.push(quarter(isochrones, &format!("{number}a"), theory));
+        let consolidation = theory_lines::consolidation(run.results, &beside(&run))?;
+        figures.push(quarter(consolidation, &format!("{number}b"), theory));
     }
-    let studies = runs.iter().map(|(_, run)| run.results.study.name.as_str());
-    let mut shown = vec![Block::Figures(figures)];
-    if runs.iter().any(|(number, _)| *number == LARGE_STRAIN_FIGURE) {
-        let printed = PublishedEquations::new()?;
-        shown.push(Block::Paragraph(templates::render(&templates::environment()?, "paper", &printed)?));
+    let mut blocks = vec![Block::Figures(figures)];
+    if let Some(printed) = &paper.printed {
+        blocks.push(Block::Paragraph(templates::sentence("printed-equations", printed)?));
     }
-    Ok(Some(QUESTION.told(&sentences.join(" "), studies, shown)))
-}
-
-/// The sound run of the paper's method on the paper's mesh with most outputs.
-fn run_of<'a>(results: &'a [StudyResults<'a>], is_large: bool) -> Option<PaperRun<'a>> {
-    let fits = |record: &&Record| {
-        let case = &record.case;
-        record.status == Status::Ok
-            && record.stability.is_none()
-            && case.method.to_string() == PAPERS
-            && case.cells == QUOTED_CELLS
-            && is_papers_column(case, is_large)
-            && case.variant().is_empty()
-    };
-    let all = results
-        .iter()
-        .flat_map(|one| one.records.iter().filter(fits).map(move |record| PaperRun { results: one, record }));
-    // The first of those with most outputs.
-    all.reduce(|best, next| {
-        if next.record.case.time_factors.len() > best.record.case.time_factors.len() { next } else { best }
-    })
-}
-
-/// Whether a case is of the soil, height and, at large strain, load of Figs 3 and 4.
-fn is_papers_column(case: &Case, is_large: bool) -> bool {
-    let (scene, load) = if is_large {
-        (SceneKind::XieLeo, LARGE_STRAIN_LOAD)
-    } else {
-        (SceneKind::Terzaghi, case.column.load)
-    };
-    let papers = Column { load, points: case.column.points, ..Column::default() };
-    let soil =
-        Material { law: case.material.law, continuity: case.material.continuity, ..Material::default() };
-    case.scene == scene && *case.column == papers && *case.material == soil
+    let studies = paper.figures.iter().map(|figure| figure.study.as_str());
+    Ok(QUESTION.answered(&templates::sentence("paper", paper)?, studies, blocks))
 }
 
 /// The paper's run with those of other methods that differ in nothing else.
-fn beside<'a>(run: &PaperRun<'a>) -> Vec<&'a Record> {
+fn beside<'a>(run: &PaperRun<'_, 'a>) -> Vec<&'a Record> {
     let mut shown = vec![run.record];
     for record in run.results.records {
         let mut same = record.case.clone();
@@ -135,40 +61,14 @@ fn quarter(mut figure: Figure, number: &str, theory: &str) -> Figure {
     })
 }
 
-/// The largest error of the pressure at the points over all outputs, and its time factor.
-pub(crate) fn largest_error(record: &Record, reference: &str) -> Option<(f64, f64)> {
-    let times = record.case.time_factors.iter();
-    let errors = times.filter_map(|time| {
-        let measure = first_measure(Quantity::Pressure, Sample::Points, reference, *time);
-        Some((measure.error(record)?.value.abs(), *time))
-    });
-    errors.max_by(|a, b| a.0.total_cmp(&b.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, solved};
+    use crate::case::contender::PAPERS;
     use crate::case::planned::Tier;
+    use crate::case::{Quantity, Sample};
     use crate::study::check::Study;
-
-    #[test]
-    fn only_the_papers_column_is_said_to_reproduce_the_paper() {
-        let answered = |scene: &str, inputs: &str| {
-            let text = format!(
-                "title = 't'\nscene = '{scene}'\n{inputs}\n[output]\ntime_factors = [0.1]\n[[sweep]]\n\
-                 method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n"
-            );
-            let (study, records) = solved("s", &text);
-            let results = [StudyResults::new(&study, &records, Tier::Full)];
-            answer(&results).expect("an answer").is_some()
-        };
-        assert!(answered("terzaghi", ""));
-        assert!(answered("xie-leo", "[column]\nload = 200e3"));
-        assert!(!answered("terzaghi", "[material]\nyoungs_modulus = 2e6"));
-        assert!(!answered("terzaghi", "[column]\nheight = 5.0"));
-        assert!(!answered("xie-leo", "[column]\nload = 100e3"));
-    }
 
     /// A study with the pressure errors of the paper's method on ten cells, by time; all others are larger.
     fn with_errors(name: &str, head: &str, outputs: &str, methods: &str) -> (Study, Vec<Record>) {
@@ -206,7 +106,8 @@ mod tests {
         let answered = |all: &[(Study, Vec<Record>)]| {
             let results: Vec<_> =
                 all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
-            answer(&results).expect("an answer")
+            let paper = PaperFinding::new(&results).expect("sound")?;
+            Some(section(&paper, &results).expect("a section"))
         };
         let section = answered(&all).expect("answered");
         let [Block::Paragraph(sentence), Block::Figures(figures), Block::Paragraph(printed)] =

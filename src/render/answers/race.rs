@@ -6,7 +6,7 @@ use crate::judge::race::profile::TIE;
 use crate::judge::race::sensitivity::Change;
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question as RaceQuestion, RaceFindings};
-use crate::render::answers::{Answer, Question, page_of};
+use crate::render::answers::{Question, page_of};
 use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section, slug};
@@ -82,8 +82,7 @@ fn quantity_words(quantity: RaceQuantity) -> &'static str {
 }
 
 /// The profiles with a switch, a panel per family, and what the answers rest on.
-pub(crate) fn answer(findings: Option<&RaceFindings>) -> Result<Answer, RenderError> {
-    let Some(findings) = findings.filter(|findings| !findings.situations.is_empty()) else { return Ok(None) };
+pub(crate) fn section(findings: &RaceFindings) -> Result<Section, RenderError> {
     let named = named(findings);
     let mut views: Vec<(String, Vec<Block>)> = [3, 0, 1, 2]
         .map(|place| RaceQuantity::EACH[place])
@@ -116,7 +115,7 @@ pub(crate) fn answer(findings: Option<&RaceFindings>) -> Result<Answer, RenderEr
         "[Every method in every situation]({MATRIX}) · [race.csv](tables/race.csv) · [profile.csv](tables/profile.csv)"
     );
     blocks.push(Block::Paragraph(link));
-    Ok(Some(Section::new(QUESTION.heading, QUESTION.id, blocks)))
+    Ok(Section::new(QUESTION.heading, QUESTION.id, blocks))
 }
 
 /// The methods with a colour: the best of the moving ones, then those that a reader looks for.

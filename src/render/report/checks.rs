@@ -2,12 +2,13 @@
 //! move, start checks and balances.
 
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks;
 use crate::record::{MeasureRow, Record, Status};
 use crate::render::number;
 use crate::render::page::Block;
-use crate::render::report::labels::{distinct, first_measure};
+use crate::render::report::labels::first_measure;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::measures::{bound_cell, groups_of};
 use std::collections::HashMap;

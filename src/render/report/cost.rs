@@ -5,6 +5,8 @@ use crate::case::IntegratorKind;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::peers::{self, Comparison, Peer};
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
+use crate::judge::path_labels::path_labels;
+use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::spread;
 use crate::record::{Record, Status};
@@ -30,7 +32,7 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
             ChartAxis::log10(labels::error_axis(&measure)),
         );
         let DrawnPaths { paths, note } = drawn(&along_mesh);
-        let labels = labels::path_labels(&paths);
+        let labels = path_labels(&paths);
         let (words, end) = (labels::measure(&measure), labels.subtitle_end());
         chart.subtitle = Some(format!("{words}, T_v = {}{end}", number::time_factor(measure.time_factor)));
         for (path, label) in paths.iter().zip(labels.each) {
@@ -95,7 +97,7 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     let reference = results.study.references.first();
     let precision = reference.and_then(|reference| WorkPrecision::of(results.records, reference.name()));
     let Some(precision) = precision else { return Vec::new() };
-    if labels::distinct(precision.runs.iter().map(|run| run.record.case.integrator)).len() < 2 {
+    if distinct(precision.runs.iter().map(|run| run.record.case.integrator)).len() < 2 {
         return Vec::new();
     }
     let mut blocks = vec![

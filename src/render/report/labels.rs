@@ -2,15 +2,16 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::case::step_label;
+use crate::judge::answers::is_settled;
+use crate::judge::path_labels::PathLabels;
 pub use crate::judge::paths::first_measure;
 use crate::judge::paths::{Path, SeriesSummary};
 use crate::record::Record;
 use crate::render::number;
 use crate::render::table::Cell;
 use crate::study::expectation::{Axis, Measure};
-use oedometer_convergence::{Class, Classification};
+use oedometer_convergence::Class;
 use oedometer_mpm::run::TimeStepRule;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// The words beside an order that is not settled, or instead of one, with their meanings.
 const CLASSES: [(&str, &str); 8] = [
@@ -31,28 +32,6 @@ pub fn class_meanings(rows: &[Vec<Cell>]) -> String {
     met.map(|(class, meaning)| format!("{class}: {meaning}")).collect::<Vec<_>>().join("; ")
 }
 
-/// Cells of the mesh on which errors are quoted: the paper's.
-pub const QUOTED_CELLS: usize = 10;
-
-/// The measures that show what a method converges to.
-pub const CONVERGENCE: [(Quantity, Sample); 4] = [
-    (Quantity::Pressure, Sample::Points),
-    (Quantity::Pressure, Sample::Centres),
-    (Quantity::EffectiveStress, Sample::Points),
-    (Quantity::Settlement, Sample::Surface),
-];
-
-/// Items in the order of their first appearance, each once.
-pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut seen = Vec::new();
-    for item in items {
-        if !seen.contains(&item) {
-            seen.push(item);
-        }
-    }
-    seen
-}
-
 /// Items by their keys, both in the order of their first appearance.
 pub fn grouped<K: PartialEq, V>(items: impl IntoIterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
     let mut groups: Vec<(K, Vec<V>)> = Vec::new();
@@ -71,25 +50,20 @@ pub fn capitalised(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
-/// Whether a series has an order that no longer changes from mesh to mesh.
-pub fn is_settled(class: Class) -> bool {
-    matches!(class, Class::Asymptotic | Class::Superconvergent)
-}
-
 /// The order, with its class unless it is asymptotic; the class alone without an order.
-pub fn order_or_class(found: &Classification) -> String {
-    match found.order {
-        Some(order) if is_settled(found.class) => number::order(order),
-        Some(order) => format!("{} ({})", number::order(order), found.class),
-        None => found.class.name().to_owned(),
+pub fn order_or_class(class: Class, order: Option<f64>) -> String {
+    match order {
+        Some(order) if is_settled(class) => number::order(order),
+        Some(order) => format!("{} ({class})", number::order(order)),
+        None => class.name().to_owned(),
     }
 }
 
 /// The order or class of a series with its error on some mesh, for a cell of a table.
-pub fn order_and_error(found: &Classification, error: Option<f64>) -> String {
+pub fn order_and_error(class: Class, order: Option<f64>, error: Option<f64>) -> String {
     // A hyphen that does not break the line.
     let error = error.map(|error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
-    order_or_class(found) + &error.unwrap_or_default()
+    order_or_class(class, order) + &error.unwrap_or_default()
 }
 
 /// Sorted ticks for the sizes of levels.
@@ -171,14 +145,6 @@ pub fn error_axis(measure: &Measure) -> String {
     }
 }
 
-/// Labels of paths that share a figure or a table: what differs, and what all share.
-pub struct PathLabels {
-    /// One label a path.
-    pub each: Vec<String>,
-    /// What all paths share.
-    pub shared: String,
-}
-
 impl PathLabels {
     /// The labels with the places of a path's errors, where they are not those of the figure.
     #[must_use]
@@ -190,41 +156,6 @@ impl PathLabels {
         }
         self
     }
-
-    /// What all share, as the end of a subtitle.
-    pub fn subtitle_end(&self) -> String {
-        if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }
-    }
-}
-
-/// A part of a label with a long number as a study has it: `reload_modulus=1.2e7`.
-fn short(part: &str) -> String {
-    let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() >= 1e5);
-    match part.split_once('=').and_then(|(name, value)| Some((name, number(value)?))) {
-        Some((name, value)) => format!("{name}={value:e}"),
-        None => part.to_owned(),
-    }
-}
-
-/// Splits the labels of paths into what differs and what is shared; the method is always named.
-pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
-    let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
-    let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
-    for own in &parts {
-        let once: BTreeSet<&str> = own.iter().map(String::as_str).collect();
-        for part in once {
-            *paths_with.entry(part).or_default() += 1;
-        }
-    }
-    let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
-    let each = parts.iter().map(|own| {
-        let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
-        differing.map(|(_, part)| short(part)).collect::<Vec<_>>().join(", ")
-    });
-    let shared = parts
-        .first()
-        .map_or(Vec::new(), |own| own[1..].iter().filter(|part| is_shared(part)).cloned().collect());
-    PathLabels { each: each.collect(), shared: shared.join(", ") }
 }
 
 /// Most series of a figure with several soils.
@@ -360,8 +291,6 @@ mod tests {
                 "compressibility of the water 1/K_w (1/Pa)"
             ]
         );
-        let found =
-            |class: Class, order: Option<f64>| Classification { order, ..Classification::new(class, "") };
         for (class, order, words) in [
             (Class::Asymptotic, Some(1.998), "2.00"),
             (Class::Superconvergent, Some(3.0), "3.00"),
@@ -369,17 +298,10 @@ mod tests {
             (Class::Contaminated, Some(1.0), "1.00 (contaminated)"),
             (Class::Divergent, None, "divergent"),
         ] {
-            let found = found(class, order);
-            assert_eq!(order_or_class(&found), words);
-            assert_eq!(order_and_error(&found, Some(0.0012)), format!("{words}, 1.20e\u{2011}3"));
-            assert_eq!(order_and_error(&found, None), words);
+            assert_eq!(order_or_class(class, order), words);
+            assert_eq!(order_and_error(class, order, Some(0.0012)), format!("{words}, 1.20e\u{2011}3"));
+            assert_eq!(order_and_error(class, order, None), words);
         }
-        let parts =
-            ["reload_modulus=12000000", "preconsolidation=100000", "load=99999", "x=-100000", "GIMP", "a=b"];
-        assert_eq!(
-            parts.map(short),
-            ["reload_modulus=1.2e7", "preconsolidation=1e5", "load=99999", "x=-1e5", "GIMP", "a=b"]
-        );
         assert_eq!(["", "a b", "σ c"].map(capitalised), ["", "A b", "Σ c"]);
     }
 }

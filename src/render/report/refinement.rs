@@ -2,7 +2,8 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::levels::{LevelError, LevelValue, levels_of};
-use crate::judge::paths::{Path, SeriesSummary, first_norm};
+use crate::judge::path_labels::path_labels;
+use crate::judge::paths::{Path, SeriesSummary, common_times, first_norm, shown_time};
 use crate::judge::study_results::StudyResults;
 use crate::record::Record;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
@@ -13,7 +14,6 @@ use crate::render::report::labels;
 use crate::render::report::labels::{DrawnPaths, drawn, first_measure, grouped};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
-use oedometer_convergence::WINDOW;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;
 
@@ -39,7 +39,7 @@ const MOST_NOTES: usize = 20;
 
 /// Figures and tables of a study along an axis; empty without refinement along it.
 pub fn blocks(results: &StudyResults<'_>, axis: Axis) -> Vec<Block> {
-    let all = longest_paths(results, axis);
+    let all = results.refined(axis);
     if all.is_empty() {
         return Vec::new();
     }
@@ -84,34 +84,16 @@ pub fn mesh_figure(
     sample: Sample,
     time_factor: f64,
 ) -> Option<Figure> {
-    let all = longest_paths(results, Axis::Cells);
+    let all = results.refined(Axis::Cells);
     let own = results.study.references.first()?.name();
     let few = drawn(&all).paths;
     if few.is_empty() { None } else { figure(results, &few, Axis::Cells, quantity, sample, own, time_factor) }
-}
-
-/// Paths of at least three levels: two levels have no order.
-pub fn longest_paths<'a>(results: &StudyResults<'a>, axis: Axis) -> Vec<Path<'a>> {
-    let mut all = results.paths.along(axis).to_vec();
-    all.retain(|path| path.records.len() >= WINDOW);
-    all
 }
 
 /// Whether the study has expectations against another model than its own.
 fn floors_of_model(results: &StudyResults<'_>) -> bool {
     let own = results.study.references.first().copied();
     results.study.expectations.iter().any(|one| one.reference.is_some() && one.reference != own)
-}
-
-fn common_times(all: &[Path<'_>]) -> Vec<f64> {
-    let first = all[0].records[0].case.time_factors.iter().copied();
-    first.filter(|time| all.iter().all(|path| path.records[0].case.time_factors.contains(time))).collect()
-}
-
-/// The time of the figures and of the table that stands open: the middle one of those that all paths have.
-pub fn shown_time(all: &[Path<'_>]) -> Option<f64> {
-    let times = all.first().map_or(Vec::new(), |_| common_times(all));
-    times.get(times.len().saturating_sub(1) / 2).copied()
 }
 
 fn heading(axis: Axis) -> &'static str {
@@ -146,7 +128,7 @@ fn figure(
         ChartAxis::log10(labels::axis(axis)).with_ticks(ticks),
         ChartAxis::log10(labels::error_axis(&measure)),
     );
-    let labels = labels::path_labels(all).with_places(&summaries, sample);
+    let labels = path_labels(all).with_places(&summaries, sample);
     chart.subtitle = Some(format!(
         "T_v = {}, against {reference}{}",
         number::time_factor(time_factor),
@@ -250,7 +232,7 @@ fn orders_table(
     time_factor: f64,
 ) -> Table {
     let levels = levels_of(all, axis);
-    let labels = labels::path_labels(all);
+    let labels = path_labels(all);
     let mut columns = columns("method | error of");
     columns.extend(levels.iter().map(|(_, record)| TableColumn::number(level_name(record, axis))));
     if shows_orders(axis, reference) {

@@ -1,6 +1,7 @@
 //! Isochrones of the pore pressure and the degree of consolidation, with the theory line.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
+use crate::judge::answers::QUOTED_CELLS;
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
 use crate::measure::theory::{
@@ -12,7 +13,7 @@ use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
-use crate::render::report::labels::{QUOTED_CELLS, first_measure, grouped};
+use crate::render::report::labels::{first_measure, grouped};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_mpm::scene::SceneKind;

@@ -1,11 +1,7 @@
 //! What it takes to come within a bound, in sentences from their template.
 
-use crate::case::Quantity;
 use crate::judge::findings::QuantityWithin;
-use crate::render::report::labels;
-use crate::render::{RenderError, number, templates};
-use minijinja::value::Serde;
-use oedometer_soil::wording::duration;
+use crate::render::{RenderError, templates};
 use serde::Serialize;
 
 /// What the template is filled with.
@@ -19,21 +15,13 @@ struct Quantities<'a> {
 /// # Errors
 /// If the template cannot be filled.
 pub fn sentences(quantities: &[QuantityWithin]) -> Result<String, RenderError> {
-    let mut environment = templates::environment()?;
-    environment.add_filter("quantity", |quantity: Serde<Quantity>| {
-        labels::capitalised(labels::quantity(quantity.0))
-    });
-    environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
-    environment.add_filter("duration", duration);
-    environment.add_filter("error", number::percent);
-    environment.add_filter("time_factor", number::time_factor);
-    templates::render(&environment, "within", &Quantities { quantities })
+    templates::sentence("within", &Quantities { quantities })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::Sample;
+    use crate::case::{Quantity, Sample};
     use crate::judge::findings::within::{BoundWithin, WithinFinding};
 
     #[test]

@@ -1,11 +1,11 @@
 //! Tables of a foreign result compared with references.
 
 use crate::case::quantity::{Norm, Quantity};
+use crate::judge::paths::distinct;
 use crate::judge::paths::first_norm;
 use crate::judge::score::score_series::ScoredSeries;
 use crate::judge::score::{Score, WorstPlace, error_key};
 use crate::record::ErrorRow;
-use crate::render::report::labels::distinct;
 use crate::render::table;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::tables::measures::NOT_RESOLVED;

@@ -14,9 +14,9 @@ use crate::cli::trust::{self, TrustArguments};
 use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
+use crate::judge::answers::ReportFindings;
 use crate::judge::findings::convergence::convergence_tables;
 use crate::judge::findings::within::within;
-use crate::judge::race::RaceFindings;
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
 use crate::record::provenance::Machine;
@@ -250,20 +250,20 @@ fn write_files(
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
     write_both(&studies, "index", "README", &index_page(results))?;
-    let findings = RaceFindings::from_studies(results.iter().map(|one| (one.study, one.records)));
-    if let Some(findings) = &findings {
+    let findings = ReportFindings::new(results)?;
+    write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(&findings)? + "\n"))?;
+    if let Some(race) = &findings.race {
         let tables = out.join("tables");
-        write_page(&tables.join("race.csv"), &race::whole_table(findings).to_plain_csv()?)?;
-        write_page(&tables.join("profile.csv"), &race::profile_table(findings).to_plain_csv()?)?;
-        write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(findings)? + "\n"))?;
+        write_page(&tables.join("race.csv"), &race::whole_table(race).to_plain_csv()?)?;
+        write_page(&tables.join("profile.csv"), &race::profile_table(race).to_plain_csv()?)?;
     }
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, making: &making, race: findings.as_ref() };
+    let answers = Answers { results, changes, making: &making, findings: &findings };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
     write_page(&out.join("README.md"), &linked_to_files(&render_markdown(&front)?, out, results))?;
-    if let Some(findings) = &findings {
-        let page = matrix_page(findings);
+    if let Some(race) = &findings.race {
+        let page = matrix_page(race);
         write_both(out, "race", "race", &page)?;
         write_page(&out.join("race.md"), &linked_to_files(&render_markdown(&page)?, out, results))?;
     }

@@ -1,0 +1,64 @@
+//! Labels of paths that stand side by side: what differs, and what all share.
+
+use crate::judge::paths::Path;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Labels of paths that share a figure or a table: what differs, and what all share.
+pub struct PathLabels {
+    /// One label a path.
+    pub each: Vec<String>,
+    /// What all paths share.
+    pub shared: String,
+}
+
+impl PathLabels {
+    /// What all share, as the end of a subtitle.
+    pub fn subtitle_end(&self) -> String {
+        if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }
+    }
+}
+
+/// A part of a label with a long number as a study has it: `reload_modulus=1.2e7`.
+fn short(part: &str) -> String {
+    let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() >= 1e5);
+    match part.split_once('=').and_then(|(name, value)| Some((name, number(value)?))) {
+        Some((name, value)) => format!("{name}={value:e}"),
+        None => part.to_owned(),
+    }
+}
+
+/// Splits the labels of paths into what differs and what is shared; the method is always named.
+pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
+    let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
+    let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
+    for own in &parts {
+        let once: BTreeSet<&str> = own.iter().map(String::as_str).collect();
+        for part in once {
+            *paths_with.entry(part).or_default() += 1;
+        }
+    }
+    let is_shared = |part: &String| paths_with.get(part.as_str()) == Some(&parts.len());
+    let each = parts.iter().map(|own| {
+        let differing = own.iter().enumerate().filter(|(place, part)| *place == 0 || !is_shared(part));
+        differing.map(|(_, part)| short(part)).collect::<Vec<_>>().join(", ")
+    });
+    let shared = parts
+        .first()
+        .map_or(Vec::new(), |own| own[1..].iter().filter(|part| is_shared(part)).cloned().collect());
+    PathLabels { each: each.collect(), shared: shared.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_number_is_written_as_a_study_has_it() {
+        let parts =
+            ["reload_modulus=12000000", "preconsolidation=100000", "load=99999", "x=-100000", "GIMP", "a=b"];
+        assert_eq!(
+            parts.map(short),
+            ["reload_modulus=1.2e7", "preconsolidation=1e5", "load=99999", "x=-1e5", "GIMP", "a=b"]
+        );
+    }
+}
