@@ -126,7 +126,9 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     // Without records of several methods nothing is recommended.
     let alone: Vec<Record> = records.iter().take(1).cloned().collect();
     let results = [StudyResults::new(&study, &alone, Tier::Full)];
-    let page = answer_page(&Answers { results: &results, changes: None, ..answers }).expect("a page");
+    let findings = ReportFindings::new(&results).expect("sound cases");
+    let answers = Answers { results: &results, changes: None, findings: &findings, ..answers };
+    let page = answer_page(&answers).expect("a page");
     assert!(page.sections.is_empty(), "nothing is asked without runs to answer from");
 }
 

@@ -97,14 +97,14 @@ pub struct VerdictFinding {
 
 impl VerdictFinding {
     fn new(results: &[StudyResults<'_>]) -> Self {
-        let sum = |count: fn(&StudyResults<'_>) -> usize| results.iter().map(count).sum::<usize>();
+        let sum = |count: &dyn Fn(&StudyResults<'_>) -> usize| results.iter().map(count).sum::<usize>();
         let failing = results.iter().filter(|one| !one.passes()).map(|one| one.study.name.clone());
         Self {
-            expectations: sum(|one| one.judgements.len()),
-            met: sum(|one| one.met()),
+            expectations: sum(&|one| one.judgements.len()),
+            met: results.iter().map(StudyResults::met).sum(),
             studies: results.len(),
-            runs: sum(|one| one.records.len()),
-            unsound: sum(|one| one.unsound.len()),
+            runs: sum(&|one| one.records.len()),
+            unsound: sum(&|one| one.unsound.len()),
             failing: failing.collect(),
         }
     }

@@ -95,11 +95,11 @@ impl TimeStepFinding {
     }
 
     fn from_rows(study: &str, time_factor: f64, rows: &[Row<'_>]) -> Self {
-        let rounded = |row: &Row<'_>| row.order.map(|order| (100.0 * order).round() as i64);
+        let rounded = |row: &Row<'_>| row.order.map(|order| (100.0 * order).round().to_bits());
         let orders = grouped(rows, |row| (row.class.name(), rounded(row)));
         let orders = orders.into_iter().map(|((_, rounded), rows)| StepOrder {
             class: rows[0].class,
-            order: rounded.map(|hundredths| hundredths as f64 / 100.0),
+            order: rounded.map(|hundredths| f64::from_bits(hundredths) / 100.0),
             is_settled: is_settled(rows[0].class),
             runs: rows.iter().map(|row| row.label.clone()).collect(),
         });
@@ -108,7 +108,7 @@ impl TimeStepFinding {
             Some(UnstableStep {
                 run: row.label.clone(),
                 step: step_label(&record.case.time_step),
-                ending: record.status.name().to_owned(),
+                ending: record.status.name().clone(),
             })
         });
         let changes = rows.iter().filter_map(Row::change);
