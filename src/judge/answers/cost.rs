@@ -157,8 +157,7 @@ mod tests {
 
     fn precision<'a>(records: &'a [Record], errors: &[f64]) -> WorkPrecision<'a> {
         let wall = spread(&[1.0, 1.0]).expect("two samples");
-        let run =
-            |(record, error): (&'a Record, &f64)| TimedRun { record, error: *error, wall, on_front: false };
+        let run = |(record, error): (&'a Record, &f64)| TimedRun { record, error: *error, wall };
         let runs = records.iter().zip(errors).map(run).collect();
         WorkPrecision { runs, cheapest: Vec::new(), noise_floor: None }
     }

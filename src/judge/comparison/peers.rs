@@ -59,6 +59,12 @@ pub static PEERS: LazyLock<Vec<Peer>> = LazyLock::new(|| {
     read(text).expect("a test reads the table of the sources")
 });
 
+/// The programs with their meshes, each time scheme by itself.
+pub fn by_program_and_scheme() -> Vec<(String, Vec<&'static Peer>)> {
+    let groups = grouped(PEERS.iter(), |peer| (peer.name.clone(), peer.time_scheme.clone()));
+    groups.into_iter().map(|((program, _), peers)| (program, peers)).collect()
+}
+
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {
     csv::Reader::from_reader(text.as_bytes()).deserialize().collect()
 }
@@ -227,7 +233,7 @@ mod tests {
         let wall = spread(&[1.0, 1.0]).expect("two samples");
         let is_ahead = |errors: [Option<f64>; 3]| {
             let run = with(errors);
-            let runs = [TimedRun { record: &run, error: 0.0, wall, on_front: false }];
+            let runs = [TimedRun { record: &run, error: 0.0, wall }];
             compare(&runs)[0].ahead.is_some()
         };
         let theirs = PEERS[0].errors();
@@ -249,7 +255,7 @@ mod tests {
         // The first that is nowhere worse, with its own errors.
         let [worse, better] = [2.0, 0.5].map(|factor| theirs.map(|error| Some(factor * error)));
         let runs = [worse, better, equal].map(with);
-        let timed = |record| TimedRun { record, error: 0.0, wall, on_front: false };
+        let timed = |record| TimedRun { record, error: 0.0, wall };
         let runs: Vec<TimedRun<'_>> = runs.iter().map(timed).collect();
         let first = compare(&runs)[0].ahead.expect("two are");
         assert!(std::ptr::eq(first.0, &raw const runs[1]) && first.1 == better, "{:?}", first.1);

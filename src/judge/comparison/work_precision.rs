@@ -1,9 +1,9 @@
 //! Error against cost: timed runs by error and wall time, and over conductivity and stiffness the cheapest method within a
 //! tolerance and the methods that fail.
 
-use crate::case::Quantity;
 use crate::case::work_estimate::seconds_per_step;
-use crate::judge::paths::first_error;
+use crate::case::{IntegratorKind, Quantity, SolverName};
+use crate::judge::paths::{first_error, grouped};
 use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
 use oedometer_convergence::{CostPoint, front};
@@ -21,8 +21,6 @@ pub struct TimedRun<'a> {
     pub error: f64,
     /// Wall time over the repeats, s.
     pub wall: WallSpread,
-    /// Whether no other run is both cheaper and better.
-    pub on_front: bool,
 }
 
 /// The cheapest run within a tolerance.
@@ -55,15 +53,41 @@ impl<'a> WorkPrecision<'a> {
             return None;
         }
         runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
-        let points: Vec<_> = runs.iter().map(TimedRun::point).collect();
-        for (run, on_front) in runs.iter_mut().zip(front(&points)) {
-            run.on_front = on_front;
-        }
         let cheapest = TOLERANCES.map(|tolerance| Cheapest {
             tolerance,
             run: runs.iter().find(|run| run.error <= tolerance).cloned(),
         });
         Some(Self { cheapest: cheapest.to_vec(), noise_floor: session_noise(&runs), runs })
+    }
+}
+
+/// The runs of a method with an integrator that no other of them beats in both time and error.
+#[derive(Clone, Debug)]
+pub struct MethodFront<'b, 'a> {
+    /// Method.
+    pub method: SolverName,
+    /// Integrator.
+    pub integrator: IntegratorKind,
+    /// The runs, the cheapest first.
+    pub runs: Vec<&'b TimedRun<'a>>,
+}
+
+impl<'a> WorkPrecision<'a> {
+    /// The front of each method with each integrator.
+    pub fn fronts(&self) -> Vec<MethodFront<'_, 'a>> {
+        let groups = grouped(&self.runs, |run| {
+            (run.record.case.method.to_string(), run.record.case.integrator.name())
+        });
+        let fronts = groups.into_iter().map(|(_, runs)| {
+            let points: Vec<_> = runs.iter().map(|run| run.point()).collect();
+            let best = runs.iter().zip(front(&points)).filter(|(_, on_front)| *on_front);
+            MethodFront {
+                method: runs[0].record.case.method,
+                integrator: runs[0].record.case.integrator,
+                runs: best.map(|(run, _)| *run).collect(),
+            }
+        });
+        fronts.collect()
     }
 }
 
@@ -76,7 +100,7 @@ impl TimedRun<'_> {
 fn timed<'a>(record: &'a Record, reference: &str) -> Option<TimedRun<'a>> {
     let wall = spread(&record.wall_alone())?;
     let error = worst_error(record, reference).filter(|_| record.status == Status::Ok)?;
-    Some(TimedRun { record, error, wall, on_front: false })
+    Some(TimedRun { record, error, wall })
 }
 
 /// Error of the pore pressure at the points in its first norm, the worst of all outputs.
@@ -347,14 +371,14 @@ time_step = [{ growth = 0.005 }]
             record.wall.extend(vec![sample(0.1, false); 9]);
         }
         let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
-        let found: Vec<_> =
-            precision.runs.iter().map(|run| (run.wall.median, run.error, run.on_front)).collect();
-        assert_eq!(found, [(5.0, 8e-3, true), (6.0, 8e-4, true), (10.0, 2e-2, false)]);
-        let cheapest = precision
-            .cheapest
-            .iter()
-            .map(|one| (one.tolerance, one.run.as_ref().map(|run| (run.wall.median, run.on_front))));
-        let expected = [(1e-2, Some((5.0, true))), (1e-3, Some((6.0, true))), (1e-4, None)];
+        let found: Vec<_> = precision.runs.iter().map(|run| (run.wall.median, run.error)).collect();
+        assert_eq!(found, [(5.0, 8e-3), (6.0, 8e-4), (10.0, 2e-2)]);
+        let fronts = precision.fronts();
+        let best = fronts.iter().flat_map(|front| &front.runs).map(|run| run.wall.median);
+        assert_eq!(best.collect::<Vec<_>>(), [5.0, 6.0]);
+        let cheapest =
+            precision.cheapest.iter().map(|one| (one.tolerance, one.run.as_ref().map(|run| run.wall.median)));
+        let expected = [(1e-2, Some(5.0)), (1e-3, Some(6.0)), (1e-4, None)];
         assert_eq!(cheapest.collect::<Vec<_>>(), expected);
         for record in &mut records[1..] {
             record.wall.retain(|sample| !sample.alone);

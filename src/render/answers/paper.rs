@@ -22,10 +22,17 @@ pub fn section(paper: &PaperFinding, results: &[StudyResults<'_>]) -> Result<Sec
     let mut figures = Vec::new();
     for run in paper_runs(results) {
         let (number, theory) = (run.number, run.reference());
+        // The second pair reads as the first.
+        let is_first = figures.is_empty();
         let isochrones = theory_lines::isochrones(run.results, run.record)?;
-        figures.push(quarter(isochrones, &format!("{number}a"), theory));
         let consolidation = theory_lines::consolidation(run.results, &beside(&run))?;
-        figures.push(quarter(consolidation, &format!("{number}b"), theory));
+        for (figure, letter) in [(isochrones, 'a'), (consolidation, 'b')] {
+            let mut figure = quarter(figure, &format!("{number}{letter}"), theory);
+            if !is_first {
+                figure.caption.clear();
+            }
+            figures.push(figure);
+        }
     }
     let mut blocks = vec![Block::Figures(figures)];
     if let Some(printed) = &paper.printed {

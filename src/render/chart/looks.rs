@@ -102,7 +102,8 @@ pub(super) fn looks(chart: &Chart) -> Vec<Look> {
             is_theory,
             has_line: series.style != Style::Markers,
             dash: if series.style == Style::Context { "" } else { DASHES[slot % DASHES.len()] },
-            marker: matches!(series.style, Style::Markers | Style::LineAndMarkers).then_some(slot),
+            marker: matches!(series.style, Style::Markers | Style::LineAndMarkers)
+                .then_some(series.marker.unwrap_or(slot)),
         }
     };
     let mut looks = Vec::new();

@@ -218,12 +218,14 @@ pub struct Series {
     pub style: Style,
     /// Number of its colour, marker and dashes; the place of its name in the chart if `None`.
     pub slot: Option<usize>,
+    /// Number of its marker, where that is another one.
+    pub marker: Option<usize>,
 }
 
 impl Series {
     /// A series of markers joined by lines.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), points, style: Style::LineAndMarkers, slot: None }
+        Self { name: name.into(), points, style: Style::LineAndMarkers, slot: None, marker: None }
     }
 
     /// The curve that the others are compared with.
@@ -242,6 +244,13 @@ impl Series {
     #[must_use]
     pub fn slot(mut self, slot: usize) -> Self {
         self.slot = Some(slot);
+        self
+    }
+
+    /// Sets the number of the marker alone.
+    #[must_use]
+    pub fn marker(mut self, marker: usize) -> Self {
+        self.marker = Some(marker);
         self
     }
 }

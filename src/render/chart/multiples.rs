@@ -1,9 +1,11 @@
 //! Small multiples: a figure with more series than colours becomes panels with one scale. Each panel has a few series in
 //! colour, over the others in grey.
 
+use crate::judge::paths::grouped;
 use crate::render::chart::draw::ends;
 use crate::render::chart::svg::Px;
 use crate::render::chart::{Chart, Series, Style};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Most series of a panel besides theory: as many as there are colours that a colour-blind reader tells apart.
@@ -23,16 +25,17 @@ impl Chart {
                 names.push(&series.name);
             }
         }
-        if names.len() <= MOST_SERIES || self.field.is_some() {
+        let slots: Option<BTreeSet<usize>> =
+            self.series.iter().filter(|series| is_counted(series)).map(|series| series.slot).collect();
+        let colours = slots.map_or(names.len(), |slots| slots.len());
+        if colours <= MOST_SERIES || self.field.is_some() {
             return Vec::new();
         }
-        let panels = names.len().div_ceil(MOST_SERIES);
-        let shown: Vec<&[&str]> = names.chunks(names.len().div_ceil(panels)).collect();
-        shown
-            .iter()
-            .enumerate()
-            .map(|(number, shown)| self.panel(&names, shown, (number + 1, panels)))
-            .collect()
+        let shown = by_method(&names);
+        let panel = |(number, names_shown): (usize, &Vec<&str>)| {
+            self.panel(&names, names_shown, (number + 1, shown.len()))
+        };
+        shown.iter().enumerate().map(panel).collect()
     }
 
     fn panel(&self, names: &[&str], shown: &[&str], (number, of): (usize, usize)) -> Self {
@@ -55,12 +58,35 @@ impl Chart {
         });
         panel.triangles.retain(|triangle| is_shown(&triangle.beside));
         panel.series = series;
-        panel.title = format!("{}, {number} of {of}", self.title);
+        let methods: BTreeSet<&str> = shown.iter().map(|name| method_of(name)).collect();
+        panel.title = match methods.iter().next() {
+            Some(method) if methods.len() == 1 && shown.len() > 1 => format!("{}: {method}", self.title),
+            _ => format!("{}, {number} of {of}", self.title),
+        };
         panel.x = panel.x.between(x.low, x.high);
         panel.y = panel.y.between(y.low, y.high);
         panel.size.width = PANEL_WIDTH;
         panel
     }
+}
+
+/// The method that a label begins with.
+fn method_of(name: &str) -> &str {
+    name.split_once(", ").map_or(name, |(method, _)| method)
+}
+
+/// Names in panels of nearly the same number. The series of a method stay together, unless they alone are too many.
+fn by_method<'a>(names: &[&'a str]) -> Vec<Vec<&'a str>> {
+    let fair = names.len().div_ceil(names.len().div_ceil(MOST_SERIES));
+    let groups = grouped(names.iter().copied(), |name| method_of(name));
+    let mut panels: Vec<Vec<&str>> = Vec::new();
+    for part in groups.iter().flat_map(|(_, names)| names.chunks(MOST_SERIES)) {
+        match panels.last_mut() {
+            Some(panel) if panel.len() + part.len() <= fair => panel.extend(part),
+            _ => panels.push(part.to_vec()),
+        }
+    }
+    panels
 }
 
 /// Whether a series takes a colour: theory is dark, and what has no name has no entry in the legend.
@@ -137,5 +163,22 @@ mod tests {
         let svg = whole.svg().expect("it is drawn");
         assert_eq!(svg.matches(" of 3</text>").count(), 3);
         assert!(svg.contains("<title>method 0</title>") && svg.contains("<title>method 14</title>"));
+    }
+
+    #[test]
+    fn the_series_of_a_method_share_a_panel_and_series_of_few_colours_share_a_plot() {
+        let names = ["A, 1", "A, 2", "A, 3", "A, 4", "B, 1", "B, 2", "C", "D"];
+        assert_eq!(by_method(&names), [names[..4].to_vec(), names[4..].to_vec()]);
+        let many: Vec<String> = (0..9).map(|one| format!("A, {one}")).collect();
+        let many: Vec<&str> = many.iter().map(String::as_str).collect();
+        let panels = by_method(&many);
+        assert_eq!(panels.iter().map(Vec::len).collect::<Vec<_>>(), [7, 2]);
+        let mut whole = chart(0);
+        whole.series.extend(many.iter().map(|name| Series::new(*name, vec![(0.1, 1.0)])));
+        assert_eq!(whole.panels()[0].title, "E: A");
+        for (place, series) in whole.series.iter_mut().enumerate() {
+            series.slot = Some(place % 3);
+        }
+        assert_eq!(whole.panels().len(), 0);
     }
 }

@@ -4,13 +4,13 @@
 use crate::case::IntegratorKind;
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::comparison::peers::{self, Comparison, Peer};
-use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
+use crate::judge::comparison::work_precision::WorkPrecision;
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::spread;
 use crate::record::{Record, Status};
-use crate::render::chart::{Chart, ChartAxis, PointName, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size};
 use crate::render::number;
 use crate::render::page::Block;
 use crate::render::report::figure_of;
@@ -112,10 +112,11 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     blocks
 }
 
-/// Slot of the markers of other programs, which no integrator has.
+/// Slot of other programs, which no method has.
 const PEERS_SLOT: usize = 6;
 
-/// Runs by their integrator, the front with the names of its runs, and other programs on the same column.
+/// A line per method and integrator over its best runs, and a grey one per other program on the same column; names stand at
+/// the ends of the lines.
 pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
     let mut chart = Chart::new(
         "Error against wall time",
@@ -123,32 +124,30 @@ pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
         ChartAxis::log10("error of the pore pressure, worst of the outputs (–)"),
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
-    let point = |run: &TimedRun<'_>| (run.wall.median, run.error);
-    for kind in IntegratorKind::ALL {
-        let runs = precision.runs.iter().filter(|run| run.record.case.integrator == kind);
-        let points: Vec<_> = runs.map(point).collect();
-        if !points.is_empty() {
-            chart.series.push(Series::new(kind.name(), points).style(Style::Markers));
+    chart.naming = Naming::Hover;
+    let fronts = precision.fronts();
+    let methods = distinct(fronts.iter().map(|front| front.method));
+    for front in &fronts {
+        let slot = methods.iter().position(|method| *method == front.method).unwrap_or_default();
+        let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
+        let points = front.runs.iter().map(|run| (run.wall.median, run.error)).collect();
+        let series = Series::new(format!("{}, {}", front.method, front.integrator.name()), points);
+        add_named(&mut chart, series.slot(slot).marker(marker.unwrap_or_default()));
+    }
+    if peers::solve_their_column(&precision.runs) {
+        for (program, peers) in peers::by_program_and_scheme() {
+            let points = peers.iter().map(|peer| (peer.seconds, peer.worst_error())).collect();
+            add_named(&mut chart, Series::new(program, points).slot(PEERS_SLOT));
         }
     }
-    let front: Vec<_> = precision.runs.iter().filter(|run| run.on_front).collect();
-    let line = front.iter().map(|run| point(run)).collect();
-    chart.series.push(Series::theory("no run is both cheaper and more accurate", line));
-    chart.names.extend(front.iter().map(|run| {
-        let case = &run.record.case;
-        PointName { at: point(run), name: format!("{}, {}", case.method, case.cells) }
-    }));
-    if peers::solve_their_column(&precision.runs) {
-        let place = |peer: &Peer| (peer.seconds, peer.worst_error());
-        let points = peers::PEERS.iter().map(place).collect();
-        chart.series.push(Series::new("other programs", points).style(Style::Markers).slot(PEERS_SLOT));
-        chart.names.extend(
-            peers::PEERS
-                .iter()
-                .map(|peer| PointName { at: place(peer), name: format!("{}, {}", peer.name, peer.cells) }),
-        );
-    }
     chart
+}
+
+/// Adds a series with its name at the end of its line.
+fn add_named(chart: &mut Chart, series: Series) {
+    let last = series.points.last().copied();
+    chart.names.extend(last.map(|at| PointName { at, name: series.name.clone() }));
+    chart.series.push(series);
 }
 
 /// The caption of the chart of wall times.
@@ -157,13 +156,13 @@ pub fn caption(precision: &WorkPrecision<'_>) -> String {
         format!(" Timed twice in this session, the same run differs by {:.0} %.", 100.0 * noise)
     });
     let others = if peers::solve_their_column(&precision.runs) {
-        " Other programs were timed on another day."
+        " Grey: other programs, timed on another day."
     } else {
         ""
     };
     format!(
-        "Each point is a run, named by method and number of cells. Wall time is the median over repeats taken in rounds \
-         over all runs. The line joins the runs for which no other run is both cheaper and more accurate.{noise}{others}"
+        "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both time and \
+         error. Wall time: median over repeats in rounds over all runs.{noise}{others}"
     )
 }
 
@@ -250,7 +249,7 @@ pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::judge::comparison::work_precision::Cheapest;
+    use crate::judge::comparison::work_precision::{Cheapest, TimedRun};
     use crate::measure::statistics::WallSpread;
 
     #[test]
@@ -259,13 +258,12 @@ mod tests {
             "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[[sweep]]\nmethod = ['GIMP', 'MPM']\n\
              integrator = ['implicit']\ncells = [4]\n",
         );
-        let run = |place: usize, median: f64, error: f64, on_front: bool| TimedRun {
+        let run = |place: usize, median: f64, error: f64| TimedRun {
             record: &records[place],
             error,
             wall: WallSpread { count: 5, median, deviation: 0.0013, minimum: 0.009, maximum: 0.041 },
-            on_front,
         };
-        let (best, other) = (run(0, 0.011, 0.0071, true), run(1, 0.023, 0.0092, false));
+        let (best, other) = (run(0, 0.011, 0.0071), run(1, 0.023, 0.0092));
         let precision = WorkPrecision {
             cheapest: vec![
                 Cheapest { tolerance: 1e-2, run: Some(best.clone()) },
@@ -288,17 +286,22 @@ mod tests {
         assert_eq!(table.rows[0], expected);
         assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
         let chart = chart_of(&precision);
-        assert_eq!(chart.series[0].points, [(0.011, 0.0071), (0.023, 0.0092)], "all runs of the integrator");
-        assert_eq!(chart.series[1].points, [(0.011, 0.0071)], "the front alone");
+        let series =
+            |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
+        assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));
+        assert_eq!(series(1), ("MPM, implicit", &[(0.023, 0.0092)][..]));
+        assert_ne!(chart.series[0].slot, chart.series[1].slot, "a colour per method");
+        assert_eq!(chart.series[0].marker, chart.series[1].marker, "a marker per integrator");
         assert!(caption(&precision).contains("differs by 7 %"));
-        assert!(caption(&precision).ends_with(" Other programs were timed on another day."));
-        assert_eq!(chart.names[0], PointName { at: (0.011, 0.0071), name: "GIMP, 4".to_owned() });
-        let others = chart.series.last().expect("the programs");
+        assert!(caption(&precision).ends_with(" Grey: other programs, timed on another day."));
         let first = &peers::PEERS[0];
-        assert_eq!((others.name.as_str(), others.points.len()), ("other programs", peers::PEERS.len()));
-        assert_eq!(others.points[0], (first.seconds, first.worst_error()));
-        let named = PointName { at: others.points[0], name: format!("{}, {}", first.name, first.cells) };
-        assert_eq!((&chart.names[1], chart.names.len()), (&named, 1 + peers::PEERS.len()));
+        assert_eq!(
+            (series(2).0, series(2).1[0]),
+            (first.name.as_str(), (first.seconds, first.worst_error()))
+        );
+        let ends: Vec<_> = chart.series.iter().map(|series| (series.points.last(), &series.name)).collect();
+        let names: Vec<_> = chart.names.iter().map(|named| (Some(&named.at), &named.name)).collect();
+        assert_eq!(names, ends, "a name at the end of each line");
         let alone = WorkPrecision { noise_floor: None, ..precision };
         assert!(!caption(&alone).contains("Timed twice"), "{}", caption(&alone));
     }
