@@ -105,6 +105,10 @@ pub fn refused_name(name: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::method_words::parts;
+    use crate::study::check::Study;
+    use oedometer_mpm::method::Method;
+    use std::collections::BTreeSet;
 
     #[test]
     fn every_study_in_the_folder_ships() {
@@ -121,10 +125,29 @@ mod tests {
         }
     }
 
+    /// What nobody published and no study shows has no place in the program.
+    #[test]
+    fn every_part_of_a_method_has_a_source_or_a_study() {
+        let studied: BTreeSet<(&str, &str)> = shipped_studies()
+            .iter()
+            .flat_map(|source| Study::check(source).expect("sound").planned)
+            .filter_map(|planned| planned.case.method.own())
+            .flat_map(|method| parts(&method))
+            .map(|part| (part.choice, part.word))
+            .collect();
+        for name in Method::names() {
+            for part in parts(&Method::named(&name).expect("a method")) {
+                let is_published = !["", "this program"].contains(&part.source);
+                let is_studied = studied.contains(&(part.choice, part.word));
+                assert!(is_published || is_studied, "{name}: {} {}", part.choice, part.word);
+            }
+        }
+    }
+
     #[test]
     fn the_titles_are_those_of_the_checked_studies() {
         for ((name, title), source) in shipped_titles().zip(shipped_studies()).step_by(9) {
-            let study = crate::study::check::Study::check(&source).expect("sound");
+            let study = Study::check(&source).expect("sound");
             assert_eq!((name, title), (study.name.as_str(), study.title));
         }
     }

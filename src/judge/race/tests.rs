@@ -1,8 +1,10 @@
 //! The race's findings from hand-made situations with known answers.
 
 use super::*;
+use crate::campaign::runner::solved;
 use crate::judge::race::finish::{Level, reason_of};
 use crate::judge::race::situation::THRESHOLDS;
+use crate::record::WallSample;
 
 /// A situation in which the contenders of a list need as many seconds for 1 % on their second mesh; nobody else runs.
 fn situation(family: &str, name: &str, arrivals: &[(&str, Option<f64>)]) -> Situation {
@@ -108,4 +110,42 @@ fn findings_are_plain_data() {
     assert_eq!(back, findings());
     assert!(text.contains("\"question\":\"moving\"") && text.contains("\"within_two\""), "{text}");
     assert!(RaceFindings::from_studies([]).is_none());
+}
+
+/// Costs are counted work times a committed calibration: a slower machine comes to the same findings, but for the seconds that
+/// it measured.
+#[test]
+fn findings_are_the_same_on_any_machine() {
+    let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['race']\n\
+                integrator = ['implicit']\ncells = [4, 8]\ntime_step = [{ growth = 0.1 }]\n";
+    let (study, records) = solved("race-column", text);
+    let on = |factor: f64, processor: &str| {
+        let mut records = records.clone();
+        for record in &mut records {
+            let sample = |seconds: f64| WallSample {
+                seconds: factor * seconds,
+                cpu_seconds: Some(0.9 * factor * seconds),
+                ..WallSample::default()
+            };
+            record.wall = [1e-3, 2e-3, 4e-3].map(sample).to_vec();
+            record.provenance.target = processor.to_owned();
+        }
+        let findings = RaceFindings::from_studies([(&study, records.as_slice())]).expect("a race");
+        let seconds = findings.situations[0].entries[0].levels[0].seconds.expect("measured");
+        (seconds, without_seconds(&findings))
+    };
+    let [(quick, ours), (slow, theirs)] = [on(1.0, "x86_64"), on(7.3, "aarch64")];
+    assert!((slow / quick - 7.3).abs() < 1e-9, "{quick} {slow}");
+    assert_eq!(ours, theirs);
+}
+
+fn without_seconds(findings: &RaceFindings) -> RaceFindings {
+    let mut findings = findings.clone();
+    for situation in findings.situations.iter_mut().chain(&mut findings.properties) {
+        for entry in &mut situation.entries {
+            entry.seconds = None;
+            entry.levels.iter_mut().for_each(|level| level.seconds = None);
+        }
+    }
+    findings
 }
