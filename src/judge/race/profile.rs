@@ -122,7 +122,8 @@ impl CostTable {
         taus.sort_by(f64::total_cmp);
         taus.dedup();
         let share = |tau: f64| {
-            reached.iter().filter(|(ratio, _)| *ratio <= tau).map(|(_, weight)| weight).sum::<f64>()
+            // From a positive zero: the sum of nothing would be a negative one.
+            reached.iter().filter(|(ratio, _)| *ratio <= tau).fold(0.0, |sum, (_, weight)| sum + weight)
         };
         let steps = taus.into_iter().map(|tau| (tau, share(tau).min(1.0))).collect();
         Profile { contender: self.contenders[contender].clone(), steps }

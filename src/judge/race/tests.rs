@@ -136,7 +136,7 @@ fn findings_are_the_same_on_any_machine() {
     };
     let [(quick, ours), (slow, theirs)] = [on(1.0, "x86_64"), on(7.3, "aarch64")];
     assert!((slow / quick - 7.3).abs() < 1e-9, "{quick} {slow}");
-    assert_eq!(ours, theirs);
+    assert!(ours == theirs, "costs or choices follow the clock");
 }
 
 fn without_seconds(findings: &RaceFindings) -> RaceFindings {
