@@ -1,6 +1,7 @@
 //! Formats of other programs: all ways of writing an array are one array, and no damage is more than a sentence.
 
 mod edited_files;
+mod written_files;
 
 use super::frame::{Frame, Wanted};
 use super::steps::{Kind, Step, read_states, steps_of};
