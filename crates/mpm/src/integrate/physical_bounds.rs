@@ -189,7 +189,9 @@ mod tests {
         {
             assert_eq!(bounds.left_by_settlement(settlement * whole).is_none(), is_within, "{settlement}");
         }
-        for (pressure, is_within) in [(1.0, true), (-4.0, true), (6.0, false), (f64::INFINITY, false)] {
+        for (pressure, is_within) in
+            [(1.0, true), (-4.0, true), (6.0, false), (-6.0, false), (f64::INFINITY, false)]
+        {
             assert_eq!(bounds.left_by_pressure(&[0.5, pressure]).is_none(), is_within, "{pressure}");
         }
     }

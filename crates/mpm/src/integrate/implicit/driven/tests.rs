@@ -12,7 +12,18 @@ use oedometer_exact::parameters::Base;
 use oedometer_soil::material::Material;
 
 /// A run of a footing to settlements over its width.
-fn pushed(column: &Column, soil: &Material, (method, cells): (&str, usize), settlements: &[f64]) -> Outcome {
+fn pushed(column: &Column, soil: &Material, mesh: (&str, usize), settlements: &[f64]) -> Outcome {
+    stepped(column, soil, mesh, settlements, TimeStepRule::Growth(0.1))
+}
+
+/// The same with steps by a rule.
+fn stepped(
+    column: &Column,
+    soil: &Material,
+    (method, cells): (&str, usize),
+    settlements: &[f64],
+    rule: TimeStepRule,
+) -> Outcome {
     let method = Method::named(method).expect("a known method");
     let problem = column_problem::<2>(SceneKind::Footing, column, soil, method, cells, 2).expect("a layer");
     let parameters = column_parameters(column, soil);
@@ -20,7 +31,7 @@ fn pushed(column: &Column, soil: &Material, (method, cells): (&str, usize), sett
         outputs: settlements.iter().map(|settlement| parameters.time(*settlement)).collect(),
         critical_step: None,
         history: Vec::new(),
-        rule: TimeStepRule::Growth(0.1),
+        rule,
         settings: ExplicitSettings::default(),
         kernel: Kernel::Fastest,
         integrator: IntegratorKind::Implicit,
@@ -100,4 +111,22 @@ fn water_that_stays_bears_the_load_that_total_stress_does() {
     // A flow that keeps the volume locks in the skeleton too, where the water alone is cured.
     let alone = load("GIMP-SRI");
     assert!(alone > 1.15 * LOAD_FACTOR, "{alone}");
+}
+
+/// A single step far beyond yield finds no balance, and its halves do: together they last as long as it.
+#[test]
+fn a_step_that_finds_no_balance_is_taken_in_halves_and_ends_where_small_steps_do() {
+    let column = Column::under_footing();
+    let soil = SceneKind::Footing.default_material();
+    let whole = TimeStepRule::Seconds(column_parameters(&column, &soil).time(0.05));
+    let [one, small] = [whole, TimeStepRule::Growth(0.1)]
+        .map(|rule| stepped(&column, &soil, ("GIMP-SRI", 4), &[0.05], rule));
+    assert!(one.counters.rejected_steps > 0 && small.counters.rejected_steps == 0, "{:?}", one.counters);
+    let of = |outcome: &Outcome| {
+        let end = &outcome.snapshots[0];
+        (end.settlement, end.plate_force.expect("a plate"))
+    };
+    let ((settled, force), (right, load)) = (of(&one), of(&small));
+    assert!((settled / right - 1.0).abs() < 1e-12, "{settled} for {right}");
+    assert!((force / load - 1.0).abs() < 0.02, "{force} for {load}");
 }
