@@ -183,6 +183,9 @@ fn a_settlement_curve_alone_is_scored() {
     let told = score(mapping, &[path.to_str().expect("a path"), "--below", "1e-4"]);
     let found = errors(&told, ",settlement,surface,");
     assert!(found.len() == 2 && found.iter().all(|error| error.abs() < 1e-5), "{found:?} {}", told.err);
+    // A modulus without dimension, said once.
+    let odd = score(mapping, &[path.to_str().expect("a path"), "--set", "material.youngs_modulus=7.2"]);
+    assert_eq!(odd.err.matches("7.2 Pa").count(), 1, "{}", odd.err);
 }
 
 #[test]

@@ -119,11 +119,15 @@ fn times_come_from_a_list_or_from_a_pattern_of_names() {
         let times: Vec<String> = times.iter().map(|factor| (factor * SECONDS).to_string()).collect();
         format!("{ARRAYS}[time]\nlist = [{}]\n", times.join(", "))
     };
-    let told = score(at, &list(&[0.05, 0.1, 0.2]), &["run_*.vtu"]);
-    // A glob sorts by the last number, which is 20 of each: then by name.
-    let found = score(at, &list(&[0.1, 0.2, 0.05]), &["run_*.vtu"]);
+    // A pattern sorts by all numbers of a name: 5 goes before 10.
+    let found = score(at, &list(&[0.05, 0.1, 0.2]), &["run_*.vtu"]);
     assert!(are_round_off(&errors(&found, "pressure"), 3), "{}", found.out);
+    let told = score(at, &list(&[0.1, 0.2, 0.05]), &["run_*.vtu"]);
     assert!(errors(&told, "pressure").iter().any(|error| *error > 0.01), "the times of others: {}", told.out);
+    // A shell puts 10 and 20 before 5.
+    let shell = ["run_10_of_20.vtu", "run_20_of_20.vtu", "run_5_of_20.vtu"];
+    let refused = score(at, &list(&[0.05, 0.1, 0.2]), &shell);
+    assert!(refused.code == 2 && refused.err.contains("it comes after run_20_of_20.vtu"), "{}", refused.err);
     let short = score(at, &list(&[0.05, 0.1]), &["run_*.vtu"]);
     assert!(
         short.code == 2 && short.err.contains("it is file 3 of its run, and [time] list has 2"),

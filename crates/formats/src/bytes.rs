@@ -145,7 +145,15 @@ pub(crate) fn numbers_of_text(text: &str, most: usize) -> Result<Vec<f64>, Strin
 
 /// One number.
 pub(crate) fn number_of_word(word: &str) -> Result<f64, String> {
-    word.parse().map_err(|_| format!("`{}` is not a number", excerpt(word)))
+    bare_number(word).parse().map_err(|_| format!("`{}` is not a number", excerpt(word)))
+}
+
+/// A number without the type that Python shows around it since numpy 2: meshio 5.3 writes `np.float64(1.5)` into gmsh's files.
+pub fn bare_number(word: &str) -> &str {
+    let inside = word.strip_prefix("np.").and_then(|rest| rest.strip_suffix(')')?.split_once('('));
+    let is_number =
+        |kind: &str| kind.starts_with("float") || kind.starts_with("int") || kind.starts_with("uint");
+    inside.filter(|(kind, _)| is_number(kind)).map_or(word, |(_, number)| number)
 }
 
 /// The first 40 letters of a text that may be long, for a message.
@@ -193,6 +201,20 @@ mod tests {
         let packed = miniz_oxide::deflate::compress_to_vec(&[7; 100], 6);
         assert_eq!(unpack(&packed, 100, false), Ok(vec![7; 100]));
         assert!(unpack(&packed, 99, false).is_err_and(|why| why.contains("more than the 99 bytes")));
+    }
+
+    #[test]
+    fn a_number_may_be_wrapped_as_numpy_shows_it() {
+        for (word, number) in [
+            ("np.float64(-1.5e-3)", Some(-1.5e-3)),
+            ("np.int64(7)", Some(7.0)),
+            ("np.float64(1.5", None),
+            ("np.array(1.5)", None),
+            ("float64(1.5)", None),
+            ("np.float64(np.float64(1.5))", None),
+        ] {
+            assert_eq!(number_of_word(word).ok(), number, "{word}");
+        }
     }
 
     #[test]

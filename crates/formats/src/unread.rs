@@ -89,7 +89,10 @@ pub(crate) fn named(head: &[u8], kind: Kind) -> Option<String> {
     }
     head.contains(&0).then(|| {
         let bytes: Vec<String> = head.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-        format!("it begins with the bytes {}, which no format has that is read", bytes.join(" "))
+        format!(
+            "it begins with the bytes {}, which no format has that is read: write VTU, NPZ or CSV",
+            bytes.join(" ")
+        )
     })
 }
 

@@ -24,7 +24,9 @@ pub(crate) fn read(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     let root = document.root_element();
     let kind = attribute(root, "type");
     if !["UnstructuredGrid", "PolyData"].contains(&kind) {
-        return Err(format!("a VTKFile of the type `{kind}` is not read as points and cells"));
+        return Err(format!(
+            "a VTKFile of the type `{kind}` is not read as points and cells: write VTU (ParaView: Append Datasets, Save Data) or CSV"
+        ));
     }
     let mut reader = Reader {
         encoding: encoding_of(root, appended)?,

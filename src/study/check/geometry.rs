@@ -401,6 +401,10 @@ impl Checker<'_> {
         for (key, unit, [least, most], other, of) in ranges {
             let numbers = soils().map(|(_, soil)| of(&soil)).filter(|value| !(least..=most).contains(value));
             let Some(odd) = numbers.reduce(f64::max) else { continue };
+            // Said already.
+            if UNIT_MISTAKES.iter().any(|(name, strange, ..)| *name == key && strange.contains(&odd)) {
+                continue;
+            }
             let place = file.material.inputs.span(key).unwrap_or_else(|| file.scene.span());
             self.warn(&Diagnostic::at(
                 place,

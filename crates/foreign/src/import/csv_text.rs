@@ -2,7 +2,7 @@
 //! choice is left.
 
 use crate::import::mapping::TableLayout;
-use oedometer_formats::{ImportError, excerpt, input_file};
+use oedometer_formats::{ImportError, bare_number, excerpt, input_file};
 use std::path::Path;
 
 /// Separators in the order in which they are tried; a blank stands for any.
@@ -231,6 +231,7 @@ impl Dialect {
 
 /// A number as programs write it: with a comma, or with Fortran's `D` before the exponent.
 pub fn number_of(typed: &str, has_decimal_comma: bool) -> Option<f64> {
+    let typed = bare_number(typed);
     if let Ok(number) = typed.parse() {
         // What has a comma is none without.
         return Some(number);
@@ -318,5 +319,6 @@ mod tests {
         assert_eq!(number_of("1,234.5", true), None);
         assert_eq!(number_of("1.0D-3", false), Some(1e-3));
         assert_eq!(number_of("dead", false), None);
+        assert_eq!(number_of("np.float64(0.5)", false), Some(0.5));
     }
 }

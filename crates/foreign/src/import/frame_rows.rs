@@ -305,8 +305,16 @@ impl<'a> FrameRows<'a> {
         if self.mapping.optional.iter().any(|optional| optional == key) {
             return Ok(None);
         }
-        Err(self
-            .refused(format!("there is no array `{typed}` for `{key}`; the file has {}", self.frame.names())))
+        let has_times = self.frame.time.is_some() || !self.frame.times.is_empty();
+        let otherwise = match key {
+            "x" | "y" if !self.frame.coordinates.is_empty() => {
+                "; its places are `coordinates[0]`, `[1]` and `[2]`"
+            }
+            "t" if has_times => "; its times are read without a name: leave `t` out",
+            _ => "",
+        };
+        let there = self.frame.names();
+        Err(self.refused(format!("there is no array `{typed}` for `{key}`; the file has {there}{otherwise}")))
     }
 
     /// A hint at the preset to take, if the file looks like another program's than that of the preset.
@@ -322,9 +330,18 @@ impl<'a> FrameRows<'a> {
 
     /// Width of the body across its height, m: from the outermost nodes, or points with half a spacing beyond them.
     pub fn width(&self) -> Option<f64> {
-        let Some(Source::Coordinates(height)) = self.columns[Column::Y as usize] else { return None };
-        let across = usize::from(height == 0);
-        let mut lines: Vec<f64> = self.frame.coordinates.iter().map(|place| place[across]).collect();
+        let across = |height: usize| usize::from(height == 0);
+        let of_array = |array: &Array, component: usize| -> Vec<f64> {
+            array.values.iter().skip(component).step_by(array.components).copied().collect()
+        };
+        let mut lines: Vec<f64> = match (self.columns[Column::Y as usize]?, self.along) {
+            (Source::Coordinates(height), _) => {
+                self.frame.coordinates.iter().map(|place| place[across(height)]).collect()
+            }
+            (Source::Array(array, height), _) if array.components > 1 => of_array(array, across(height)),
+            (Source::Array(..), Some(Source::Array(array, component))) => of_array(array, component),
+            _ => return None,
+        };
         lines.sort_by(f64::total_cmp);
         let extent = lines.last()? - lines.first()?;
         lines.dedup_by(|place, before| *place - *before <= 1e-4 * extent);
@@ -594,6 +611,38 @@ mod tests {
     }
 
     #[test]
+    fn the_width_shows_in_places_that_are_an_array_of_the_points() {
+        let array = |name: &str, components: usize, values: &[f64]| Array {
+            name: name.to_owned(),
+            on: Association::Points,
+            components,
+            tuples: values.len() / components,
+            values: values.to_vec(),
+            shape: Vec::new(),
+        };
+        let arrays = vec![
+            array("position", 2, &[0.1, 0.5, 0.3, 0.5, 0.1, 1.5, 0.3, 1.5]),
+            array("x", 1, &[0.1, 0.3, 0.1, 0.3]),
+            array("y", 1, &[0.5, 0.5, 1.5, 1.5]),
+            array("p", 1, &[4.0, 3.0, 2.0, 1.0]),
+        ];
+        let frame = Frame { arrays, ..Frame::default() };
+        let body = SolvedBody { height: 2.0, length: None, seconds_per_time_factor: 1.0 };
+        for (places, width) in [
+            ("y = 'position[1]'", Some(0.4)),
+            ("y = 'position[0]'", Some(2.0)),
+            ("x = 'x', y = 'y'", Some(0.4)),
+            ("y = 'y'", None),
+        ] {
+            let text = format!("columns = {{ {places}, p = 'p', u_y = '' }}");
+            let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+            let rows = FrameRows::find(&frame, Path::new("f.npz"), &mapping, body).expect("its columns");
+            let found = rows.width().map(|width| (1e9 * width).round() / 1e9);
+            assert_eq!(found, width, "{places}");
+        }
+    }
+
+    #[test]
     fn a_number_of_the_whole_state_is_that_of_every_row() {
         let text = "[columns]\ny = \"y\"\np = \"p\"\nu_y = \"\"\nvolume = \"v\"\n".to_owned();
         let source = StudySource { name: "map.toml".to_owned(), text };
@@ -708,11 +757,30 @@ mod tests {
             (format!("{y}, p = 'q', u_y = ''"), format!("there is no array `q` for `p`; {there}")),
             (format!("{y}, p = 'p', u_y = 'n'"), format!("there is no array `n` for `u_y`; {there}")),
             (
+                "y = 'coordy', p = 'p', u_y = ''".to_owned(),
+                format!(
+                    "there is no array `coordy` for `y`; {there}; its places are `coordinates[0]`, `[1]` and `[2]`"
+                ),
+            ),
+            (
                 format!("{y}, p = 'p', u_y = '', volume = 'cells:m'"),
                 "`m` has 2 tuples on cells, and the rows are 6 points: take both from one of them".to_owned(),
             ),
         ] {
             assert_eq!(found(&columns), Err(format!("f.vtu: {told}")), "{columns}");
+        }
+    }
+
+    #[test]
+    fn a_time_that_is_named_wrongly_need_not_be_named_where_the_file_has_it() {
+        let body = SolvedBody { height: 2.0, length: None, seconds_per_time_factor: 1.0 };
+        let text = "columns = { y = 'coordinates[1]', t = 'time_whole', p = 'p', u_y = '' }".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+        for (time, is_told) in [(None, false), (Some(3.0), true)] {
+            let frame = Frame { time, ..squares() };
+            let rows = FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body).expect("columns");
+            let why = rows.time_of_array().expect_err("no such array").to_string();
+            assert_eq!(why.ends_with("leave `t` out"), is_told, "{why}");
         }
     }
 

@@ -6,13 +6,14 @@ use crate::import::mapping::{Column, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::spelling::spellings;
-use crate::import::step_times::{declared_time, have_steps_in_folders, join, members, step_of};
+use crate::import::step_times::{declared_time, have_steps_in_folders, join, members, numbers_in};
 use crate::import::table_rows::{Curve, take_rows};
 use oedometer_case::quantity::{Quantity, Sample};
 use oedometer_formats::{
     Array, Association, Axis, Frame, ImportError, Kind, Step, Use, Wanted, collection_of, read_states,
     states_by_time, steps_of,
 };
+use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -75,22 +76,45 @@ pub fn files_of(arguments: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, ImportError>
         if files.is_empty() {
             return Err(refused("no file matches this pattern"));
         }
-        // `Cycle*/data.pvtu`: the folders count the steps.
-        let number = |path: &PathBuf| {
-            let of = |part: &Path| step_of(&part.file_name().unwrap_or_default().to_string_lossy(), None);
-            [path.parent().and_then(of), of(path)].map(|step| step.unwrap_or(-1.0))
-        };
-        let by_folder = |path: &PathBuf| path.parent().and_then(Path::parent).map(Path::to_owned);
-        files.sort_by(|a, b| {
-            let ([folder, step], [other_folder, other_step]) = (number(a), number(b));
-            (by_folder(a).cmp(&by_folder(b)))
-                .then(folder.total_cmp(&other_folder))
-                .then(a.parent().cmp(&b.parent()))
-                .then(step.total_cmp(&other_step))
-        });
+        files.sort_by(|a, b| by_numbers(a, b));
         Ok(files)
     };
     arguments.iter().map(of_argument).collect()
+}
+
+/// The order of files by the numbers in the names of their folders (`Cycle10/data.pvtu` is after `Cycle9/data.pvtu`), then by
+/// those in their own.
+fn by_numbers(a: &Path, b: &Path) -> Ordering {
+    let above = |path: &Path| path.parent().and_then(Path::parent).map(Path::to_owned);
+    let compare = |a: &str, b: &str| numbers_in(a).partial_cmp(&numbers_in(b)).unwrap_or(Ordering::Equal);
+    (above(a).cmp(&above(b)))
+        .then_with(|| compare(&folder_of(a), &folder_of(b)))
+        .then_with(|| a.parent().cmp(&b.parent()))
+        .then_with(|| compare(&stem_of(a), &stem_of(b)))
+}
+
+/// Whether the names of two files, or of their folders, differ by their numbers alone and these fall.
+fn goes_back(before: &Path, after: &Path) -> bool {
+    let falls = |before: &str, after: &str| {
+        without_numbers(before) == without_numbers(after) && numbers_in(after) < numbers_in(before)
+    };
+    let above = |path: &Path| path.parent().and_then(Path::parent).map(Path::to_owned);
+    if before.parent() == after.parent() {
+        return falls(&stem_of(before), &stem_of(after));
+    }
+    before.file_name() == after.file_name()
+        && above(before) == above(after)
+        && falls(&folder_of(before), &folder_of(after))
+}
+
+/// The name of a file without its extension.
+fn stem_of(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The name of the folder that a file is in.
+fn folder_of(path: &Path) -> String {
+    path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Whether all files are tables.
@@ -129,7 +153,11 @@ fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Re
     }
     let states = states_of(&rows)?;
     let mut run = Run { files, expected: Expected::of_states(&states), states, unended, ..Run::default() };
+    if mapping.columns.t.is_none() {
+        run.files_are_in_order(mapping)?;
+    }
     run.note_repeated(rows.len());
+    run.leave_out_unloaded();
     run.attach_settlement(mapping, body)?;
     Ok(run)
 }
@@ -415,15 +443,8 @@ impl Reading {
             let note = "a single state has no displacement: give the first state too, from which it counts";
             run.notes.push(note.to_owned());
         }
-        let is_loaded = |state: &SampledState| {
-            state.time > 0.0 || state.pressure.is_empty() || state.pressure.iter().any(|p| *p != 0.0)
-        };
-        let before = run.states.len();
-        run.states.retain(is_loaded);
-        if run.states.len() < before && !run.states.is_empty() {
-            let note = "the state at t = 0 is left out: its pressure is 0, so the load is not on yet";
-            run.notes.push(note.to_owned());
-        }
+        run.files_are_in_order(mapping)?;
+        run.leave_out_unloaded();
         run.attach_settlement(mapping, body)?;
         let mut seen = std::collections::BTreeSet::new();
         run.notes.retain(|note| seen.insert(note.clone()));
@@ -450,6 +471,38 @@ impl Run {
             self.expected.leave_out(*quantity);
         }
         self.without.extend(quantities);
+    }
+
+    /// Leaves out the state at the start if its pressure is 0 everywhere.
+    fn leave_out_unloaded(&mut self) {
+        let is_loaded = |state: &SampledState| {
+            state.time > 0.0 || state.pressure.is_empty() || state.pressure.iter().any(|p| *p != 0.0)
+        };
+        let before = self.states.len();
+        self.states.retain(is_loaded);
+        if self.states.len() < before && !self.states.is_empty() {
+            let note = "the state at t = 0 is left out: its pressure is 0, so the load is not on yet";
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    /// Refuses files whose times are listed in their order and whose numbers are in another one: a shell sorts `a_10` before
+    /// `a_9`.
+    fn files_are_in_order(&self, mapping: &Mapping) -> Result<(), ImportError> {
+        let is_listed = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            !mapping.time.list.is_empty() && !mapping.time.files.contains_key(&*name)
+        };
+        let listed: Vec<&PathBuf> = self.files.iter().filter(|path| is_listed(path)).collect();
+        let Some(pair) = listed.windows(2).find(|pair| goes_back(pair[0], pair[1])) else { return Ok(()) };
+        Err(ImportError::content(
+            pair[1],
+            format!(
+                "it comes after {}, and [time] counts the files in their order: give them in the order of their numbers, as a \
+                 pattern in quotes does, or write [time] files",
+                pair[0].display()
+            ),
+        ))
     }
 
     /// Notes how many rows repeat another one with equal values; they count once.
@@ -506,6 +559,23 @@ mod tests {
             let mapping = Mapping { sample: declared, is_sample_open, ..convention.clone() };
             let run = Run { sample: shown, ..Run::default() };
             assert_eq!(run.sample(&mapping), told, "{declared:?} {shown:?}");
+        }
+    }
+
+    #[test]
+    fn files_go_back_where_the_numbers_of_like_names_fall() {
+        for (before, after, told) in [
+            ("a_9.vtu", "a_10.vtu", false),
+            ("a_10.vtu", "a_9.vtu", true),
+            ("a_10.vtu", "b_9.vtu", false),
+            ("col_ts_50_t_4.0875.vtu", "col_ts_100_t_8.175.vtu", false),
+            ("t_0.5.csv", "t_0.25.csv", true),
+            ("Cycle9/a.pvtu", "Cycle10/a.pvtu", false),
+            ("Cycle10/a.pvtu", "Cycle9/a.pvtu", true),
+            ("x/Cycle10/a.pvtu", "y/Cycle9/a.pvtu", false),
+            ("mesh-20/a_1.vtu", "mesh-10/a_2.vtu", false),
+        ] {
+            assert_eq!(goes_back(Path::new(before), Path::new(after)), told, "{before} {after}");
         }
     }
 

@@ -85,6 +85,16 @@ pub fn step_of(name: &str, pattern: Option<&str>) -> Option<f64> {
     whole.or_else(|| starts().find_map(step))
 }
 
+/// The numbers in a name: 50 and 4.0875 in `col_ts_50_t_4.0875`.
+pub fn numbers_in(name: &str) -> Vec<f64> {
+    let number = Regex::new(r"\d+(\.\d+)?");
+    number
+        .iter()
+        .flat_map(|number| number.find_iter(name))
+        .filter_map(|found| found.as_str().parse().ok())
+        .collect()
+}
+
 /// What a pattern's `*` stand for in a name; `None` where the name does not match.
 fn captures<'a>(name: &'a str, pattern: &str) -> Option<Captures<'a>> {
     let parts: Vec<String> = pattern.split('*').map(escape).collect();
@@ -151,6 +161,18 @@ mod tests {
             ("a-1-x23.vtu", Some("*[-2]{step}*"), Some(1.0)),
         ] {
             assert_eq!(step_of(name, pattern), step, "{name} {pattern:?}");
+        }
+    }
+
+    #[test]
+    fn the_numbers_of_a_name_may_have_fractions() {
+        for (name, numbers) in [
+            ("col_ts_50_t_4.0875", &[50.0, 4.0875][..]),
+            ("porous_0_1000", &[0.0, 1000.0]),
+            ("a", &[]),
+            ("Cycle000010", &[10.0]),
+        ] {
+            assert_eq!(numbers_in(name), numbers, "{name}");
         }
     }
 

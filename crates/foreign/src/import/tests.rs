@@ -104,6 +104,43 @@ fn a_repeated_row_is_told_from_a_second_column_of_samples() {
 }
 
 #[test]
+fn a_table_may_begin_before_the_load() {
+    let wide = "[columns]\nt = 'time'\nu_y = ''\np = { p0 = 0.0, p1 = 0.5 }\n";
+    for (mapping, text, times) in [
+        (CONVENTION, "t,y,p,u_y\n0,0,0,0\n0,1,0,0\n1,0,3,0\n1,1,0,0\n", &[1.0][..]),
+        (CONVENTION, "t,y,p,u_y\n0,0,3,0\n0,1,0,0\n1,0,2,0\n1,1,0,0\n", &[0.0, 1.0]),
+        (wide, "time,p0,p1\n0,0,0\n0.5,3,2\n", &[0.5]),
+    ] {
+        let states = states(mapping, text).expect("rows");
+        assert_eq!(states.iter().map(|state| state.time).collect::<Vec<_>>(), times, "{text}");
+    }
+}
+
+#[test]
+fn files_whose_times_are_listed_come_in_the_order_of_their_numbers() {
+    let listed = "[columns]\ny = 'y'\np = 'p'\nu_y = ''\n[time]\nlist = [1.0, 2.0]\n";
+    let named =
+        "[columns]\ny = 'y'\np = 'p'\nu_y = ''\n[time]\nfiles = { 'a_9.csv' = 1.0, 'a_10.csv' = 2.0 }\n";
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    for name in ["a_9.csv", "a_10.csv"] {
+        std::fs::write(at(name), "y,p\n0,1\n1,0\n").expect("a file");
+    }
+    let body = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
+    for (mapping, names, is_read) in [
+        (listed, ["a_9.csv", "a_10.csv"], true),
+        (listed, ["a_10.csv", "a_9.csv"], false),
+        (named, ["a_10.csv", "a_9.csv"], true),
+    ] {
+        let source = StudySource { name: "map.toml".to_owned(), text: mapping.to_owned() };
+        let mapping = Mapping::read(&source).expect("a mapping");
+        let read = runs_of(&[names.map(at).to_vec()], &mapping, body).map_err(|error| error.to_string());
+        assert_eq!(read.is_ok(), is_read, "{names:?} {read:?}");
+        assert!(read.map_or_else(|why| why.contains("a pattern in quotes"), |_| true));
+    }
+}
+
+#[test]
 fn an_origin_is_in_the_unit_of_the_places() {
     let mapping = PLANE_CONVENTION
         .replace("length = \"m\"", "length = \"cm\"")
