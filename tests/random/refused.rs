@@ -1,7 +1,9 @@
 //! Share of the products of choices that the checker refuses: method, integrator, scene, point sets and an option.
 
 use crate::options::Options;
+use oedometer::Column;
 use oedometer_mpm::method::Method;
+use oedometer_soil::material::Material;
 use std::collections::BTreeMap;
 use std::io::Write as _;
 
@@ -43,7 +45,9 @@ fn refused_products_of_choices_are_few() {
                             cells: 10,
                             points_per_cell: 2,
                             time_step: Some(step),
-                            time_factors: scene.default_time_factors()[..1].to_vec(),
+                            time_factors: scene
+                                .default_time_factors(&Column::default(), &Material::default())[..1]
+                                .to_vec(),
                             settings: Vec::new(),
                         };
                         if sets == 2 {

@@ -14,6 +14,7 @@ use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::{ShelfProblem, consolidation};
+use oedometer_mpm::scene::SceneKind;
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
@@ -132,10 +133,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let asked = Asked::of_solution(kind, &arguments.set)?;
     tell_warnings(&asked.study);
     let (parameters, kind) = (asked.parameters, asked.references[0]);
+    // These have none of their own at the usual times.
+    let has_other_times = matches!(asked.study.scene, SceneKind::YieldFront | SceneKind::StandingWave);
     let time_factors = match &arguments.degree {
         Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
-        None if kind == ReferenceKind::YieldFront && arguments.time_factor == DEFAULT_TIMES => {
-            asked.study.scene.default_time_factors().to_vec()
+        None if has_other_times && arguments.time_factor == DEFAULT_TIMES => {
+            let case = &asked.study.planned[0].case;
+            case.scene.default_time_factors(&case.column, &case.material)
         }
         None => numbers("--time-factor", &arguments.time_factor)?,
     };

@@ -207,7 +207,8 @@ impl Checker<'_> {
         }
         base.column.soils = self.soils(&file, &base);
         let outputs = self.outputs(&file.output.time_factors, &file.output.times);
-        let outputs = outputs.unwrap_or_else(|| Outputs::at_factors(scene.default_time_factors().to_vec()));
+        let outputs = outputs
+            .unwrap_or_else(|| Outputs::at_factors(scene.default_time_factors(&base.column, &base.material)));
         let references = self.references(&file.output, scene, &base.column);
         let given = self.attach_results(&file);
         if file.sweep.is_empty() && file.result.is_empty() {

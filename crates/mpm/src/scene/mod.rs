@@ -12,6 +12,7 @@ mod moment_fitting;
 mod plane;
 pub mod problem;
 
+use crate::integrate::critical_step::formula;
 use crate::integrate::integrator::IntegratorKind;
 use crate::kernel::scheme::Scheme;
 use crate::kernel::{Drag, ExplicitSettings};
@@ -150,9 +151,10 @@ impl SceneKind {
     }
 
     /// Time factors where a study names none; a yield front has none once the base is felt, and those of a footing are
-    /// its settlements over its width. A standing wave dies out within few periods.
-    pub fn default_time_factors(self) -> &'static [f64] {
-        match self {
+    /// its settlements over its width. A standing wave dies out within few periods, whose length in time factors follows from
+    /// soil and height.
+    pub fn default_time_factors(self, column: &Column, soil: &Material) -> Vec<f64> {
+        let factors: &[f64] = match self {
             Self::YieldFront => &[0.0005, 0.001, 0.002, 0.004],
             Self::Footing => &[0.01, 0.02, 0.05],
             // Between the zeros of the wave, of its stress, and of the motions.
@@ -163,7 +165,18 @@ impl SceneKind {
             // Later the pressure has drained along the layer, too.
             Self::CosineLayer => &[0.05, 0.1, 0.2, 0.5],
             _ => &[0.05, 0.1, 0.2, 0.5, 1.0],
-        }
+        };
+        let period = |column: &Column, soil: &Material| {
+            soil.coefficient_of_consolidation() / (column.height * formula::undrained_wave_speed(soil))
+        };
+        let longer = if self == Self::StandingWave {
+            period(column, soil) / period(&Column::default(), &Material::default())
+        } else {
+            1.0
+        };
+        // To three digits, as one types them.
+        let plain = |factor: f64| format!("{factor:.2e}").parse().unwrap_or(factor);
+        factors.iter().map(|factor| plain(longer * factor)).collect()
     }
 
     /// Integrator where a study names none.
@@ -430,6 +443,26 @@ impl SceneKind {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_default_outputs_of_a_standing_wave_follow_its_period() {
+        let times = |height: f64, conductivity: f64, water: f64| {
+            let column = Column { height, ..Column::default() };
+            let soil = Material {
+                hydraulic_conductivity: conductivity,
+                water_bulk_modulus: water,
+                ..Material::default()
+            };
+            SceneKind::StandingWave.default_time_factors(&column, &soil)
+        };
+        let usual = times(1.0, 1e-4, 2.2e9);
+        assert_eq!(usual, [1e-5, 5e-5, 1e-4]);
+        // T_v of a period is c_v/(H V): in proportion to k, and less in a higher column or a stiffer water.
+        assert_eq!(times(1.0, 1e-6, 2.2e9), [1e-7, 5e-7, 1e-6]);
+        assert_eq!(times(4.0, 1e-4, 2.2e9), [2.5e-6, 1.25e-5, 2.5e-5]);
+        let stiffer = times(1.0, 1e-4, 8.8e9);
+        assert!(stiffer.iter().zip(&usual).all(|(a, b)| (2.0 * a / b - 1.0).abs() < 0.01), "{stiffer:?}");
+    }
 
     #[test]
     fn a_motion_has_the_amplitudes_of_its_kind_and_no_other() {
