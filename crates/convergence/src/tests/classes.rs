@@ -445,3 +445,22 @@ proptest! {
         prop_assert_eq!(found.class, Class::Asymptotic, "{:?}", found);
     }
 }
+
+/// `h^p + b h^q` on six levels that halve: the share of the second term in the finest error, by hand.
+#[test]
+fn the_share_of_a_second_term_is_told_at_the_finest_level() {
+    for (p, q, share, class) in [
+        (1.0, 0.0, 0.21, Class::FloorLimited),
+        (2.0, 1.0, 0.22, Class::Contaminated),
+        (2.0, 1.0, 0.25, Class::Contaminated),
+        (2.0, 1.5, 0.3, Class::Contaminated),
+        (2.0, 1.5, 0.4, Class::Contaminated),
+    ] {
+        let coefficient = share / (1.0 - share) * SIZES[5].powf(p - q);
+        let found = classify(&series(|h| h.powf(p) + coefficient * h.powf(q)), &Context::default());
+        assert_eq!(found.class, class, "{share}: {found:?}");
+        let told = format!(" makes up {:.0} % of the finest error", 100.0 * share);
+        let is_told = found.reason.contains("over all 6 levels") && found.reason.contains(&told);
+        assert!(is_told, "{share}: {}", found.reason);
+    }
+}

@@ -301,6 +301,11 @@ mod tests {
                 "{rows:?}"
             );
         }
+        // Of several places the first is told, by height and distance.
+        let several =
+            [at(3.0, 0.75, 0), with(2.0, 5.0, 0), with(2.0, 6.0, 0), with(1.0, 5.0, 0), with(1.0, 6.0, 0)];
+        let state = &states_of(&several).expect("alike")[0];
+        assert_eq!((state.repeated, state.repeated_at), (2, Some([0.5, 1.0])));
         assert_eq!(states_of(&[]).expect("nothing"), []);
         // Beyond a thousandth of a millionth of it is another time.
         for (off, states) in [(0.9e-9, 1), (1.1e-9, 2)] {
