@@ -318,6 +318,31 @@ mod tests {
         }
     }
 
+    /// Small strain and Xie & Leo's column settle by `x` and `1 − exp(−x)` of the height, `x` the load over the modulus.
+    #[test]
+    fn a_finite_strain_makes_the_floor_by_which_the_theories_differ() {
+        let mut runs = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[column]\nload = 3.6e4\n[[sweep]]\n\
+             method = ['VP', 'MPM']\nintegrator = ['implicit']\ncells = [4]\n",
+        );
+        let method = runs[0].case.method.own().expect("a method of this program");
+        let configuration = Some(oedometer_mpm::method::Configuration::Updated);
+        runs[0].case.method = SolverName::Own(oedometer_mpm::method::Method { configuration, ..method });
+        let measure = first_measure(Quantity::Settlement, Sample::Surface, "terzaghi-incompressible", 0.2);
+        let strain: f64 = 3.6e4 / 1.2e6;
+        let difference = 1.0 + (-strain).exp_m1() / strain;
+        for (run, deforms) in runs.iter().zip([true, false]) {
+            let of = |reference: &str| {
+                let measure = Measure { reference: reference.to_owned(), ..measure.clone() };
+                strain_limiter(run, &measure).map(|limiter| limiter.magnitude.expect("it is known"))
+            };
+            let [theory, finer, none] = ["terzaghi-incompressible", NEXT_FINER, NO_REFERENCE].map(of);
+            assert_eq!((theory.is_some(), finer, none), (deforms, None, None), "{}", run.case.label());
+            let near = theory.is_none_or(|floor| (floor / difference - 1.0).abs() < strain);
+            assert!(near, "{theory:?} for {difference}");
+        }
+    }
+
     #[test]
     fn a_probe_lies_between_centres_and_never_beyond_them() {
         let (heights, field) = ([0.25, 0.75], [1.0, 3.0]);

@@ -246,6 +246,7 @@ fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
 mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, solved};
+    use crate::judge::comparison::stiffness_sweep::SweepRow;
     use crate::judge::verdict::judge_paths;
 
     /// Two meshes and one time, the least that answers anything: every error is in the findings once, a failed run is told
@@ -269,5 +270,37 @@ mod tests {
         assert!(found.series.iter().filter(two).count() >= 8, "two levels have no class but errors");
         let json = serde_json::to_string(&found).expect("plain data");
         assert_eq!(serde_json::from_str::<Findings>(&json).expect("what was written"), found);
+    }
+
+    #[test]
+    fn every_number_of_a_stiffness_sweep_stands_under_its_name() {
+        let method =
+            crate::case::SolverName::Own(oedometer_mpm::method::Method::named("VP").expect("a method"));
+        let row = SweepRow {
+            method,
+            time_factor: 0.25,
+            found: vec![[Some(0.01), Some(0.02), Some(0.03)], [Some(0.04), Some(0.5), Some(0.06)], [None; 3]],
+            failed: vec![None, None, Some("unstable at step 7".to_owned())],
+        };
+        for (stiffness, swept) in [(SweptStiffness::Water, "K_w/E"), (SweptStiffness::Skeleton, "nu")] {
+            let (values, rows) = (vec![0.1, 0.2, 0.3], vec![row.clone()]);
+            let found =
+                of_sweep(&StiffnessSweep { stiffness, cells: 8, values, time_factors: vec![0.25], rows });
+            let value = |value, displacement, pressure, failed: Option<&str>| StiffnessValue {
+                value,
+                displacement,
+                pressure,
+                failed: failed.map(str::to_owned),
+            };
+            let values = vec![
+                value(0.1, Some(0.01), Some(0.02), None),
+                value(0.2, Some(0.04), Some(0.5), None),
+                value(0.3, None, None, Some("unstable at step 7")),
+            ];
+            let (swept, method) = (swept.to_owned(), "VP".to_owned());
+            let right =
+                StiffnessFinding { swept, method, cells: 8, time_factor: 0.25, values, lost_from: Some(0.2) };
+            assert_eq!(found, [right]);
+        }
     }
 }

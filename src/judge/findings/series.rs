@@ -149,3 +149,37 @@ fn series_of(path: &Path<'_>, measure: &Measure) -> Option<SeriesFinding> {
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::solved;
+
+    /// A floor against the theory of incompressible water, of half the size by which it differs from that of compressible.
+    #[test]
+    fn a_floor_is_told_with_its_causes_the_largest_first_and_those_of_unknown_size_last() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16, 32]\n[[expect]]\nmethod = 'MPM'\ntime_factor = 0.1\n\
+                    reference = 'terzaghi-incompressible'\nclass = 'floor-limited'\n";
+        let (study, mut records) = solved("s", text);
+        let errors = [1e-2, 2.4e-3, 1.01e-3, 1e-3];
+        for record in &mut records {
+            let level = [4, 8, 16, 32].iter().position(|cells| *cells == record.case.cells).expect("a mesh");
+            record.errors.iter_mut().for_each(|row| row.value = errors[level]);
+        }
+        let found = all_series(&study, &StudyPaths::of(&records));
+        let is_it = |one: &&SeriesFinding| {
+            (one.quantity, one.sample) == MEASURED[0] && one.reference == "terzaghi-incompressible"
+        };
+        let pressure = found.iter().find(is_it).expect("a series");
+        assert_eq!((pressure.class, pressure.floor.is_some()), (Class::FloorLimited, true));
+        let levels: Vec<(f64, Option<f64>)> =
+            pressure.levels.iter().map(|level| (level.size, level.error)).collect();
+        let right = [4.0, 8.0, 16.0, 32.0].map(|cells| 1.0 / cells).into_iter().zip(errors.map(Some));
+        assert_eq!(levels, right.collect::<Vec<_>>());
+        assert!(pressure.pair_orders.len() == 3 && pressure.pair_orders[0] > pressure.pair_orders[1]);
+        let causes: Vec<Option<f64>> = pressure.causes.iter().map(|cause| cause.magnitude).collect();
+        assert!(causes.len() == 2 && causes[0].is_some_and(|model| model > 0.0), "{:?}", pressure.causes);
+        assert_eq!(causes[1], None, "the step's floor is not known");
+    }
+}

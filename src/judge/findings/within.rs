@@ -213,4 +213,46 @@ mod tests {
         }
         assert_eq!(within(&study, &records), [], "nothing is said of runs that failed");
     }
+
+    /// Errors of half a per cent everywhere; four cells are the cheapest.
+    fn cells_within_one_percent(text: &str, change: impl Fn(&mut Record)) -> Option<usize> {
+        let (study, mut records) = solved("s", text);
+        for record in &mut records {
+            record.errors.iter_mut().for_each(|row| row.value = 0.005);
+            change(record);
+        }
+        within(&study, &records)[0].bounds[0].choice.as_ref().map(|choice| choice.cells)
+    }
+
+    #[test]
+    fn one_problem_at_two_lists_of_times_does_not_stand_for_another_problem() {
+        let sweep = |cells: usize, rest: &str| {
+            format!("[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [{cells}]\n{rest}\n")
+        };
+        let head = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.5]\n";
+        let both = sweep(8, "youngs_modulus = [1e6, 1e7]");
+        let twice = |modulus: &str| {
+            let again = format!("youngs_modulus = [{modulus}]\ntime_factors = [0.2]");
+            sweep(4, "youngs_modulus = [1e6]") + &sweep(4, &again)
+        };
+        for (modulus, cells) in [("1e6", 8), ("1e7", 4)] {
+            let found = cells_within_one_percent(&format!("{head}{both}{}", twice(modulus)), |_| ());
+            assert_eq!(found, Some(cells), "{modulus}");
+        }
+    }
+
+    #[test]
+    fn beside_a_program_whose_work_is_not_counted_the_coarsest_mesh_stands_first() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\n";
+        let other = crate::case::solver::Attached::new("other", "0123456789abcdef").expect("a name");
+        for attached in [4, 8, 16] {
+            let found = cells_within_one_percent(text, |record| {
+                if record.case.cells == attached {
+                    record.case.method = crate::case::SolverName::Attached(other);
+                }
+            });
+            assert_eq!(found, Some(4), "{attached} cells are another program's");
+        }
+    }
 }
