@@ -42,3 +42,54 @@ pub fn classes(found: &ConvergenceTable) -> String {
         |column: &ConvergenceColumn| format!("{} {}", labels::quantity(column.quantity), column.class.name());
     format!("class: {}", found.columns.iter().map(class).collect::<Vec<_>>().join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Quantity, Sample};
+    use oedometer_convergence::Class;
+
+    #[test]
+    fn every_rate_stands_beside_the_finer_of_its_two_meshes() {
+        let column = |quantity, sample, errors: [f64; 3], rates: [Option<f64>; 2], class| ConvergenceColumn {
+            quantity,
+            sample,
+            errors: errors.to_vec(),
+            rates: rates.to_vec(),
+            class,
+        };
+        let found = ConvergenceTable {
+            runs: "MPM implicit".to_owned(),
+            reference: "terzaghi".to_owned(),
+            time_factor: 0.25,
+            seconds: 7200.0,
+            cells: vec![5, 10, 20],
+            columns: vec![
+                column(
+                    Quantity::Pressure,
+                    Sample::Points,
+                    [0.8, 0.2, 0.1],
+                    [Some(2.0), Some(1.0)],
+                    Class::Asymptotic,
+                ),
+                column(
+                    Quantity::Settlement,
+                    Sample::Surface,
+                    [0.3, 0.0, 0.4],
+                    [None, Some(-3.0)],
+                    Class::Divergent,
+                ),
+            ],
+        };
+        let rows: Vec<Vec<String>> =
+            table_of(&found).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        let right = [
+            ["5", "8.00e-1", "", "3.00e-1", ""],
+            ["10", "2.00e-1", "2.00", "0", "–"],
+            ["20", "1.00e-1", "1.00", "4.00e-1", "-3.00"],
+        ];
+        assert_eq!(rows, right.map(|row| row.map(str::to_owned)));
+        assert_eq!(heading(&found), "MPM implicit, T_v = 0.25 (2 h), against terzaghi");
+        assert_eq!(classes(&found), "class: pore pressure asymptotic, settlement divergent");
+    }
+}

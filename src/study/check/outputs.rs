@@ -234,6 +234,17 @@ mod tests {
         let expectation = &study.expectations[0];
         assert!(study.planned[0].case.time_factors.contains(&expectation.measure.time_factor));
         assert_eq!(expectation.demand.at.map(|bound| bound.below), Some(0.025));
+        // Of several soils and meshes that of the one that it selects, whichever axis its series runs along.
+        for (place, soil) in [1e-9, 2e-9].into_iter().enumerate() {
+            let at = format!(
+                "[[expect]]\nmethod = 'MPM'\nhydraulic_conductivity = {soil}\ntime = '30 days'\n\
+                 order = {{ value = 1.0 }}"
+            );
+            let study = checked("times = ['30 days']", "hydraulic_conductivity = [1e-9, 2e-9]", &at);
+            let found = study.expect("one soil").expectations[0].measure.time_factor;
+            let right = 30.0 * 86_400.0 * soil * 1.2e6 / 9810.0;
+            assert!((found / right - 1.0).abs() < 1e-14, "{place}: {found} for {right}");
+        }
     }
 
     #[test]
