@@ -1,9 +1,9 @@
 //! Automatic differentiation of the formulas of a motion, at four places at once.
 //!
 //! A manufactured motion is written down once, as a formula; accelerations, divergences and sources follow from it to
-//! round-off. [`Dual`] is a number with its derivatives along X, Y and t; a dual number of dual numbers ([`Jet`]) has the
-//! second derivatives too. [`Four`] holds the numbers of four places side by side, so that the compiler uses registers of
-//! four numbers; every operation is that of single numbers, place by place, with the same bits.
+//! round-off. [`Dual`] is a number with its derivatives along X, Y and t; a [`Jet`] has the second derivatives too, each of
+//! the mixed ones once. [`Four`] holds the numbers of four places side by side, so that the compiler uses registers of four
+//! numbers; every operation is that of single numbers, place by place, with the same bits.
 //!
 //! `num-dual` has such numbers too, but for one place at a time, and takes sines from the platform's library, whose last
 //! digits differ from machine to machine.
@@ -33,9 +33,6 @@ pub trait Number:
 
     /// The sine and the cosine.
     fn sincos(self) -> [Self; 2];
-
-    /// `inside` where a number is positive, elsewhere `outside`.
-    fn where_positive(number: Four, inside: Self, outside: Self) -> Self;
 }
 
 /// A number with its derivatives along X, Y and t.
@@ -50,8 +47,23 @@ pub struct Dual<T> {
 
 /// A value with its first derivatives.
 pub type Slope = Dual<Four>;
-/// A value with its first and second derivatives: value and slopes, each with its own slopes.
-pub type Jet = Dual<Slope>;
+
+/// A value with its first and second derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct Jet {
+    /// The value.
+    pub value: Four,
+    /// Derivatives along X, Y and t.
+    pub slope: [Four; DIRECTIONS],
+    /// Second derivatives along the [`PAIRS`] of directions.
+    bend: [Four; PAIRS.len()],
+}
+
+/// Pairs of directions: their order is of no matter.
+const PAIRS: [[usize; 2]; 6] = [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]];
+/// Number of each pair, `[direction][direction]`.
+const PAIR_OF: [[usize; DIRECTIONS]; DIRECTIONS] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 
 /// An array from its places.
 #[inline(always)]
@@ -83,26 +95,125 @@ impl Slope {
 }
 
 impl Jet {
-    /// A function of the place times one of the time, as value and two derivatives: most of a product's terms are
-    /// zero.
+    /// Its parts from those of other jets.
+    #[inline(always)]
+    fn of(value: Four, slope: impl Fn(usize) -> Four, bend: impl Fn(usize, [usize; 2]) -> Four) -> Self {
+        let pair = |number: usize| bend(number, PAIRS[number]);
+        let bend = [pair(0), pair(1), pair(2), pair(3), pair(4), pair(5)];
+        Self { value, slope: each(slope), bend }
+    }
+
+    /// A function of the place times one of the time, as value and two derivatives.
     #[inline(always)]
     pub fn growing(shape: &Shape, [now, rate, bend]: [f64; 3]) -> Self {
         let Shape { value, slope: [x, y], bend: [xx, xy, yy] } = *shape;
-        let dual = |value: Four, slope: [Four; DIRECTIONS]| Dual { value, slope };
         Self {
-            value: dual(value * now, [x * now, y * now, value * rate]),
-            slope: [
-                dual(x * now, [xx * now, xy * now, x * rate]),
-                dual(y * now, [xy * now, yy * now, y * rate]),
-                dual(value * rate, [x * rate, y * rate, value * bend]),
-            ],
+            value: value * now,
+            slope: [x * now, y * now, value * rate],
+            bend: [xx * now, xy * now, x * rate, yy * now, y * rate, value * bend],
         }
     }
 
-    /// Adds a coordinate in a direction.
+    /// The coordinate of a direction, at a value.
     #[inline(always)]
-    pub fn from_place(self, direction: usize, coordinate: Four) -> Self {
-        self + Self::coordinate(direction, Slope::coordinate(direction, coordinate))
+    pub fn coordinate(direction: usize, value: Four) -> Self {
+        let zero = Four::all(0.0);
+        let Slope { value, slope } = Slope::coordinate(direction, value);
+        Self { value, slope, bend: [zero; PAIRS.len()] }
+    }
+
+    /// It times the coordinate of a direction, at a value.
+    #[inline(always)]
+    pub fn times_coordinate(self, direction: usize, value: Four) -> Self {
+        let along =
+            |i: usize, part: Four, by: Four| if i == direction { part * value + by } else { part * value };
+        Self::of(
+            self.value * value,
+            #[inline(always)]
+            |i| along(i, self.slope[i], self.value),
+            #[inline(always)]
+            |number, [i, j]| {
+                let bend = along(i, self.bend[number], self.slope[j]);
+                if j == direction { bend + self.slope[i] } else { bend }
+            },
+        )
+    }
+
+    /// Derivative along a direction.
+    #[inline(always)]
+    pub fn derivative(&self, direction: usize) -> Slope {
+        Slope { value: self.slope[direction], slope: each(|i| self.bend[PAIR_OF[direction][i]]) }
+    }
+
+    /// A function of it, given the function's value and first two derivatives there.
+    #[inline(always)]
+    fn chain(self, value: Four, first: Four, second: Four) -> Self {
+        Self::of(
+            value,
+            #[inline(always)]
+            |i| first * self.slope[i],
+            #[inline(always)]
+            |number, [i, j]| first * self.bend[number] + second * self.slope[i] * self.slope[j],
+        )
+    }
+
+    /// The sine and the cosine.
+    #[inline(always)]
+    pub fn sincos(self) -> [Self; 2] {
+        let [sine, cosine] = self.value.sincos();
+        let [less_sine, less_cosine] = [sine * -1.0, cosine * -1.0];
+        [self.chain(sine, cosine, less_sine), self.chain(cosine, less_sine, less_cosine)]
+    }
+
+    /// `inside` where a number is positive, elsewhere `outside`.
+    #[inline(always)]
+    pub fn where_positive(number: Four, inside: Self, outside: Self) -> Self {
+        let pick = |inside: Four, outside: Four| {
+            four(|place| if number.0[place] > 0.0 { inside.0[place] } else { outside.0[place] })
+        };
+        Self::of(
+            pick(inside.value, outside.value),
+            #[inline(always)]
+            |i| pick(inside.slope[i], outside.slope[i]),
+            #[inline(always)]
+            |number, _| pick(inside.bend[number], outside.bend[number]),
+        )
+    }
+}
+
+impl Add for Jet {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::of(
+            self.value + other.value,
+            #[inline(always)]
+            |i| self.slope[i] + other.slope[i],
+            #[inline(always)]
+            |number, _| self.bend[number] + other.bend[number],
+        )
+    }
+}
+
+impl Sub for Jet {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::of(
+            self.value - other.value,
+            #[inline(always)]
+            |i| self.slope[i] - other.slope[i],
+            #[inline(always)]
+            |number, _| self.bend[number] - other.bend[number],
+        )
+    }
+}
+
+impl Add<f64> for Jet {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, constant: f64) -> Self {
+        Self { value: self.value + constant, ..self }
     }
 }
 
@@ -127,15 +238,6 @@ impl<T: Number> Number for Dual<T> {
     fn sincos(self) -> [Self; 2] {
         let [sine, cosine] = self.value.sincos();
         [self.chain(sine, cosine), self.chain(cosine, sine * -1.0)]
-    }
-
-    #[inline(always)]
-    fn where_positive(number: Four, inside: Self, outside: Self) -> Self {
-        let pick = |inside, outside| T::where_positive(number, inside, outside);
-        Self {
-            value: pick(inside.value, outside.value),
-            slope: each(|i| pick(inside.slope[i], outside.slope[i])),
-        }
     }
 }
 
@@ -260,11 +362,6 @@ impl Number for Four {
         let of_each = self.0.map(elementary::sincos);
         [Self(of_each.map(|(sine, _)| sine)), Self(of_each.map(|(_, cosine)| cosine))]
     }
-
-    #[inline(always)]
-    fn where_positive(number: Four, inside: Self, outside: Self) -> Self {
-        four(|place| if number.0[place] > 0.0 { inside.0[place] } else { outside.0[place] })
-    }
 }
 
 impl Add for Four {
@@ -315,8 +412,16 @@ mod tests {
     const PLACES_AND_TIMES: [[f64; PLACES]; DIRECTIONS] =
         [[0.7, -0.2, 1.1, 0.3], [-0.4, 0.6, 0.1, -1.2], [1.3, 0.2, -0.7, 0.9]];
 
-    fn coordinates() -> [Jet; DIRECTIONS] {
-        each(|direction| Jet::constant(0.0).from_place(direction, Four(PLACES_AND_TIMES[direction])))
+    /// A dual number of dual numbers: second derivatives by the rules of the first ones alone.
+    type Nested = Dual<Slope>;
+
+    /// The coordinate of a direction.
+    fn nested(direction: usize, value: Four) -> Nested {
+        Nested::coordinate(direction, Slope::coordinate(direction, value))
+    }
+
+    fn coordinates() -> [Nested; DIRECTIONS] {
+        each(|direction| nested(direction, Four(PLACES_AND_TIMES[direction])))
     }
 
     fn single(place: usize) -> [f64; DIRECTIONS] {
@@ -325,7 +430,7 @@ mod tests {
 
     /// `sin(x y) cos(t) + (x − y t)²` by its own derivatives.
     #[test]
-    fn a_jet_has_the_derivatives_of_its_formula() {
+    fn a_dual_number_of_dual_numbers_has_the_derivatives_of_its_formula() {
         let [jx, jy, jt] = coordinates();
         let rest = jx - jy * jt;
         let jet = (jx * jy).sincos()[0] * jt.sincos()[1] + rest * rest;
@@ -359,24 +464,41 @@ mod tests {
         }
     }
 
-    /// `x + sin(x) y² · t³`: what grows is the product of its parts.
+    /// Holds a jet against nested dual numbers.
+    fn assert_same(jet: &Jet, nested: &Nested) {
+        let is_near =
+            |a: Four, b: Four| (0..PLACES).all(|p| (a.0[p] - b.0[p]).abs() < 1e-14 * (1.0 + b.0[p].abs()));
+        assert!(is_near(jet.value, nested.value.value));
+        for i in 0..DIRECTIONS {
+            assert!(is_near(jet.slope[i], nested.value.slope[i]), "{i}");
+            for j in 0..DIRECTIONS {
+                assert!(is_near(jet.derivative(i).slope[j], nested.slope[i].slope[j]), "{i}{j}");
+            }
+        }
+    }
+
+    /// `x + sin(x) y² · t³`, its sine and cosine, and those times coordinates.
     #[test]
-    fn what_grows_is_the_product_of_a_shape_and_of_a_time() {
+    fn a_jet_has_the_derivatives_of_nested_dual_numbers() {
         let [x, y, _] = PLACES_AND_TIMES.map(Four);
         let t = 1.3;
         let [sine, cosine] = x.sincos();
         let shape = Shape::product([sine, cosine, sine * -1.0], [y * y, y * 2.0, Four::all(2.0)]);
-        let grown = Jet::growing(&shape, [t * t * t, 3.0 * t * t, 6.0 * t]).from_place(0, x);
-        let [jx, jy, _] = coordinates();
-        let jt = Jet::constant(0.0).from_place(TIME, Four::all(t));
-        let product = jx + jx.sincos()[0] * jy * jy * jt * jt * jt;
-        let is_near = |a: Four, b: Four| (a - b).0.iter().all(|off| off.abs() < 1e-14);
-        assert!(is_near(grown.value.value, product.value.value));
-        for i in 0..DIRECTIONS {
-            assert!(is_near(grown.value.slope[i], product.value.slope[i]), "{i}");
-            for j in 0..DIRECTIONS {
-                assert!(is_near(grown.slope[i].slope[j], product.slope[i].slope[j]), "{i}{j}");
-            }
+        let grown = Jet::growing(&shape, [t * t * t, 3.0 * t * t, 6.0 * t]) + Jet::coordinate(0, x);
+        let [nx, ny, _] = coordinates();
+        let nt = nested(TIME, Four::all(t));
+        let product = nx + nx.sincos()[0] * ny * ny * nt * nt * nt;
+        assert_same(&grown, &product);
+        let ([sine, cosine], [nested_sine, nested_cosine]) = (grown.sincos(), product.sincos());
+        assert_same(&sine, &nested_sine);
+        assert_same(&(cosine + 0.5), &(nested_cosine + 0.5));
+        let turned = cosine.times_coordinate(0, x) - sine.times_coordinate(1, y);
+        let expected = nested_cosine * nx - nested_sine * ny;
+        assert_same(&turned, &expected);
+        let picked = Jet::where_positive(x, turned, sine);
+        for place in 0..PLACES {
+            let of = |jet: &Jet| jet.derivative(0).slope[TIME].0[place];
+            assert_eq!(of(&picked), of(if x.0[place] > 0.0 { &turned } else { &sine }), "{place}");
         }
     }
 

@@ -5,7 +5,7 @@
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-use crate::manufactured::dual::{Dual, Four, Jet, Number, PLACES, Shape, Slope};
+use crate::manufactured::dual::{Four, Jet, PLACES, Shape};
 use crate::parameters::MotionParameters;
 use oedometer_soil::elementary;
 use oedometer_soil::law::Law;
@@ -173,8 +173,8 @@ impl Motion {
         };
         let grown = |amplitude: f64, shape: &Shape| Jet::growing(shape, times(amplitude / PI, moment.growth));
         [
-            grown(parameters.amplitude_x, &along).from_place(0, x),
-            grown(parameters.amplitude_y, &up).from_place(1, y),
+            grown(parameters.amplitude_x, &along) + Jet::coordinate(0, x),
+            grown(parameters.amplitude_y, &up) + Jet::coordinate(1, y),
         ]
     }
 
@@ -193,10 +193,10 @@ impl Motion {
         for _ in 0..MOST_CORRECTIONS {
             let [x, y] = self.place(parameters, &Spots::of(&at.map(Spot::of)), moment);
             let off = |d: usize, jet: &Jet| {
-                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value.value
+                Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value
             };
             let [off_x, off_y] = [off(0, &x), off(1, &y)];
-            let ([xx, xy, _], [yx, yy, _]) = (x.value.slope, y.value.slope);
+            let ([xx, xy, _], [yx, yy, _]) = (x.slope, y.slope);
             let determinant = xx * yy - xy * yx;
             let correction_x = (yy * off_x - xy * off_y).over(determinant);
             let correction_y = (xx * off_y - yx * off_x).over(determinant);
@@ -235,7 +235,6 @@ impl Motion {
 #[inline(always)]
 fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
     let [dx, dy] = [spots.place[0] + -MIDDLE, spots.place[1] + -MIDDLE];
-    let still = [0, 1].map(|d| Dual::coordinate(d, Slope::coordinate(d, spots.place[d])));
     let share = (dx * dx + dy * dy) * -4.0 + 1.0;
     // S = s⁴, s = 1 − 4 r²
     let square = share * share;
@@ -248,7 +247,11 @@ fn turned(amplitude: f64, spots: &Spots, moment: &Moment) -> [Jet; 2] {
         bend: [second * by_x * by_x - first * 8.0, mixed, second * by_y * by_y - first * 8.0],
     };
     let [sine, cosine] = Jet::growing(&shape, times(amplitude, moment.growth)).sincos();
-    let [x, y] = [still[0] + -MIDDLE, still[1] + -MIDDLE];
-    let turned = [cosine * x - sine * y + MIDDLE, sine * x + cosine * y + MIDDLE];
-    [0, 1].map(|d| Jet::where_positive(share, turned[d], still[d]))
+    let turned_x = cosine.times_coordinate(0, dx) - sine.times_coordinate(1, dy);
+    let turned_y = sine.times_coordinate(0, dx) + cosine.times_coordinate(1, dy);
+    let still = |d: usize| Jet::coordinate(d, spots.place[d]);
+    [
+        Jet::where_positive(share, turned_x + MIDDLE, still(0)),
+        Jet::where_positive(share, turned_y + MIDDLE, still(1)),
+    ]
 }

@@ -92,14 +92,15 @@ impl States {
         let position = model.motion.place(&parameters.motion, spots, moment);
         let pressure =
             Jet::growing(&spots.pressure_shape(), moment.beat.map(|value| parameters.load * value));
-        let [[xx, xy, _], [yx, yy, _]] = position.map(|place| place.slope);
+        let [xx, xy] = both(|d| position[0].derivative(d));
+        let [yx, yy] = both(|d| position[1].derivative(d));
         let deformation = [[xx, xy], [yx, yy]];
         let volume_ratio = xx * yy - xy * yx;
         let per_volume = volume_ratio.recip();
         let inverse_deformation =
             [[yy * per_volume, xy * per_volume * -1.0], [yx * per_volume * -1.0, xx * per_volume]];
         // grad p = F⁻ᵀ grad_X p
-        let [along_x, along_y, _] = pressure.slope;
+        let [along_x, along_y] = both(|d| pressure.derivative(d));
         let pressure_gradient = [
             inverse_deformation[0][0] * along_x + inverse_deformation[1][0] * along_y,
             inverse_deformation[0][1] * along_x + inverse_deformation[1][1] * along_y,
@@ -138,13 +139,13 @@ impl States {
 
     #[inline(always)]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
-        both(|i| self.position[i].slope[TIME])
+        both(|i| self.position[i].derivative(TIME))
     }
 
     #[inline(always)]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
-        both(|i| self.position[i].slope[TIME] + self.flux[i] * per_porosity)
+        both(|i| self.position[i].derivative(TIME) + self.flux[i] * per_porosity)
     }
 
     /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
@@ -189,7 +190,7 @@ impl States {
         let soil = &self.soil;
         let porosity = self.porosity.value;
         let still = [Four::all(0.0); 2];
-        let of_skeleton = || both(|i| self.position[i].slope[TIME].slope[TIME]);
+        let of_skeleton = || both(|i| self.position[i].derivative(TIME).slope[TIME]);
         let [of_grains, of_water] = match inertia {
             Inertia::Both => {
                 let velocity = self.water_velocity_slope();
@@ -212,8 +213,8 @@ impl States {
     /// (docs/theory.md, Eq. 27).
     #[inline(always)]
     pub fn source(&self) -> Four {
-        let storage = self.porosity.value.over(Four::all(self.soil.water_bulk_modulus))
-            * self.pressure.value.slope[TIME];
+        let storage =
+            self.porosity.value.over(Four::all(self.soil.water_bulk_modulus)) * self.pressure.slope[TIME];
         self.divergence(&self.solid_velocity_slope()) + self.divergence(&self.flux) + storage
     }
 }
@@ -230,7 +231,7 @@ impl State {
 
     /// Present place, m.
     pub fn position(&self) -> [f64; 2] {
-        both(|i| self.0.position[i].value.value.first())
+        both(|i| self.0.position[i].value.first())
     }
 
     /// Volume ratio `J`.
@@ -245,7 +246,7 @@ impl State {
 
     /// Pore pressure, Pa, compression positive.
     pub fn pressure(&self) -> f64 {
-        self.0.pressure.value.value.first()
+        self.0.pressure.value.first()
     }
 
     /// Effective Cauchy stress, Pa, tension positive.

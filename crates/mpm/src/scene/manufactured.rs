@@ -125,10 +125,8 @@ impl MadeMotion {
     /// The same of the places of four sites.
     #[inline(always)]
     fn spots_of<const D: usize>(&self, places: &[Vector<D>], sites: &[usize; PLACES]) -> Spots {
-        Spots::of(&sites.map(
-            #[inline(always)]
-            |site| self.spot(site, in_plane(&places[site])),
-        ))
+        let spot = |site: usize| self.spot(site, in_plane(&places[site]));
+        Spots::of(&[spot(sites[0]), spot(sites[1]), spot(sites[2]), spot(sites[3])])
     }
 }
 
