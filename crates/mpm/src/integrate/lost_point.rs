@@ -9,6 +9,10 @@ impl<const D: usize> Body<D> {
     pub(crate) fn closed_pores(&self) -> Option<StepFailure> {
         let grains = |point: usize| 1.0 - self.soil_of(point).porosity;
         let ratios = &self.points.volume_ratio;
+        let most_grains = self.soils.iter().map(|soil| 1.0 - soil.porosity).fold(0.0, f64::max);
+        if ratios.iter().all(|ratio| *ratio > most_grains) {
+            return None;
+        }
         let is_closed = |point: &usize| ratios[*point] <= grains(*point) || ratios[*point].is_nan();
         let point = (0..ratios.len()).find(is_closed)?;
         Some(pores_closed(point, ratios[point], grains(point)))

@@ -34,6 +34,13 @@ impl<const D: usize> Body<D> {
         self.take_forces();
     }
 
+    /// [`map_masses`](Self::map_masses) and [`map_forces`](Self::map_forces) in one pass.
+    pub(crate) fn map_masses_and_forces(&mut self) {
+        self.sum_points::<true, false, true>();
+        self.take_masses();
+        self.take_forces();
+    }
+
     /// Sums masses, momenta and forces of the points by the shape functions that stand.
     pub(crate) fn sum_points<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&mut self) {
         let giving = Giving::new(&self.points, &self.soils, self.is_pushed_forward);

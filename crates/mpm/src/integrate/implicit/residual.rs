@@ -32,11 +32,15 @@ impl<const D: usize> Trial<D> {
         start: &StageStart<D>,
         residual: &mut [f64],
     ) -> Result<(), StepFailure> {
-        self.move_to(increments);
+        let has_deformed = self.move_to(increments);
         if self.skeleton == Skeleton::Explicit {
             self.body.points.effective_stress.clone_from(&self.anchor.effective_stress);
         }
-        self.body.map_forces();
+        if has_deformed {
+            self.body.map_masses_and_forces();
+        } else {
+            self.body.map_forces();
+        }
         self.momentum(increments, start, residual);
         self.body.nodes.take_flux();
         self.storage(increments, start, residual);

@@ -32,7 +32,8 @@ impl Default for KnownStretch {
 
 impl KnownStretch {
     /// Logarithm of a stretch: by a series where it is near the one that is known, which it replaces elsewhere.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the innermost loop of an implicit step")]
     fn ln(&mut self, stretch: f64) -> f64 {
         let [known, logarithm] = self.0;
         let change = (stretch - known) / known;

@@ -122,8 +122,9 @@ impl<const D: usize> Trial<D> {
         self.strained.resize(self.anchor.len(), None);
     }
 
-    /// Moves the body to increments of the unknowns since the anchor.
-    pub fn move_to(&mut self, increments: &[f64]) {
+    /// Moves the body to increments of the unknowns since the anchor, but for the masses of the nodes. Whether these have to
+    /// follow.
+    pub fn move_to(&mut self, increments: &[f64]) -> bool {
         for (nodal, numbers) in self.displacement.iter_mut().zip(&self.unknowns.displacement) {
             *nodal = numbers
                 .map(|number| number.map_or(0.0, |number| self.unknowns.scales.length * increments[number]));
@@ -138,11 +139,12 @@ impl<const D: usize> Trial<D> {
         let rows = &self.unknowns.rows;
         let is_bbar = self.body.method.strain.is_bbar();
         let traces = if is_bbar { rows.at_points(&rows.at_sites(&self.displacement)) } else { Vec::new() };
-        let has_changed = self.strain_points(&traces);
+        let has_deformed = self.strain_points(&traces) && self.body.configuration.deforms();
         self.take_pressures(increments);
-        if has_changed && self.body.configuration.deforms() {
-            self.body.follow_points();
+        if has_deformed {
+            self.body.follow_places();
         }
+        has_deformed
     }
 
     /// Recovers the pressures of the points from those at the sites: in place, or by rows where the recovery would have to
@@ -179,7 +181,9 @@ impl<const D: usize> Trial<D> {
         self.body.surface_flux += flux;
         // An explicit skeleton has the stress of the anchor.
         self.forget_strains();
-        self.move_to(increments);
+        if self.move_to(increments) {
+            self.body.map_masses();
+        }
         let moves_points = self.body.configuration.moves_points();
         if moves_points && self.formulation != Formulation::QuasiStatic {
             self.accelerate_points();
