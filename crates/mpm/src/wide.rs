@@ -9,6 +9,9 @@ use fearless_simd::{Level, Simd};
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use std::sync::LazyLock;
 
+/// Numbers of a wide register: neighbouring points that are worked out side by side, by loops over them.
+pub(crate) const LANES: usize = 4;
+
 /// What the processor has: asked once, for a step asks many times.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);

@@ -5,6 +5,7 @@ use crate::elementary;
 use crate::plasticity::{Components, PointLaw, PointState, Tangent, VonMises};
 use crate::tensor::{Tensor, product_with_transpose};
 use crate::wording::words;
+use std::array;
 
 /// Stress–strain law of the skeleton and the conductivity that goes with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -229,30 +230,62 @@ impl StressLaw {
         stress: &mut Tensor<D>,
         history: &mut History,
         strain: &StrainIncrement<D>,
-        deformation: impl FnOnce() -> Tensor<D>,
+        deformation: impl Fn() -> Tensor<D>,
     ) {
-        let [before, after] = strain.volume_ratio;
+        let (stresses, histories) = (array::from_mut(stress), array::from_mut(history));
+        self.update_each(stresses, histories, array::from_ref(strain), |_| deformation());
+    }
+
+    /// The same at some points of one soil, side by side; `deformation` is that of a point by its place among them.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
+    pub fn update_each<const D: usize, const N: usize>(
+        &self,
+        stresses: &mut [Tensor<D>; N],
+        histories: &mut [History; N],
+        strains: &[StrainIncrement<D>; N],
+        deformation: impl Fn(usize) -> Tensor<D>,
+    ) {
         if self.law.is_hyperelastic() {
-            *stress = self.stiffness.neo_hookean_stress(&deformation(), after, elementary::ln(after));
+            let mut ratios = [1.0; N];
+            for point in 0..N {
+                ratios[point] = strains[point].volume_ratio[1];
+            }
+            let logarithms = elementary::ln_of_each(&ratios);
+            for point in 0..N {
+                stresses[point] =
+                    self.stiffness.neo_hookean_stress(&deformation(point), ratios[point], logarithms[point]);
+            }
             return;
         }
         if self.law == Law::VonMises {
-            self.update_plastic(stress, history, &strain.components());
+            for point in 0..N {
+                let components = strains[point].components();
+                self.update_plastic(&mut stresses[point], &mut histories[point], &components);
+            }
             return;
         }
-        let change = self.elastic_stress(&strain.gradient, strain.dilation);
-        let modulus = if self.law == Law::Preconsolidated {
-            self.preconsolidated_share(
-                -stress[D - 1][D - 1],
-                -change[D - 1][D - 1],
-                &mut history.yield_stress,
-            )
-        } else {
-            self.law.modulus_ratio(before, after)
-        };
-        for i in 0..D {
-            for j in 0..D {
-                stress[i][j] += modulus * change[i][j];
+        let (mut changes, mut moduli) = ([[[0.0; D]; D]; N], [1.0; N]);
+        for point in 0..N {
+            changes[point] = self.elastic_stress(&strains[point].gradient, strains[point].dilation);
+        }
+        for point in 0..N {
+            let [before, after] = strains[point].volume_ratio;
+            moduli[point] = if self.law == Law::Preconsolidated {
+                self.preconsolidated_share(
+                    -stresses[point][D - 1][D - 1],
+                    -changes[point][D - 1][D - 1],
+                    &mut histories[point].yield_stress,
+                )
+            } else {
+                self.law.modulus_ratio(before, after)
+            };
+        }
+        for point in 0..N {
+            for i in 0..D {
+                for j in 0..D {
+                    stresses[point][i][j] += moduli[point] * changes[point][i][j];
+                }
             }
         }
     }

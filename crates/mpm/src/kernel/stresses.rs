@@ -8,10 +8,11 @@ use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
-use crate::wide::wide;
+use crate::wide::{LANES, wide};
 use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement, StressLaw};
 use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
+use std::array;
 
 /// What follows the deformation of the points beside their volumes.
 #[derive(Clone, Copy)]
@@ -67,6 +68,8 @@ impl<const D: usize> Body<D> {
                     points,
                     #[inline(always)]
                     |point| rows.block(point).stencil().gradient(&stride, field),
+                    #[inline(always)]
+                    |first| rows.gradients(first, &stride, field),
                 );
             }),
             StrainOperator::Composite(stencils) => {
@@ -83,10 +86,10 @@ impl<const D: usize> Body<D> {
     pub(crate) fn deform(&mut self, point: usize, increment: &Tensor<D>) {
         let (following, points) = (self.following(), &mut self.points);
         following.deform(
-            increment,
-            &mut points.volume_ratio[point],
-            &mut points.half_length[point],
-            &mut points.inverse_deformation[point],
+            array::from_ref(increment),
+            array::from_mut(&mut points.volume_ratio[point]),
+            array::from_mut(&mut points.half_length[point]),
+            array::from_mut(&mut points.inverse_deformation[point]),
         );
     }
 
@@ -116,83 +119,174 @@ impl Straining<'_> {
             points,
             #[inline(always)]
             |point| stencils.of_point(point).gradient(&stride, field),
+            #[inline(always)]
+            |first| {
+                let mut gradients = [[[0.0; D]; D]; LANES];
+                for p in 0..LANES {
+                    gradients[p] = stencils.of_point(first + p).gradient(&stride, field);
+                }
+                Some(gradients)
+            },
         );
     }
 
-    /// Strains points by the velocity gradients of a step.
+    /// Strains points by the velocity gradients of a step, side by side those neighbours of one soil that have gradients
+    /// side by side.
     #[inline(always)]
-    fn strain_points<const D: usize>(self, points: &mut Points<D>, gradient_of: impl Fn(usize) -> Tensor<D>) {
-        let (count, dt) = (points.len(), self.dt);
-        let has_dilation = !self.dilation_rates.is_empty();
-        let volume_ratio = &mut points.volume_ratio[..count];
-        let half_length = &mut points.half_length[..count];
-        let inverse_deformation = &mut points.inverse_deformation[..count];
-        let effective_stress = &mut points.effective_stress[..count];
+    fn strain_points<const D: usize>(
+        self,
+        points: &mut Points<D>,
+        gradient_of: impl Fn(usize) -> Tensor<D>,
+        gradients_from: impl Fn(usize) -> Option<[Tensor<D>; LANES]>,
+    ) {
+        let count = points.len();
+        let mut strained = Strained {
+            volume_ratio: &mut points.volume_ratio[..count],
+            half_length: &mut points.half_length[..count],
+            inverse_deformation: &mut points.inverse_deformation[..count],
+            effective_stress: &mut points.effective_stress[..count],
+            history: &mut points.history,
+        };
         let soil = &points.soil[..count];
-        let mut none = History::default();
-        for point in 0..count {
-            let (ratio, back) = (&mut volume_ratio[point], &mut inverse_deformation[point]);
-            let mut gradient = gradient_of(point);
-            if self.is_total {
-                gradient = product(&gradient, back);
+        let mut point = 0;
+        while point < count {
+            let law = &self.laws[usize::from(soil[point])];
+            let is_one_soil = soil.get(point..point + LANES).is_some_and(|soils| *soils == [soils[0]; LANES]);
+            let gradients = if is_one_soil { gradients_from(point) } else { None };
+            if let Some(gradients) = gradients {
+                self.strain(&mut strained, law, point, gradients);
+                point += LANES;
+            } else {
+                self.strain(&mut strained, law, point, [gradient_of(point)]);
+                point += 1;
             }
-            let trace: f64 = (0..D).map(|d| gradient[d][d]).sum();
-            // A motion compared with exact fields is followed at the middle of the step, to second order.
-            if self.is_forced {
-                gradient = middle_gradient(&gradient, dt);
+        }
+    }
+
+    /// Strains `N` neighbours of one soil by their velocity gradients: each line of the algorithm is a loop over them.
+    #[inline(always)]
+    fn strain<const D: usize, const N: usize>(
+        &self,
+        points: &mut Strained<'_, D>,
+        law: &StressLaw,
+        first: usize,
+        mut gradients: [Tensor<D>; N],
+    ) {
+        let dt = self.dt;
+        let back = some_mut::<_, N>(points.inverse_deformation, first);
+        if self.is_total {
+            for p in 0..N {
+                gradients[p] = product(&gradients[p], &back[p]);
             }
-            let mut increment = gradient;
-            for rate in increment.as_flattened_mut() {
-                *rate *= dt;
+        }
+        let mut traces = [0.0; N];
+        for p in 0..N {
+            traces[p] = (0..D).map(|d| gradients[p][d][d]).sum();
+        }
+        // A motion compared with exact fields is followed at the middle of the step, to second order.
+        if self.is_forced {
+            for gradient in &mut gradients {
+                *gradient = middle_gradient(gradient, dt);
             }
-            let before = *ratio;
-            if self.deforms {
-                self.following.deform(&increment, ratio, &mut half_length[point], back);
-            }
-            let mut dilation = 0.0;
-            if has_dilation {
-                // Of the kinematics only the volume goes the way of the water's.
-                dilation = dt * (self.dilation_rates[point] - trace);
+        }
+        let mut increments = gradients;
+        for rate in increments.as_flattened_mut().as_flattened_mut() {
+            *rate *= dt;
+        }
+        let before = *some_mut::<_, N>(points.volume_ratio, first);
+        let mut ratios = before;
+        if self.deforms {
+            let half_lengths = some_mut(points.half_length, first);
+            self.following.deform(&increments, &mut ratios, half_lengths, back);
+        }
+        let (mut dilations, has_dilation) = ([0.0; N], !self.dilation_rates.is_empty());
+        if has_dilation {
+            // Of the kinematics only the volume goes the way of the water's.
+            for p in 0..N {
+                dilations[p] = dt * (self.dilation_rates[first + p] - traces[p]);
                 for d in 0..D {
-                    increment[d][d] += dilation / D as f64;
+                    increments[p][d][d] += dilations[p] / D as f64;
                 }
                 if self.deforms {
-                    *ratio *= stretch_of(dilation);
+                    ratios[p] *= stretch_of(dilations[p]);
                 }
             }
-            let strain = StrainIncrement { gradient: increment, dilation, volume_ratio: [before, *ratio] };
-            let stress = &mut effective_stress[point];
-            if self.deforms {
-                *stress = rotated(stress, &increment);
-            }
-            let history = points.history.get_mut(point).unwrap_or(&mut none);
-            self.laws[usize::from(soil[point])].update(stress, history, &strain, || {
-                let (deformation, per_volume) = inverse(back);
-                if has_dilation { assumed(&deformation, *ratio * per_volume) } else { deformation }
-            });
         }
+        *some_mut(points.volume_ratio, first) = ratios;
+        let mut strains =
+            [StrainIncrement { gradient: [[0.0; D]; D], dilation: 0.0, volume_ratio: [1.0; 2] }; N];
+        for p in 0..N {
+            let volume_ratio = [before[p], ratios[p]];
+            strains[p] = StrainIncrement { gradient: increments[p], dilation: dilations[p], volume_ratio };
+        }
+        let stresses = some_mut(points.effective_stress, first);
+        if self.deforms {
+            *stresses = rotated(stresses, &increments);
+        }
+        let mut none = [History::default(); N];
+        let histories = points.history.get_mut(first..).and_then(<[_]>::first_chunk_mut).unwrap_or(&mut none);
+        law.update_each(
+            stresses,
+            histories,
+            &strains,
+            #[inline(always)]
+            |p| {
+                let (deformation, per_volume) = inverse(&back[p]);
+                if has_dilation { assumed(&deformation, ratios[p] * per_volume) } else { deformation }
+            },
+        );
     }
 }
 
+/// What a strain changes at the points, as slices of one length; none of histories where the law has none.
+struct Strained<'a, const D: usize> {
+    volume_ratio: &'a mut [f64],
+    half_length: &'a mut [Vector<D>],
+    inverse_deformation: &'a mut [Tensor<D>],
+    effective_stress: &'a mut [Tensor<D>],
+    history: &'a mut [History],
+}
+
+/// `N` neighbours of a field from one on, all of which there are.
+#[inline(always)]
+fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
+    field[first..].first_chunk_mut().expect("a field that holds them all")
+}
+
 impl Following {
-    /// Deforms a point by a step's displacement gradient: its volume, exact in the logarithmic strain, and what follows it.
+    /// Deforms points by a step's displacement gradients: their volumes, exact in the logarithmic strain, and what follows
+    /// them.
     #[inline(always)]
-    fn deform<const D: usize>(
+    fn deform<const D: usize, const N: usize>(
         self,
-        increment: &Tensor<D>,
-        volume_ratio: &mut f64,
-        half_length: &mut Vector<D>,
-        inverse_deformation: &mut Tensor<D>,
+        increments: &[Tensor<D>; N],
+        volume_ratios: &mut [f64; N],
+        half_lengths: &mut [Vector<D>; N],
+        inverse_deformations: &mut [Tensor<D>; N],
     ) {
-        for d in 0..D {
-            let stretch = stretch_of(increment[d][d]);
-            *volume_ratio *= stretch;
-            if self.domain {
-                half_length[d] *= stretch;
+        let mut stretches = [[0.0; D]; N];
+        for p in 0..N {
+            for d in 0..D {
+                stretches[p][d] = increments[p][d][d];
+            }
+        }
+        stretch(&mut stretches);
+        for p in 0..N {
+            for d in 0..D {
+                volume_ratios[p] *= stretches[p][d];
+            }
+        }
+        if self.domain {
+            for p in 0..N {
+                for d in 0..D {
+                    half_lengths[p][d] *= stretches[p][d];
+                }
             }
         }
         if self.inverse {
-            *inverse_deformation = relaxed(inverse_deformation, increment);
+            for p in 0..N {
+                inverse_deformations[p] = relaxed(&inverse_deformations[p], &increments[p]);
+            }
         }
     }
 }
@@ -213,34 +307,63 @@ const PER_24: f64 = 1.0 / 24.0;
 /// `exp(ε)`: a step's strain is small.
 #[inline(always)]
 fn stretch_of(strain: f64) -> f64 {
-    if strain.abs() < SMALL {
-        1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
-    } else {
-        elementary::exp(strain)
+    if strain.abs() < SMALL { four_terms(strain) } else { elementary::exp(strain) }
+}
+
+#[inline(always)]
+fn four_terms(strain: f64) -> f64 {
+    1.0 + strain * (1.0 + strain * (0.5 + strain * (SIXTH + strain * PER_24)))
+}
+
+/// Takes the exponential of strains, `[point][direction]`: where all are small, without a branch for each.
+#[inline(always)]
+fn stretch<const D: usize, const N: usize>(strains: &mut [Vector<D>; N]) {
+    let mut are_small = true;
+    for p in 0..N {
+        for d in 0..D {
+            are_small &= strains[p][d].abs() < SMALL;
+        }
+    }
+    for p in 0..N {
+        for d in 0..D {
+            strains[p][d] = if are_small { four_terms(strains[p][d]) } else { stretch_of(strains[p][d]) };
+        }
     }
 }
 
-/// A stress turned with the material over a step of displacement gradient `A`: `Q σ Qᵀ` with the
+/// Stresses turned with the material over a step of displacement gradients `A`: `Q σ Qᵀ` with the
 /// rotation `Q = (I − W/2)⁻¹(I + W/2)`, `W = skew A` (Hughes & Winget 1980). Together with the rate
 /// form it is Jaumann's stress rate, and exactly objective under a rigid rotation.
 #[inline(always)]
-fn rotated<const D: usize>(stress: &Tensor<D>, increment: &Tensor<D>) -> Tensor<D> {
-    let mut turned = *stress;
+fn rotated<const D: usize, const N: usize>(
+    stresses: &[Tensor<D>; N],
+    increments: &[Tensor<D>; N],
+) -> [Tensor<D>; N] {
+    let mut turned = *stresses;
     if D != 2 {
         return turned;
     }
-    let half = 0.25 * (increment[1][0] - increment[0][1]);
-    let per = 1.0 / (1.0 + half * half);
-    let (cosine, sine) = ((1.0 - half * half) * per, 2.0 * half * per);
-    // `Q σ`, and that by `Qᵀ`.
-    let mut rows = turned;
+    let [mut cosine, mut sine] = [[0.0; N]; 2];
+    for p in 0..N {
+        let half = 0.25 * (increments[p][1][0] - increments[p][0][1]);
+        let per = 1.0 / (1.0 + half * half);
+        (cosine[p], sine[p]) = ((1.0 - half * half) * per, 2.0 * half * per);
+    }
+    // `Q σ`, and that by `Qᵀ`: `[component][point]`.
+    let mut rows = [[[0.0; N]; 2]; 2];
     for j in 0..D {
-        let [above, below] = [stress[0][j], stress[1][j]];
-        (rows[0][j], rows[1][j]) = (cosine * above - sine * below, sine * above + cosine * below);
+        for p in 0..N {
+            let [above, below] = [stresses[p][0][j], stresses[p][1][j]];
+            rows[0][j][p] = cosine[p] * above - sine[p] * below;
+            rows[1][j][p] = sine[p] * above + cosine[p] * below;
+        }
     }
     for i in 0..D {
-        let [left, right] = [rows[i][0], rows[i][1]];
-        (turned[i][0], turned[i][1]) = (left * cosine - right * sine, left * sine + right * cosine);
+        for p in 0..N {
+            let [left, right] = [rows[i][0][p], rows[i][1][p]];
+            turned[p][i][0] = left * cosine[p] - right * sine[p];
+            turned[p][i][1] = left * sine[p] + right * cosine[p];
+        }
     }
     turned
 }
@@ -271,11 +394,58 @@ pub fn middle_gradient<const D: usize>(gradient: &Tensor<D>, dt: f64) -> Tensor<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oedometer_soil::law::Law;
+    use oedometer_soil::material::Material;
 
     #[test]
     fn a_stretch_is_the_exponential() {
         for strain in [-0.3_f64, -9e-5, -1e-7, 0.0, 3e-6, 9.9e-5, 0.2] {
             assert!((stretch_of(strain) / strain.exp() - 1.0).abs() < 3e-16);
+        }
+    }
+
+    /// Points of a law strained side by side, and one by one.
+    fn strained<const D: usize>(law: Law, dilation_rates: &[f64]) -> [Points<D>; 2] {
+        let soil = Material { law, preconsolidation: 1.0, reload_modulus: 5e6, ..Material::default() };
+        let mut points = Points::<D>::lattice(0.5, [3; D], 2);
+        points.history = vec![History { yield_stress: 1.0, ..History::default() }; points.len()];
+        for (point, stress) in points.effective_stress.iter_mut().enumerate() {
+            *stress = array::from_fn(|i| array::from_fn(|j| (point as f64 + 2.0 * (i + j) as f64).cos()));
+        }
+        let straining = Straining {
+            laws: &[soil.stress_law()],
+            dilation_rates,
+            following: Following { domain: true, inverse: true },
+            deforms: true,
+            is_total: false,
+            is_forced: false,
+            dt: 1e-3,
+        };
+        // One strain that is not small.
+        let size = |point: usize| if point == 1 { 3.0 } else { 0.03 };
+        let gradient = |point: usize| -> Tensor<D> {
+            array::from_fn(|i| {
+                array::from_fn(|j| size(point) * (3.0 * point as f64 + (2 * i + j) as f64).sin())
+            })
+        };
+        let mut both = [points.clone(), points];
+        straining
+            .strain_points(&mut both[0], gradient, |first| Some(array::from_fn(|p| gradient(first + p))));
+        straining.strain_points(&mut both[1], gradient, |_| None);
+        both
+    }
+
+    #[test]
+    fn points_are_strained_side_by_side_as_one_by_one() {
+        for law in
+            [Law::LogLinear, Law::PorosityDependent, Law::NeoHookean, Law::Preconsolidated, Law::VonMises]
+        {
+            for rates in [&[][..], &[0.02; 36]] {
+                let [together, in_turn] = strained::<1>(law, rates);
+                assert_eq!(together, in_turn, "{law:?} on a line");
+                let [together, in_turn] = strained::<2>(law, rates);
+                assert_eq!(together, in_turn, "{law:?} in the plane");
+            }
         }
     }
 
@@ -321,12 +491,12 @@ mod tests {
         // Q with tan(θ/2) = w/2 turns by θ.
         let spin = 2.0 * (0.5 * angle).tan();
         for _ in 0..1000 {
-            stress = rotated(&stress, &[[0.0, -spin], [spin, 0.0]]);
+            [stress] = rotated(&[stress], &[[[0.0, -spin], [spin, 0.0]]]);
         }
         for (got, exact) in stress.iter().flatten().zip([-2.0, -1.0, -1.0, 5.0]) {
             assert!((got - exact).abs() < 1e-12, "{got} for {exact}");
         }
-        let stretched = rotated(&stress, &[[0.1, 0.3], [0.3, -0.2]]);
+        let [stretched] = rotated(&[stress], &[[[0.1, 0.3], [0.3, -0.2]]]);
         assert_eq!(stretched, stress, "a strain without spin turns nothing");
     }
 
@@ -338,10 +508,12 @@ mod tests {
         let turn = product(&inverse(&[[1.0, half], [-half, 1.0]]).0, &[[1.0, -half], [half, 1.0]]);
         let back = [[turn[0][0], turn[1][0]], [turn[0][1], turn[1][1]]];
         let exact = product(&product(&turn, &stress), &back);
-        for (got, exact) in rotated(&stress, &increment).as_flattened().iter().zip(exact.as_flattened()) {
+        for (got, exact) in
+            rotated(&[stress], &[increment])[0].as_flattened().iter().zip(exact.as_flattened())
+        {
             assert!((got - exact).abs() < 1e-14, "{got} for {exact}");
         }
-        assert_eq!(rotated(&[[3.0]], &[[0.5]]), [[3.0]], "a line does not turn");
+        assert_eq!(rotated(&[[[3.0]]], &[[[0.5]]]), [[[3.0]]], "a line does not turn");
     }
 
     #[test]

@@ -10,9 +10,9 @@ use crate::method::StrainGradient;
 use crate::operators::basis::Row;
 use crate::operators::stencil::{Block, PointStencils, Stencils};
 use crate::state::cells::Cells;
-use crate::state::grid::{Grid, SIXTH, cell_below};
-use crate::wide::wide;
-use oedometer_soil::tensor::Vector;
+use crate::state::grid::{Grid, SIXTH, cell_below, power};
+use crate::wide::{LANES, wide};
+use oedometer_soil::tensor::{Tensor, Vector};
 
 /// Nodes per direction between the ends of a domain: four at either end, at most one cell apart.
 pub const ENDS_WIDTH: usize = 5;
@@ -160,6 +160,95 @@ impl<'a, const D: usize> CompositeRows<'a, D> {
         }
         Block::from_lines(self.first_nodes[cell] - self.below, &rows, self.per_cell)
     }
+
+    /// Gradients of a nodal vector field, `[point][component][direction]`, at [`LANES`] neighbours from one on, side by side
+    /// where all are in one cell; the same bits as by the block of each.
+    #[inline(always)]
+    pub fn gradients(
+        &self,
+        first: usize,
+        stride: &[usize; D],
+        field: &[Vector<D>],
+    ) -> Option<[Tensor<D>; LANES]> {
+        let (cells, within) = (&self.cells[first..first + LANES], &self.within[first..first + LANES]);
+        let cell = cells[0];
+        if *cells != [cell; LANES] {
+            return None;
+        }
+        let mut rows = [[[[0.0; LANES]; 4]; 2]; D];
+        for d in 0..D {
+            let mut place = [0.0; LANES];
+            for p in 0..LANES {
+                place[p] = within[p][d];
+            }
+            rows[d] = composite_of_each(&place, self.sides[cell][d]);
+            for slope in rows[d][1].as_flattened_mut() {
+                *slope *= self.per_cell;
+            }
+        }
+        // `[direction][component][point]`.
+        let mut slopes = [[[0.0; LANES]; D]; D];
+        let lowest = self.first_nodes[cell] - self.below;
+        for run in 0..power(4, D - 1) {
+            let nodes = &field[lowest + run * stride[D - 1]..][..4];
+            // The slope along the run, and the value.
+            let mut sums = [[[0.0; LANES]; D]; 2];
+            for k in 0..4 {
+                for d in 0..D {
+                    for p in 0..LANES {
+                        sums[0][d][p] += rows[0][1][k][p] * nodes[k][d];
+                    }
+                    for p in 0..LANES {
+                        sums[1][d][p] += rows[0][0][k][p] * nodes[k][d];
+                    }
+                }
+            }
+            if D == 1 {
+                slopes[0] = sums[0];
+                continue;
+            }
+            for direction in 0..D {
+                for d in 0..D {
+                    for p in 0..LANES {
+                        slopes[direction][d][p] += rows[D - 1][direction][run][p] * sums[direction][d][p];
+                    }
+                }
+            }
+        }
+        let mut gradients = [[[0.0; D]; D]; LANES];
+        for p in 0..LANES {
+            for d in 0..D {
+                for direction in 0..D {
+                    gradients[p][d][direction] = slopes[direction][d][p];
+                }
+            }
+        }
+        Some(gradients)
+    }
+}
+
+/// [`composite`] at places within one cell, side by side.
+#[inline(always)]
+fn composite_of_each<const N: usize>(places: &[f64; N], neighbours: [bool; 2]) -> [[[f64; N]; 4]; 2] {
+    // Each a loop without a branch.
+    match neighbours {
+        [true, true] => rows_of_each(places, [true, true]),
+        [true, false] => rows_of_each(places, [true, false]),
+        [false, true] => rows_of_each(places, [false, true]),
+        [false, false] => rows_of_each(places, [false, false]),
+    }
+}
+
+#[inline(always)]
+fn rows_of_each<const N: usize>(places: &[f64; N], neighbours: [bool; 2]) -> [[[f64; N]; 4]; 2] {
+    let mut rows = [[[0.0; N]; 4]; 2];
+    for p in 0..N {
+        let [values, gradients] = composite(places[p], neighbours);
+        for k in 0..4 {
+            (rows[0][k][p], rows[1][k][p]) = (values[k], gradients[k]);
+        }
+    }
+    rows
 }
 
 /// Lagrange interpolation through the nodes of a cell and of its neighbours, where those are there, for the composite
@@ -199,7 +288,38 @@ fn composite(x: f64, neighbours: [bool; 2]) -> [[f64; 4]; 2] {
 mod tests {
     use super::*;
     use crate::operators::basis::moments;
+    use crate::state::points::Points;
+    use oedometer_soil::material::Material;
     use proptest::prelude::*;
+
+    fn assert_same_side_by_side<const D: usize>() {
+        let (grid, soils) = (Grid::new(0.5, [3; D]), [Material::default()]);
+        let mut points = Points::<D>::lattice(0.5, [3; D], 4);
+        points.take_soils(&soils);
+        points.position.iter_mut().flatten().for_each(|place| *place *= 0.93);
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, &soils);
+        cells.find_reached(&grid, &points);
+        let wave = |node: usize| std::array::from_fn(|d| (1.3 * node as f64 + d as f64).sin());
+        let field: Vec<Vector<D>> = (0..grid.node_count()).map(wave).collect();
+        let (rows, stride) = (CompositeRows::new(&grid, &cells, points.len()), grid.node_stride());
+        let mut together = 0;
+        for first in 0..=points.len() - LANES {
+            let Some(gradients) = rows.gradients(first, stride, &field) else { continue };
+            together += 1;
+            for p in 0..LANES {
+                let alone = rows.block(first + p).stencil().gradient(stride, &field);
+                assert_eq!(gradients[p], alone, "point {}", first + p);
+            }
+        }
+        assert!(together > 0 && together < points.len() - LANES, "{together} lie in one cell");
+    }
+
+    #[test]
+    fn gradients_side_by_side_are_those_of_each_block() {
+        assert_same_side_by_side::<1>();
+        assert_same_side_by_side::<2>();
+    }
 
     proptest! {
         #[test]

@@ -192,7 +192,7 @@ impl<const D: usize> Cells<D> {
         self.reached.clone_from(&self.holds);
         self.look_at_sides(grid);
         let per_cell = grid.inverse_cell_size();
-        let all_reached = [[true; 2]; D];
+        let (all_reached, mut reaches_others) = ([[true; 2]; D], false);
         for (point, home) in self.of_point.iter().enumerate() {
             if self.reached_sides[*home] == all_reached {
                 continue;
@@ -207,14 +207,16 @@ impl<const D: usize> Cells<D> {
                 let reach = points.half_length[point][d] * per_cell - LEAST_REACH;
                 let inside = self.place[point][d] - cell as f64;
                 if inside < reach && cell > GHOST_LAYERS {
-                    self.reached[home - stride] = true;
+                    (self.reached[home - stride], reaches_others) = (true, true);
                 }
                 if inside + reach >= 1.0 && cell + 1 < grid.cells[d] + GHOST_LAYERS {
-                    self.reached[home + stride] = true;
+                    (self.reached[home + stride], reaches_others) = (true, true);
                 }
             }
         }
-        self.look_at_sides(grid);
+        if reaches_others {
+            self.look_at_sides(grid);
+        }
     }
 
     /// Takes note of which neighbours of the occupied cells are reached.
@@ -247,12 +249,14 @@ impl<const D: usize> Cells<D> {
     /// Means of the inverse deformation gradients over each cell's points.
     pub fn average_deformation(&mut self, points: &Points<D>) {
         self.inverse_deformation.fill([[0.0; D]; D]);
-        for point in 0..points.len() {
-            let cell = self.of_point[point];
-            let share = points.volume(point) / self.volume[cell];
+        let volumes = points.initial_volume.iter().zip(&points.volume_ratio);
+        let of_points = self.of_point.iter().zip(&points.inverse_deformation).zip(volumes);
+        for ((cell, back), (initial, ratio)) in of_points {
+            let share = initial * ratio / self.volume[*cell];
+            let sum = &mut self.inverse_deformation[*cell];
             for i in 0..D {
                 for j in 0..D {
-                    self.inverse_deformation[cell][i][j] += share * points.inverse_deformation[point][i][j];
+                    sum[i][j] += share * back[i][j];
                 }
             }
         }

@@ -9,6 +9,7 @@
 
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, power};
+use crate::wide::LANES;
 use oedometer_soil::tensor::{Vector, solve_symmetric};
 
 /// Cells along one direction of a patch.
@@ -107,8 +108,18 @@ impl<const D: usize> PatchRows<D> {
             }
             return;
         }
-        for point in 0..out.len() {
-            put(&mut out[point], fitting.value(field, point));
+        let mut point = 0;
+        while point < out.len() {
+            let places = out[point..].first_chunk_mut::<LANES>();
+            if let (Some(places), Some(values)) = (places, fitting.values::<LANES>(field, point)) {
+                for p in 0..LANES {
+                    put(&mut places[p], values[p]);
+                }
+                point += LANES;
+            } else {
+                put(&mut out[point], fitting.value(field, point));
+                point += 1;
+            }
         }
     }
 
@@ -136,13 +147,24 @@ struct Fitting<'a, const D: usize> {
 }
 
 impl<const D: usize> Fitting<'_, D> {
-    /// Lines through the cells around a point along each direction, where the occupied cells fill a rectangle.
+    /// Lines through the cells around each of `N` points from one on along each direction, where the occupied cells fill
+    /// rectangles of one shape; none where there are fewer points.
     #[inline(always)]
-    fn lines(&self, point: usize) -> Option<[LineFit; D]> {
-        let sides = self.sides[self.homes[point]]?;
-        let mut lines = [LineFit { row: [0.0; BLOCK], shares: [0.0; BLOCK] }; D];
+    fn lines<const N: usize>(&self, first: usize) -> Option<[LineFit<N>; D]> {
+        let (homes, within) = (self.homes.get(first..first + N)?, &self.within[first..first + N]);
+        let sides = self.sides[homes[0]];
+        let is_alike = |home: &usize| self.sides[*home] == sides;
+        if *homes != [homes[0]; N] && !homes.iter().all(is_alike) {
+            return None;
+        }
+        let sides = sides?;
+        let mut lines = [LineFit { row: [[0.0; N]; BLOCK], shares: [[0.0; N]; BLOCK] }; D];
         for d in 0..D {
-            lines[d] = LineFit::of(0.5 - self.within[point][d], sides[d], D > 1);
+            let mut offsets = [0.0; N];
+            for p in 0..N {
+                offsets[p] = 0.5 - within[p][d];
+            }
+            lines[d] = LineFit::of_each(&offsets, sides[d], D > 1);
         }
         Some(lines)
     }
@@ -155,16 +177,17 @@ impl<const D: usize> Fitting<'_, D> {
     #[inline(always)]
     fn shares(&self, point: usize) -> [f64; MOST_CELLS] {
         let mut shares = [0.0; MOST_CELLS];
-        let Some(lines) = self.lines(point) else {
+        let Some(lines) = self.lines::<1>(point) else {
             let is_in = |cell| self.cells.is_occupied(cell);
             fit(self.grid, self.homes[point], &self.cells.place[point], &mut shares, is_in);
             return shares;
         };
         let [along, up] = [&lines[0], &lines[D - 1]];
         for j in 0..power(BLOCK, D - 1) {
-            let (share, tilt) = if D == 1 { (1.0, 0.0) } else { (up.shares[j], up.row[j] - up.shares[j]) };
+            let ([row], [shared]) = (up.row[j], up.shares[j]);
+            let (share, tilt) = if D == 1 { (1.0, 0.0) } else { (shared, row - shared) };
             for i in 0..BLOCK {
-                shares[BLOCK * j + i] = along.row[i] * share + along.shares[i] * tilt;
+                shares[BLOCK * j + i] = along.row[i][0] * share + along.shares[i][0] * tilt;
             }
         }
         shares
@@ -173,22 +196,58 @@ impl<const D: usize> Fitting<'_, D> {
     /// Value at a point of a field given at the cells.
     #[inline(always)]
     fn value(&self, field: &[f64], point: usize) -> f64 {
-        let first = self.homes[point] - self.to_lowest;
-        let Some(lines) = self.lines(point) else { return self.sum(field, first, &self.shares(point)) };
+        if let Some([value]) = self.values::<1>(field, point) {
+            return value;
+        }
+        self.sum(field, self.homes[point] - self.to_lowest, &self.shares(point))
+    }
+
+    /// Values at `N` neighbours from one on, where these have [`lines`](Self::lines).
+    #[inline(always)]
+    fn values<const N: usize>(&self, field: &[f64], first: usize) -> Option<[f64; N]> {
+        let lines = self.lines::<N>(first)?;
+        let homes = &self.homes[first..first + N];
+        // What neighbours in one cell take of the field is read once.
+        Some(if *homes == [homes[0]; N] {
+            self.combined(&lines, field, |_| homes[0])
+        } else {
+            self.combined(&lines, field, |p| homes[p])
+        })
+    }
+
+    /// Values at points with their lines, of a field given at the cells; `home` is the cell of a point by its place among
+    /// them.
+    #[inline(always)]
+    fn combined<const N: usize>(
+        &self,
+        lines: &[LineFit<N>; D],
+        field: &[f64],
+        home: impl Fn(usize) -> usize,
+    ) -> [f64; N] {
         let [along, up] = [&lines[0], &lines[D - 1]];
-        let sum =
-            |row: &[f64; BLOCK], cells: &[f64]| row[0] * cells[0] + row[1] * cells[1] + row[2] * cells[2];
-        if D == 1 {
-            return sum(&along.row, &field[first..first + BLOCK]);
+        let mut values = [0.0; N];
+        for j in 0..power(BLOCK, D - 1) {
+            // `[cell][point]`.
+            let mut cells = [[0.0; N]; BLOCK];
+            for p in 0..N {
+                let of_point = &field[home(p) - self.to_lowest + j * self.up..][..BLOCK];
+                for k in 0..BLOCK {
+                    cells[k][p] = of_point[k];
+                }
+            }
+            if D == 1 {
+                return sum_of_each(&along.row, &cells);
+            }
+            let of_row = sum_of_each(&along.row, &cells);
+            for p in 0..N {
+                values[p] += of_row[p] * up.shares[j][p];
+            }
+            let of_shares = sum_of_each(&along.shares, &cells);
+            for p in 0..N {
+                values[p] += of_shares[p] * (up.row[j][p] - up.shares[j][p]);
+            }
         }
-        let mut value = 0.0;
-        for j in 0..BLOCK {
-            let lowest = first + j * self.up;
-            let cells = &field[lowest..lowest + BLOCK];
-            value += sum(&along.row, cells) * up.shares[j];
-            value += sum(&along.shares, cells) * (up.row[j] - up.shares[j]);
-        }
-        value
+        values
     }
 
     /// Sum over a patch of the values of its cells times their shares.
@@ -203,6 +262,16 @@ impl<const D: usize> Fitting<'_, D> {
         }
         value
     }
+}
+
+/// Sums over three cells of their values times shares, `[cell][point]`.
+#[inline(always)]
+fn sum_of_each<const N: usize>(shares: &[[f64; N]; BLOCK], cells: &[[f64; N]; BLOCK]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for p in 0..N {
+        sums[p] = shares[0][p] * cells[0][p] + shares[1][p] * cells[1][p] + shares[2][p] * cells[2][p];
+    }
+    sums
 }
 
 /// Flat cell of a place in a patch, and its steps from the patch's lowest cell.
@@ -247,63 +316,84 @@ fn distance_weight(distance: f64) -> f64 {
     }
 }
 
-/// The line fitted along one direction through the cells around a point.
+/// The lines fitted along one direction through the cells around each of `N` points, `[cell][point]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct LineFit {
+struct LineFit<const N: usize> {
     /// Shares of the cells in the line's value at the point.
-    row: [f64; BLOCK],
+    row: [[f64; N]; BLOCK],
     /// Shares of the cells in the sum of the weights of the fit.
-    shares: [f64; BLOCK],
+    shares: [[f64; N]; BLOCK],
 }
 
-impl LineFit {
-    /// The line of a point whose cell's centre lies so far above it, in cells, with the neighbours that are there: the
-    /// same fit as [`fit`] in closed form, for moving points pay for it at every step. A column has no use for the
-    /// shares.
-    ///
-    /// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
-    /// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
-    /// which gives its own moments, and the fit's weights from them. With one neighbour it is the line through two
-    /// cells, with none the value of the only one.
+impl<const N: usize> LineFit<N> {
+    /// The lines of points by the offsets of their cells' centres from them.
     #[inline(always)]
-    fn of(offset: f64, neighbours: [bool; 2], takes_shares: bool) -> Self {
-        if neighbours == [true, true] {
-            let u = offset.abs();
-            let (rest, square) = (1.0 - u, u * u);
-            let far = SIXTH * rest * rest * rest;
-            let home = 2.0 / 3.0 - square + 0.5 * square * u;
-            let lacking = SIXTH * square * u;
-            let near = 1.0 - home - far - lacking;
-            let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
-            let scale = 1.0 / (1.0 - lacking - tilt * lever);
-            let (row_near, row_far) = (near * (1.0 - tilt) * scale, far * (1.0 - 3.0 * tilt) * scale);
-            let is_above = offset > 0.0;
-            let of_sides = |near: f64, far: f64| {
-                let [low, high] = [if is_above { near } else { far }, if is_above { far } else { near }];
-                [low, 1.0 - near - far, high]
-            };
-            let per_sum = if takes_shares { 1.0 / (1.0 - lacking) } else { 1.0 };
-            return Self {
-                row: of_sides(row_near, row_far),
-                shares: of_sides(near * per_sum, far * per_sum),
-            };
+    fn of_each(offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) -> Self {
+        // Between two neighbours a loop without a branch.
+        match neighbours {
+            [true, true] => Self::by(offsets, [true, true], takes_shares),
+            [false, false] => Self::by(offsets, [false, false], takes_shares),
+            one_sided => Self::by(offsets, one_sided, takes_shares),
         }
-        let row = match neighbours {
-            [false, true] => [0.0, 1.0 + offset, -offset],
-            [true, false] => [offset, 1.0 - offset, 0.0],
-            _ => return Self { row: [0.0, 1.0, 0.0], shares: [0.0, 1.0, 0.0] },
-        };
-        let is_there = [neighbours[0], true, neighbours[1]];
-        let mut shares = [0.0; BLOCK];
-        for k in (0..BLOCK).filter(|k| is_there[*k]) {
-            shares[k] = distance_weight(offset + k as f64 - 1.0);
-        }
-        let sum: f64 = shares.iter().sum();
-        for share in &mut shares {
-            *share /= sum;
-        }
-        Self { row, shares }
     }
+
+    #[inline(always)]
+    fn by(offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) -> Self {
+        let mut lines = Self { row: [[0.0; N]; BLOCK], shares: [[0.0; N]; BLOCK] };
+        for p in 0..N {
+            let [row, shares] = line_shares(offsets[p], neighbours, takes_shares);
+            for k in 0..BLOCK {
+                (lines.row[k][p], lines.shares[k][p]) = (row[k], shares[k]);
+            }
+        }
+        lines
+    }
+}
+
+/// Shares of the cells in the value of the line of a point whose cell's centre lies so far above it, in cells, with the
+/// neighbours that are there, and in the sum of the weights of its fit: the
+/// same fit as [`fit`] in closed form, for moving points pay for it at every step. A column has no use for the
+/// shares.
+///
+/// The spline is the cubic B-spline, whose four values around a point have the moments 1, 0 and 1/3.
+/// The patch lacks the outermost, `u³/6` at the distance `2 − u` on the near side, `u = |offset|`,
+/// which gives its own moments, and the fit's weights from them. With one neighbour it is the line through two
+/// cells, with none the value of the only one.
+#[inline(always)]
+fn line_shares(offset: f64, neighbours: [bool; 2], takes_shares: bool) -> [[f64; BLOCK]; 2] {
+    if neighbours == [true, true] {
+        let u = offset.abs();
+        let (rest, square) = (1.0 - u, u * u);
+        let far = SIXTH * rest * rest * rest;
+        let home = 2.0 / 3.0 - square + 0.5 * square * u;
+        let lacking = SIXTH * square * u;
+        let near = 1.0 - home - far - lacking;
+        let (lever, tilt) = (2.0 - u, 3.0 * lacking * (2.0 - u));
+        let scale = 1.0 / (1.0 - lacking - tilt * lever);
+        let (row_near, row_far) = (near * (1.0 - tilt) * scale, far * (1.0 - 3.0 * tilt) * scale);
+        let is_above = offset > 0.0;
+        let of_sides = |near: f64, far: f64| {
+            let [low, high] = [if is_above { near } else { far }, if is_above { far } else { near }];
+            [low, 1.0 - near - far, high]
+        };
+        let per_sum = if takes_shares { 1.0 / (1.0 - lacking) } else { 1.0 };
+        return [of_sides(row_near, row_far), of_sides(near * per_sum, far * per_sum)];
+    }
+    let row = match neighbours {
+        [false, true] => [0.0, 1.0 + offset, -offset],
+        [true, false] => [offset, 1.0 - offset, 0.0],
+        _ => return [[0.0, 1.0, 0.0]; 2],
+    };
+    let is_there = [neighbours[0], true, neighbours[1]];
+    let mut shares = [0.0; BLOCK];
+    for k in (0..BLOCK).filter(|k| is_there[*k]) {
+        shares[k] = distance_weight(offset + k as f64 - 1.0);
+    }
+    let sum: f64 = shares.iter().sum();
+    for share in &mut shares {
+        *share /= sum;
+    }
+    [row, shares]
 }
 
 /// The row of a point in a patch of any of the cells around, by the normal equations.

@@ -152,3 +152,31 @@ fn the_recovery_never_turns_a_pressure_wave_round() {
         }
     }
 }
+
+fn assert_same_side_by_side<const D: usize>(extent: [usize; D], per_cell: usize) {
+    let grid = Grid::new(0.5, extent);
+    let mut points = Points::lattice(0.5, extent, per_cell);
+    points.position.iter_mut().flatten().for_each(|place| *place *= 0.93);
+    let mut cells = Cells::new(&grid, points.len());
+    cells.locate(&grid, &points, &[Material::default()]);
+    let mut rows = PatchRows::new(points.len(), &grid);
+    rows.look_around(&grid, &cells);
+    let fitting = rows.fitting(&grid, &cells, points.len());
+    let field: Vec<f64> = (0..grid.cell_count()).map(|cell| (1.3 * cell as f64).sin()).collect();
+    let mut together = 0;
+    for first in 0..points.len() {
+        let Some(values) = fitting.values::<LANES>(&field, first) else { continue };
+        together += 1;
+        for p in 0..LANES {
+            assert_eq!(values[p], fitting.value(&field, first + p), "point {}", first + p);
+        }
+    }
+    assert!(together > 0 && together < points.len() - LANES, "{together} have cells of one shape");
+}
+
+#[test]
+fn values_side_by_side_are_those_of_each_point() {
+    assert_same_side_by_side([5], 3);
+    assert_same_side_by_side([5, 4], 2);
+    assert_same_side_by_side([1, 4], 4);
+}
