@@ -49,6 +49,7 @@ porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write
 [4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = { courant = 0.1, growth = 0.1 }`
 [[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has two brackets: [[sweep]]
 title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
+["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ it left the program with version 0.3: take `TL-PPP`
 [4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is called `sets` now
 [4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is called `one_set_within` now
 [4, 8] ¦ [4, 8]⏎[[expect]]⏎time_factor = 0.1⏎order = { minus = 1 } ¦ 10 ¦ `value` is missing in order ¦ add `value = 0.1`

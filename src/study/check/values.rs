@@ -32,6 +32,9 @@ const RULES: [Rule; 5] = [
     ("tolerance", TimeStepRule::Tolerance, 1e-12, "round-off is an error of that size"),
 ];
 
+/// Methods that left the program, and what does their work.
+const GONE: [(&str, &str); 2] = [("PPP-step", "PPP"), ("PPP-monotone", "PPP")];
+
 impl Checker<'_> {
     /// The value of an input, called by its name in the file; `seed` has the values to compare it with.
     pub(super) fn input(&mut self, key: &Key, typed: &One, name: &str, seed: &Case) -> Option<Value> {
@@ -78,7 +81,14 @@ impl Checker<'_> {
             let mut names = Method::names();
             names.extend(self.solvers.iter().map(|solver| solver.name().to_owned()));
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            self.complain(span, format!("no method is called `{name}`"), one_of(name, &names));
+            let gone = GONE.iter().find(|(old, _)| name.ends_with(old));
+            let help = gone.map_or_else(
+                || one_of(name, &names),
+                |(old, new)| {
+                    format!("it left the program with version 0.3: take `{}`", name.replace(old, new))
+                },
+            );
+            self.complain(span, format!("no method is called `{name}`"), help);
             return None;
         };
         self.method_fits(method, span, scene)
