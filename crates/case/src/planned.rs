@@ -146,9 +146,13 @@ mod tests {
             case
         };
         let mut planner = Planner::default();
-        for (cells, porosity, tier) in
-            [(2, 0.3, Tier::Full), (2, 0.4, Tier::Ci), (3, 0.3, Tier::Ci), (2, 0.3, Tier::Ci)]
-        {
+        for (cells, porosity, tier) in [
+            (2, 0.3, Tier::Full),
+            (2, 0.4, Tier::Ci),
+            (3, 0.3, Tier::Ci),
+            (2, 0.3, Tier::Ci),
+            (2, 0.4, Tier::Full),
+        ] {
             planner.put(case(cells, porosity), tier);
         }
         let planned = planner.into_cases();

@@ -198,6 +198,7 @@ mod tests {
     use crate::Task;
     use oedometer_mpm::method::Method;
     use oedometer_mpm::scene::SceneKind;
+    use oedometer_mpm::scene::column::Column;
 
     fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
         let method = Method::named(method).expect("a method").into();
@@ -228,5 +229,14 @@ mod tests {
             |cells| seconds_per_step(&case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells));
         // Four times the points and twice the width.
         assert!(layer(80) > 6.0 * layer(40), "{} for {}", layer(80), layer(40));
+        // A layer that lies costs what it does when it stands: a front is as wide as the shorter side.
+        let of = |height: f64, extent: f64, cells| {
+            let mut case = case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells);
+            let column = Column { height, ..*case.column }.with_extent(extent);
+            *case.column = column;
+            seconds_per_step(&case)
+        };
+        let (lying, standing) = (of(1.0, 4.0, 4), of(4.0, 1.0, 16));
+        assert!((lying / standing - 1.0).abs() < 1e-12 && lying < of(2.0, 2.0, 8), "{lying} {standing}");
     }
 }

@@ -429,6 +429,11 @@ fn kinds_are_known_by_their_content() {
     ] {
         assert_eq!(Kind::of_head(head), kind);
     }
+    // HDF5 may stand behind a block of its user.
+    for (block, kind) in [(512, Kind::Hdf5), (1024, Kind::Hdf5), (2048, Kind::Hdf5), (511, Kind::Table)] {
+        let head = [&vec![b' '; block], &b"\x89HDF\r\n\x1a\n"[..]].concat();
+        assert_eq!(Kind::of_head(&head), kind, "{block}");
+    }
 }
 
 /// A document of states, each with what stands in its grid.

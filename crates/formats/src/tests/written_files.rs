@@ -121,6 +121,27 @@ fn elements_of_exodus_are_flat_on_a_flat_mesh_and_solid_on_another() {
     }
 }
 
+/// The places of old files are one data set, `[axis][node]`.
+#[test]
+fn places_of_exodus_stand_in_one_data_set_or_in_one_for_each_axis() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.e");
+    let places: [&[f64]; 3] = [&[0.0, 2.0, 0.0, 1.0], &[0.0, 0.0, 3.0, 4.0], &[5.0, 6.0, 7.0, 8.0]];
+    let list: Set<'_> = ("connect1", &[1, 4], &[1.0, 2.0, 3.0, 4.0]);
+    for axes in [2, 3] {
+        let right: Vec<[f64; 3]> = (0..4)
+            .map(|node| [places[0][node], places[1][node], if axes == 3 { places[2][node] } else { 0.0 }])
+            .collect();
+        let whole = places[..axes].concat();
+        write_store(&path, &[], &[list, ("coord", &[axes as u64, 4], &whole)]);
+        assert_eq!(states(&path)[0].1.coordinates, right);
+        let names = ["coordx", "coordy", "coordz"];
+        let each = names.iter().zip(places).take(axes).map(|(name, places)| (*name, &[4_u64][..], places));
+        write_store(&path, &[], &std::iter::once(list).chain(each).collect::<Vec<_>>());
+        assert_eq!(states(&path)[0].1.coordinates, right);
+    }
+}
+
 /// A mesh that stays is written once, and each array has offsets of its own; one that moves is written for each step.
 #[test]
 fn arrays_of_a_transient_vtkhdf_begin_at_their_own_step_whether_the_mesh_stays_or_moves() {
@@ -243,15 +264,11 @@ fn every_grid_of_a_collection_has_its_own_of_the_times() {
         (String::new(), ["0.5", "2", "3.5"].map(own)),
         (list("List", "9 8 7"), ["0.5", "2", "3.5"].map(own)),
     ] {
-        let grids: String = (0..3)
-            .map(|place| {
-                format!(
-                    "<Grid>{}<Attribute Name=\"p\" Center=\"Node\"><DataItem Dimensions=\"1\">{}</DataItem></Attribute></Grid>",
-                    own[place],
-                    place + 11
-                )
-            })
-            .collect();
+        let grid = |place: usize| {
+            let item = format!("<DataItem Dimensions=\"1\">{}</DataItem>", place + 11);
+            format!("<Grid>{}<Attribute Name=\"p\" Center=\"Node\">{item}</Attribute></Grid>", own[place])
+        };
+        let grids = [0, 1, 2].map(grid).concat();
         let collection =
             format!("<Grid GridType=\"Collection\" CollectionType=\"Temporal\">{times}{grids}</Grid>");
         std::fs::write(&path, format!("<Xdmf><Domain>{collection}</Domain></Xdmf>")).expect("a file");
