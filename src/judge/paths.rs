@@ -304,8 +304,9 @@ pub fn first_error(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
+    use crate::campaign::runner::{failed_at, records_of};
     use crate::case::Case;
+    use oedometer_mpm::run::TimeStepRule;
     use oedometer_mpm::scene::SceneKind;
 
     /// Whether two cases differ along an axis at most, compared input by input.
@@ -368,6 +369,27 @@ mod tests {
         let found: Vec<f64> = levels.iter().filter_map(|(_, difference)| *difference).collect();
         assert_eq!(found.len(), 2);
         assert!(found.iter().all(|difference| (difference - 0.25).abs() < 1e-15), "{found:?}");
+    }
+
+    #[test]
+    fn the_smallest_of_clearly_smaller_steps_that_ended_well_shows_what_the_step_does() {
+        let mut records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [2, 4]\ntime_step = [{ growth = 0.5 }, { growth = 0.3 }, { growth = 0.1 }]\n",
+        );
+        let is = |record: &Record, cells: usize, growth: f64| {
+            record.case.cells == cells && record.case.time_step == TimeStepRule::Growth(growth)
+        };
+        for smallest in [Some(0.1), Some(0.3), None] {
+            let paths = StudyPaths::of(&records);
+            let path =
+                paths.along(Axis::Cells).iter().find(|path| is(path.records[1], 4, 0.5)).expect("a path");
+            let found = path.smaller_step.is_some_and(|record| is(record, 4, smallest.unwrap_or(0.0)));
+            assert!(found == smallest.is_some() && (found || path.smaller_step.is_none()), "{smallest:?}");
+            for record in records.iter_mut().filter(|record| is(record, 4, smallest.unwrap_or(0.0))) {
+                record.status = failed_at(1);
+            }
+        }
     }
 
     #[test]

@@ -154,4 +154,24 @@ mod tests {
         assert_eq!(cost_of(&records[2]), before, "no clock is asked");
         assert!(cost_of(&records[2]) > cost_of(&records[0]));
     }
+
+    /// A front costs once a factorisation, whatever the number of solves; points cost once a solve.
+    #[test]
+    fn factorisations_and_solves_are_counted_apart() {
+        let records = records_of(
+            "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+             integrator = ['implicit']\ncells = [2]\n",
+        );
+        let cost = StepKind::of(&records[0].case).cost(2);
+        let seconds = |steps, factorisations| {
+            let mut record = records[0].clone();
+            (record.counters.steps, record.counters.iterations) = (steps, 0);
+            record.counters.factorisations = factorisations;
+            1e9 * nominal_seconds(&record)
+        };
+        let points = records[0].counters.points as f64;
+        let (factored, solved) = (seconds(9, 5) - seconds(9, 2), seconds(9, 5) - seconds(7, 5));
+        assert!((factored / (3.0 * points * cost.front * 2.0) - 1.0).abs() < 1e-9, "{factored}");
+        assert!((solved / (2.0 * (cost.fixed + points * cost.point)) - 1.0).abs() < 1e-9, "{solved}");
+    }
 }

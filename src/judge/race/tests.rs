@@ -149,3 +149,12 @@ fn without_seconds(findings: &RaceFindings) -> RaceFindings {
     }
     findings
 }
+
+/// Nobody runs the other steps of the ladder: a contender without a mesh neither wins nor loses a situation.
+#[test]
+fn an_operator_without_runs_changes_nothing() {
+    for trade in findings().trades {
+        assert_eq!((trade.situations, trade.cost_ratio), (0, None), "{}", trade.operator);
+        assert!(trade.effects.iter().all(|effect| (effect.won, effect.lost) == (0, 0)), "{}", trade.operator);
+    }
+}
