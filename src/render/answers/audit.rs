@@ -54,7 +54,7 @@ fn over_mesh(audit: &AuditFinding) -> Figure {
     let steepest = falls.max_by(|a, b| a.0.total_cmp(&b.0));
     chart.triangles.extend(steepest.map(|(_, beside)| SlopeTriangle { slope: 2.0, beside }));
     let caption = "The error of the right equations falls with every mesh; that of wrong ones stops at the difference of the two \
-                   theories. Triangle: second order, which the method promises.";
+                   theories. Triangle: second order.";
     Figure::new("readme-audit-pressure", chart, caption)
 }
 
