@@ -172,7 +172,7 @@ fn profile_figure(
     }
     let caption = match (question, quantity) {
         (RaceQuestion::Moving, RaceQuantity::All) => {
-            "Grey: the other methods. At the left end how often a method is the fastest, at the right end how often it arrives."
+            "Grey: other methods. Left end: how often a method is the fastest, ties included; right end: how often it reaches 1 % at all."
         }
         (RaceQuestion::Moving, _) => "",
         (RaceQuestion::Total, _) => {
@@ -221,7 +221,7 @@ fn strip(situations: &[&Situation], named: &[String]) -> String {
         let told = if situations.len() == 1 {
             format!("`{name}`")
         } else {
-            format!("`{name}` {}/{}", missed.len(), situations.len())
+            format!("`{name}` in {} of {}", missed.len(), situations.len())
         };
         match by_reason.iter_mut().find(|(known, _)| *known == first.words()) {
             Some((_, names)) => names.push(told),
