@@ -541,7 +541,7 @@ mod tests {
         assert_eq!(named, ["MPM", "GC-SRI-patch", "GIMP", "GIMP-SRI-patch", "VP-Bbar", "GIMP-Bbar-patch"]);
         let situations: Vec<&Situation> = findings.situations.iter().collect();
         let panel = panel("layer", &situations, &named);
-        assert_eq!(panel.caption, "✗ locks: `GIMP` 2/2");
+        assert_eq!(panel.caption, "✗ locks: `GIMP` in 2 of 2");
         assert_eq!(strip(&situations, &named[..2]), "✓ the named methods all arrive");
         let figure = profile_figure(&findings, RaceQuestion::Moving, RaceQuantity::All, &named);
         let stairs =
