@@ -50,24 +50,6 @@ fn a_study_of_the_step_says_its_order_and_from_where_it_is_unstable() {
 }
 
 #[test]
-fn a_sweep_of_the_soil_says_what_each_input_changes() {
-    let page = front(
-        "scene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\"]\nintegrator = [\"implicit\"]\n\
-         cells = [4]\nyoungs_modulus = [5e5, 1e6, 2e6]\nporosity = [0.3, 0.5]\nhydraulic_conductivity = [1e-6, 1e-4]\n",
-    );
-    let told = answer(&page, "## What does the soil change?");
-    // s = m_v q H with m_v as 1/E, and t = H² γ_w/(k E_oed).
-    for sentence in [
-        "`youngs_modulus` multiplies the settlement in the end by 0.25, the time of consolidation by 0.25",
-        "`porosity` changes nothing by more than 1 %",
-        "`hydraulic_conductivity` multiplies the time of consolidation by 0.01. Evidence: [`short`]",
-    ] {
-        assert!(told.contains(sentence), "{sentence}: {told}");
-    }
-    assert!(!page.contains("## What does the time step change?"), "{page}");
-}
-
-#[test]
 fn a_study_of_the_mesh_says_what_one_percent_costs_and_one_at_large_strain_what_to_take() {
     let page = front(
         "scene = \"terzaghi\"\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = [\"MPM\", \"GC-SRI-patch\"]\n\
