@@ -91,7 +91,9 @@ impl TimeStepFinding {
             let with_order = rows.iter().filter(|row| row.class != Class::NotEvaluable).count();
             (!rows.is_empty()).then_some(((with_order, rows.len()), (rows, time)))
         })?;
-        Some(Self::from_rows(&one.study.name, time_factor, &rows))
+        let mut finding = Self::from_rows(&one.study.name, time_factor, &rows);
+        finding.unstable.extend(failed_alone(one));
+        Some(finding)
     }
 
     fn from_rows(study: &str, time_factor: f64, rows: &[Row<'_>]) -> Self {
@@ -120,6 +122,22 @@ impl TimeStepFinding {
             most: changes.max_by(|a, b| a.ratio().total_cmp(&b.ratio())),
         }
     }
+}
+
+/// The smallest step at which runs failed that have too few steps for an order, for each method and integrator.
+fn failed_alone(one: &StudyResults<'_>) -> Vec<UnstableStep> {
+    let refined = one.refined(Axis::TimeStep);
+    let is_refined = |record: &Record| {
+        refined.iter().flat_map(|path| &path.records).any(|other| other.hash == record.hash)
+    };
+    let failed = one.records.iter().filter(|record| record.status != Status::Ok && !is_refined(record));
+    let runs = grouped(failed, |record| format!("{}, {}", record.case.method, record.case.integrator.name()));
+    let smallest = |(run, records): (String, Vec<&Record>)| {
+        let least = records.into_iter().min_by(|a, b| a.step_sizes.target.total_cmp(&b.step_sizes.target))?;
+        let (step, ending) = (step_label(&least.case.time_step), least.status.name().clone());
+        Some(UnstableStep { run, step, ending })
+    };
+    runs.into_iter().filter_map(smallest).collect()
 }
 
 impl<'a> Row<'a> {
@@ -180,6 +198,14 @@ mod tests {
         assert_eq!((&found.unstable[0].step, found.unstable[0].ending.as_str()), (&step(1), "unstable"));
         assert_eq!(found.most.expect("two are left").steps, [2, 3].map(step));
         assert_eq!(TimeStepFinding::new(&[]), None);
+        // A run that failed at its only step is no less unstable.
+        let mut alone = records[0].clone();
+        alone.hash = "another".to_owned();
+        alone.case.cells = 7;
+        records.push(alone);
+        let found = TimeStepFinding::new(&[StudyResults::new(&study, &records, Tier::Full)]).expect("steps");
+        let unstable: Vec<&str> = found.unstable.iter().map(|one| one.run.as_str()).collect();
+        assert_eq!((found.unstable.len(), unstable[1]), (2, "GIMP-SRI, implicit"));
     }
 
     #[test]

@@ -152,8 +152,7 @@ pub fn consolidation(results: &StudyResults<'_>, shown: &[&Record]) -> Result<Fi
             .series
             .push(Series::new(record.case.method.to_string(), points).style(Style::Markers).slot(slot));
     }
-    let caption = "Settlement over its final value, downward as engineers draw it. The methods differ in their stresses and \
-                   hardly in their settlement.";
+    let caption = "Settlement over its final value, downward as engineers draw it.";
     Ok(figure_of(results, "consolidation", chart, caption))
 }
 
