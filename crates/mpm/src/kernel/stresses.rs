@@ -436,11 +436,24 @@ mod tests {
     }
 
     #[test]
+    fn one_large_strain_among_small_ones_is_stretched_by_the_exponential() {
+        for large in [0.5, -0.3, 1e-4] {
+            let strains = [[1e-6, 0.0], [2e-5, large], [0.0, -1e-5]];
+            let mut stretches = strains;
+            stretch(&mut stretches);
+            for (stretch, strain) in stretches.as_flattened().iter().zip(strains.as_flattened()) {
+                assert!((stretch / elementary::exp(*strain) - 1.0).abs() < 1e-15, "{strain}: {stretch}");
+            }
+        }
+    }
+
+    #[test]
     fn points_are_strained_side_by_side_as_one_by_one() {
         for law in
             [Law::LogLinear, Law::PorosityDependent, Law::NeoHookean, Law::Preconsolidated, Law::VonMises]
         {
-            for rates in [&[][..], &[0.02; 36]] {
+            let dilating: [f64; 36] = array::from_fn(|point| 0.02 + 0.1 * point as f64);
+            for rates in [&[][..], &dilating] {
                 let [together, in_turn] = strained::<1>(law, rates);
                 assert_eq!(together, in_turn, "{law:?} on a line");
                 let [together, in_turn] = strained::<2>(law, rates);
