@@ -27,7 +27,9 @@ fn an_input_that_changed_is_told_before_the_values_that_moved() {
     let told = call(folder.path(), &["check", "short.toml"]);
     assert_eq!(told.code, 1, "{}{}", told.out, told.err);
     let found = told.words();
-    let input = found.find("youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases").expect(&told.out);
+    let input = found
+        .find("inputs that changed since the golden values were taken youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases")
+        .expect(&told.out);
     assert!(input < found.find("golden values that differ").expect(&told.out), "{}", told.out);
     let told = call(folder.path(), &["explain", "cells=6 hydraulic_conductivity=0.00001", "short.toml"]);
     let first: Vec<&str> = told.out.lines().take(4).collect();
