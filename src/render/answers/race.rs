@@ -149,7 +149,7 @@ fn profile_figure(
             .between(1.0, LARGEST_TAU),
         ChartAxis::linear("share of situations").between(0.0, 1.0),
     );
-    chart.size = Size { width: 1300.0, plot_height: 230.0, equal_units: false };
+    chart.size = Size { width: 1300.0, plot_height: 150.0, equal_units: false };
     chart.naming = Naming::Ends;
     let staircase = |steps: &[(f64, f64)]| {
         let mut points: Vec<(f64, f64)> = Vec::new();
@@ -189,7 +189,7 @@ fn panel(family: &str, situations: &[&Situation], named: &[String]) -> Figure {
         ChartAxis::log10("counted work (s)"),
         ChartAxis::log10("largest error").between(1e-4, 3.0),
     );
-    chart.size = Size { width: 340.0, plot_height: 150.0, equal_units: false };
+    chart.size = Size { width: 340.0, plot_height: 82.0, equal_units: false };
     chart.naming = Naming::Hover;
     chart.rules.push(Rule { at: 1e-2, label: "1 %".to_owned() });
     let points = |entry: &Entry| -> Vec<(f64, f64)> {
@@ -221,7 +221,7 @@ fn strip(situations: &[&Situation], named: &[String]) -> String {
         let told = if situations.len() == 1 {
             format!("`{name}`")
         } else {
-            format!("`{name}` in {} of {}", missed.len(), situations.len())
+            format!("`{name}` {}/{}", missed.len(), situations.len())
         };
         match by_reason.iter_mut().find(|(known, _)| *known == first.words()) {
             Some((_, names)) => names.push(told),
@@ -310,7 +310,7 @@ fn change_table(findings: &RaceFindings) -> Table {
 pub fn matrix_page(findings: &RaceFindings) -> Page {
     let views = vec![
         (
-            "Cost to 1 %".to_owned(),
+            "Cost to 1 %, ms".to_owned(),
             vec![Block::Table(matrix(&findings.situations, &|situation, entry| cost_cell(situation, entry)))],
         ),
         (
@@ -324,12 +324,13 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
         "Every method in every situation",
         "matrix",
         vec![
-            Block::Switch(views),
             Block::Paragraph(
-                "Cost: counted work to 1 % of pressure, effective stress and settlement; in the plane displacement, under the footing load. Shades: \
-                 as good as the best of the row, within a factor of 2, within 10, beyond, ✗ not reached. A cell leads to the figure of its situation."
+                "Cost: counted work to 1 % of pressure, effective stress and settlement; in the plane of the displacement, under the footing \
+                 of the load. Shades: as cheap as the best of the row, within a factor of 2, within 10, beyond. ✗: 1 % is not reached; \
+                 – : excluded by definition. A cell leads to the figure of its situation."
                     .to_owned(),
             ),
+            Block::Switch(views),
         ],
     )];
     sections.push(Section::new(
@@ -399,7 +400,9 @@ fn matrix(situations: &[Situation], show: &dyn Fn(&Situation, &Entry) -> Shown) 
 fn cost_cell(situation: &Situation, entry: &Entry) -> Shown {
     let least = situation.entries.iter().filter_map(|one| one.costs[1]).min_by(f64::total_cmp);
     match (entry.costs[1], least) {
-        (Some(cost), Some(least)) => (Shade::of_ratio(cost / least / TIE), number::seconds(cost), Some(cost)),
+        (Some(cost), Some(least)) => {
+            (Shade::of_ratio(cost / least / TIE), number::short(1e3 * cost), Some(cost))
+        }
         _ if entry.reason == Some(Reason::ByDefinition) => (Shade::Empty, "–".to_owned(), None),
         _ => (Shade::Failed, "✗".to_owned(), None),
     }
@@ -541,7 +544,7 @@ mod tests {
         assert_eq!(named, ["MPM", "GC-SRI-patch", "GIMP", "GIMP-SRI-patch", "VP-Bbar", "GIMP-Bbar-patch"]);
         let situations: Vec<&Situation> = findings.situations.iter().collect();
         let panel = panel("layer", &situations, &named);
-        assert_eq!(panel.caption, "✗ locks: `GIMP` in 2 of 2");
+        assert_eq!(panel.caption, "✗ locks: `GIMP` 2/2");
         assert_eq!(strip(&situations, &named[..2]), "✓ the named methods all arrive");
         let figure = profile_figure(&findings, RaceQuestion::Moving, RaceQuantity::All, &named);
         let stairs =

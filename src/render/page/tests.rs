@@ -208,9 +208,9 @@ fn figures_and_tables_are_counted_wherever_they_stand() {
     assert_eq!(files, [1, 2, 3].map(|number| (format!("p-table-{number}"), number)));
     assert_eq!(tables(&Page { files: None, ..page.clone() })[0].0, "page-table-1");
     let html = written(render_html(&page));
-    for (place, name) in ["a", "b", "c", "d"].into_iter().enumerate() {
+    for (number, name) in [(1, "a"), (1, "b"), (2, "c"), (3, "d")] {
         let link = format!("<a href=\"figures/{name}.svg\">SVG</a> <a href=\"figures/{name}.csv\">data</a>");
-        let told = format!("<b>Figure {}.</b> C. <span class=\"files\">{link}</span>", place + 1);
+        let told = format!("<b>Figure {number}.</b> C. <span class=\"files\">{link}</span>");
         assert!(html.contains(&told), "{told}");
     }
     for (number, _) in files {

@@ -155,14 +155,19 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
                     escape::html(word)
                 );
             }
+            // The views stand in one place, and count as one figure.
+            let (first, mut last) = (written.figures, written.figures);
             for (_, blocks) in views {
                 out.push_str("<div>\n");
+                written.figures = first;
                 for block in blocks {
                     html_block(block, out, written)?;
                 }
+                last = last.max(written.figures);
                 out.push_str("</div>\n");
             }
             out.push_str("</div>\n");
+            written.figures = last;
         }
         Block::Details { summary, blocks } => {
             let _ = writeln!(out, "<details>\n<summary>{}</summary>", escape::html(summary));
