@@ -2,6 +2,7 @@
 
 pub mod case_run;
 pub mod case_runner;
+pub mod endless;
 pub mod refinement;
 pub mod runner;
 pub mod shares;

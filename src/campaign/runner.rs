@@ -148,6 +148,7 @@ fn planned(studies: &[Selected<'_>], ladders: &[Ladder<'_>], resumed: usize, thr
         cases: jobs().count(),
         resumed,
         work: work_of(studies, jobs()),
+        seconds: jobs().map(|job| studies[job.study].study.estimated_seconds(job.case)).sum(),
         jobs: threads,
         longest: jobs()
             .max_by_key(|job| work_of(studies, std::iter::once(*job)))
@@ -424,6 +425,8 @@ pub enum Progress {
         resumed: usize,
         /// Time that they will take on one core, as estimated, ns; the largest number where there is more.
         work: u64,
+        /// The same, s, however long it is.
+        seconds: f64,
         /// Cases at the same time.
         jobs: usize,
         /// The one that will take longest.
@@ -528,6 +531,8 @@ pub struct Tally {
     pub recorded: usize,
     /// Those of them that failed.
     pub failed: usize,
+    /// Those of them that were skipped: their solver cannot solve them, or was not allowed to start.
+    pub skipped: usize,
     /// Those that failed and were not expected to.
     pub unforeseen: usize,
     /// Those of them that were not begun, because their programs were not allowed to start.
@@ -541,9 +546,11 @@ impl Tally {
     pub fn add(&mut self, study: &Study, record: &Record) {
         self.recorded += 1;
         if record.status != Status::Ok {
-            self.failed += 1;
-            self.held_back += usize::from(record.status.is_skipped() && study.holds_back(&record.case));
-            self.unforeseen += usize::from(!(record.status.is_skipped() || study.foresees(record)));
+            let is_skipped = record.status.is_skipped();
+            self.skipped += usize::from(is_skipped);
+            self.failed += usize::from(!is_skipped);
+            self.held_back += usize::from(is_skipped && study.holds_back(&record.case));
+            self.unforeseen += usize::from(!(is_skipped || study.foresees(record)));
         }
     }
 
@@ -551,6 +558,7 @@ impl Tally {
     pub fn join(&mut self, other: Self) {
         self.recorded += other.recorded;
         self.failed += other.failed;
+        self.skipped += other.skipped;
         self.unforeseen += other.unforeseen;
         self.held_back += other.held_back;
         self.left += other.left;
@@ -569,6 +577,7 @@ mod tests {
         let tally = |by: usize| Tally {
             recorded: 13 * by,
             failed: 7 * by,
+            skipped: 11 * by,
             unforeseen: 5 * by,
             held_back: 3 * by,
             left: 2 * by,

@@ -1,5 +1,6 @@
 //! Exit codes, and errors as messages.
 
+use crate::campaign::endless::EndlessCases;
 use crate::judge::score::results::ScoreError;
 use crate::study::diagnostic::StudyError;
 use crate::study::overrides::OverrideError;
@@ -60,7 +61,10 @@ impl Exit {
         if matches!(error.downcast_ref(), Some(ScoreError::NoTime(_))) {
             return Self::NothingSelected;
         }
-        let is_of_input = error.is::<StudyError>() || error.is::<OverrideError>() || error.is::<ScoreError>();
+        let is_of_input = error.is::<StudyError>()
+            || error.is::<EndlessCases>()
+            || error.is::<OverrideError>()
+            || error.is::<ScoreError>();
         if is_of_input || error.is::<ExactError>() || error.is::<ImportError>() {
             Self::Usage
         } else {

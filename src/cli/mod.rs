@@ -36,9 +36,9 @@ enum Command {
     Run(run::Arguments),
     /// Run what is missing and render the whole report
     Report(report::Arguments),
-    /// Judge studies by their expectations and golden values
+    /// Check studies against their expectations and golden values
     Check(check::Arguments),
-    /// Take the present values of a study as its golden values
+    /// Accept the current values of a study as its golden values
     Accept(accept::Arguments),
     /// Print an exact solution
     Exact(exact::Arguments),

@@ -24,7 +24,7 @@ pub struct StudyArguments {
     /// `studies/*.toml` or `*.toml`, here or above]
     #[arg(value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Take every shipped study
+    /// Use all shipped studies
     #[arg(long, conflicts_with = "studies")]
     shipped: bool,
 }

@@ -1,13 +1,12 @@
 //! Progress of long work on standard error: a bar with an estimate on terminals, only failures elsewhere;
 //! and notes on long runs before they start: the estimated time, and what would take less.
 
+use crate::campaign::endless::{LONGEST_CASE as LONGEST_ALLOWED, faster};
 use crate::campaign::runner::{LongestCase, Progress};
-use crate::case::keys::{Key, Value};
+use crate::case::Task;
 use crate::case::work_estimate::estimated_seconds;
-use crate::case::{Case, Task};
 use crate::cli::output::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_soil::wording::{count_of, duration};
 use std::io::IsTerminal;
 
@@ -34,8 +33,8 @@ impl StudyBar {
     /// Takes a message of the runner.
     pub fn tell(&self, progress: Progress) {
         match progress {
-            Progress::Planned { cases, resumed, work, jobs, longest } => {
-                self.tell_of_time(cases, work, jobs, longest.as_deref());
+            Progress::Planned { cases, resumed, work, seconds, jobs, longest } => {
+                self.tell_of_time(cases, seconds, jobs, longest.as_deref());
                 self.0.set_length(work);
                 let taken_up = if resumed > 0 { format!(", {resumed} from disk") } else { String::new() };
                 let beyond = if work == u64::MAX { ", more work than can be counted" } else { "" };
@@ -49,10 +48,9 @@ impl StudyBar {
     }
 
     /// Prints how long the work will take, if it is long.
-    fn tell_of_time(&self, cases: usize, work: u64, jobs: usize, longest: Option<&LongestCase>) {
+    fn tell_of_time(&self, cases: usize, total: f64, jobs: usize, longest: Option<&LongestCase>) {
         let Some(longest) = longest else { return };
-        let alone = estimated_seconds(&longest.case).min(longest.case_seconds);
-        let seconds = side_by_side(1e-9 * work as f64, alone, jobs);
+        let seconds = side_by_side(total, estimated_seconds(&longest.case), jobs);
         let notes = [note_on_longest(longest), note_on_run(&self.0.prefix(), cases, seconds)];
         for note in notes.into_iter().flatten() {
             self.0.suspend(|| say!("{note}"));
@@ -69,8 +67,6 @@ impl StudyBar {
 const LONG_CASE: f64 = 120.0;
 /// Seconds from which on a whole run is.
 const LONG_RUN: f64 = 60.0;
-/// How much faster another choice has to be to be worth naming.
-const WORTH_NAMING: f64 = 5.0;
 
 /// Time of cases side by side, s: that of their sum over the cores, and of the longest at least.
 pub fn side_by_side(total: f64, longest: f64, jobs: usize) -> f64 {
@@ -106,7 +102,9 @@ fn note_with(longest: &LongestCase, take: impl Fn(&str) -> String) -> Option<Str
         None if case.task == Task::Stability => "; an earlier last `time_factors` takes less".to_owned(),
         None => "; larger steps, fewer cells or an earlier last `time_factors` take less".to_owned(),
     };
-    let end = if *case_seconds < seconds {
+    let end = if seconds > LONGEST_ALLOWED.max(*case_seconds) {
+        ", and longer than a week: such a case is not run".to_owned()
+    } else if *case_seconds < seconds {
         format!(", and the case is ended after {} (`case_seconds = {case_seconds}`)", duration(*case_seconds))
     } else {
         String::new()
@@ -114,20 +112,12 @@ fn note_with(longest: &LongestCase, take: impl Fn(&str) -> String) -> Option<Str
     Some(format!("warning: {study}: {}\n  {own}: about {}{remedy}{end}", case.label(), duration(seconds)))
 }
 
-/// The case by the integrator that takes long steps, where that is much faster: a scene without waves needs no
-/// step that follows them.
-fn faster(case: &Case) -> Option<Case> {
-    if case.integrator == IntegratorKind::Implicit || case.task == Task::Stability || case.scene.has_waves() {
-        return None;
-    }
-    let mut other = case.clone();
-    Key::named("integrator", "sweep")?.set(&mut other, Value::Word(IntegratorKind::Implicit.name()));
-    (estimated_seconds(case) > WORTH_NAMING * estimated_seconds(&other)).then_some(other)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Case;
+    use crate::case::keys::{Key, Value};
+    use oedometer_mpm::run::integrator::IntegratorKind;
     use oedometer_mpm::scene::SceneKind;
 
     fn longest(scene: SceneKind, integrator: IntegratorKind, conductivity: f64) -> LongestCase {

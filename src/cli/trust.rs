@@ -41,8 +41,8 @@ impl TrustArguments {
             study.may_start_solvers = self.may_start(study, named);
             if !study.may_start_solvers {
                 say!(
-                    "{}: this study starts {} with your rights, which is not allowed yet: its cases are not run. Read it, \
-                     then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
+                    "{}: this study runs {} on your account, which you have not allowed yet: its cases are not run. \
+                     Read it, then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
                     study.name,
                     told(&starting(study))
                 );
@@ -68,7 +68,10 @@ impl TrustArguments {
         if studies.iter().all(|study| study.may_start_solvers) {
             return Ok(());
         }
-        Err(Ended::with(Exit::IncompleteMerge, "nothing is done, for not every case may be run"))
+        Err(Ended::with(
+            Exit::IncompleteMerge,
+            "nothing was run, because some cases may not start their programs",
+        ))
     }
 }
 
@@ -148,7 +151,7 @@ fn is_answered(study: &Study, starting: &[&ExternalSolver]) -> bool {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return false;
     }
-    say!("{}: this study starts {} with your rights.", study.name, told(starting));
+    say!("{}: this study runs {} on your account.", study.name, told(starting));
     say!("Start it, now and as long as its commands and files stay as they are? Type `yes`:");
     let mut answer = String::new();
     let mut input = std::io::Read::take(std::io::stdin().lock(), LONGEST_ANSWER);

@@ -13,9 +13,7 @@ use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, va
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
 use crate::judge::explanation::place_in_kept;
-use crate::judge::findings::QuantityWithin;
-use crate::judge::findings::convergence::{ConvergenceTable, convergence_tables};
-use crate::judge::findings::within::within;
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::paths::StudyPaths;
 use crate::judge::proposals::proposals;
 use crate::judge::score::diagnosis::diagnosis;
@@ -73,10 +71,8 @@ pub struct StudyCheck {
     pub warnings: Vec<String>,
     /// What seems to be wrong with the results of other programs; it stands before all else.
     pub diagnoses: Vec<String>,
-    /// What it takes to come within bounds of the error.
-    pub within: Vec<QuantityWithin>,
-    /// Errors and rates over the meshes, of a study with a few methods.
-    pub convergence: Vec<ConvergenceTable>,
+    /// What the study answers by itself; empty where a reference refuses a case, which its failure says.
+    pub answers: StudyAnswers,
 }
 
 /// How a check came out.
@@ -129,8 +125,7 @@ impl StudyCheck {
             // Partial results of a failed run are not judged.
             inputs: changes,
             proposals: proposals(study, &paths),
-            within: if study.is_race { Vec::new() } else { within(study, records) },
-            convergence: convergence_tables(study, &paths),
+            answers: StudyAnswers::new(study, records, &paths).unwrap_or_default(),
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
                 Status::Ok if !study.is_race => soundness::complaints(record),
@@ -206,8 +201,7 @@ impl StudyCheck {
             taken_over: Vec::new(),
             warnings: Vec::new(),
             diagnoses: Vec::new(),
-            within: Vec::new(),
-            convergence: Vec::new(),
+            answers: StudyAnswers::default(),
         }
     }
 

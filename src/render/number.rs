@@ -22,11 +22,15 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     finite(value, |v| minus(format!("{v:.decimals$}")))
 }
 
-/// A time factor: as it was typed, or with four digits where it comes from a time in days.
+/// A time factor: as it was typed, and of more than four significant digits these.
 pub fn time_factor(value: f64) -> String {
     let typed = oedometer_soil::wording::typed(value);
     let digits = typed.chars().filter(char::is_ascii_digit).collect::<String>();
-    if digits.trim_start_matches('0').len() <= 6 { typed } else { number(value) }
+    match digits.trim_matches('0').len() {
+        0..=4 => typed,
+        _ if value.abs() >= 1e-3 => number(value),
+        _ => format!("{value:.3e}"),
+    }
 }
 
 /// A share as a percentage: `0.012` is `1.20 %`.
@@ -145,7 +149,7 @@ mod tests {
     #[test]
     fn a_time_factor_of_a_time_in_days_has_four_digits() {
         let told = [0.05, 0.0002, 1e-12, 0.123_456, 0.152_190_825_688_073_4, 2.0].map(time_factor);
-        assert_eq!(told, ["0.05", "0.0002", "0.000000000001", "0.123456", "0.1522", "2"]);
+        assert_eq!(told, ["0.05", "0.0002", "0.000000000001", "0.1235", "0.1522", "2"]);
     }
 
     #[test]

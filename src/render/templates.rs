@@ -5,7 +5,7 @@ use crate::render::report::labels;
 use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
-use oedometer_soil::wording::{count_of, duration, typed};
+use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
@@ -38,6 +38,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("count", |count: usize, singular: String, plural: String| {
         count_of(count, &singular, &plural)
     });
+    environment.add_filter("clock_time", clock_time);
     environment.add_filter("duration", duration);
     environment.add_filter("error", number::error);
     environment.add_filter("error_percent", number::percent);

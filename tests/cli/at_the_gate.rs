@@ -63,7 +63,7 @@ fn what_nobody_allowed_to_run_is_not_judged_and_nothing_of_it_is_to_be_accepted(
     let told = call_with(folder.path(), &variables, &["check", "s.toml", "--junit", "j.xml"]);
     let said = told.words();
     assert_eq!(told.code, 6, "{said}{}", told.err);
-    let words = "none of 1 expectation judged: 1 case not run, for their programs need --allow-solvers";
+    let words = "none of 1 expectation judged: 1 case not run, because their programs need --allow-solvers";
     assert!(said.contains(words) && !said.contains("next:") && !said.contains("no expectations"), "{said}");
     let junit = fs::read_to_string(folder.path().join("j.xml")).expect("JUnit");
     assert!(junit.contains("<skipped") && !junit.contains("<failure"), "{junit}");

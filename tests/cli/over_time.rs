@@ -309,7 +309,7 @@ fn two_commands_of_an_attached_solver_are_compared_in_rounds() {
     // What would be started is asked about, not what the study names.
     let asked =
         call_with(at, &[("OEDOMETER_ALLOW_SOLVERS", "")], &["compare", "--commands", "a", "b", "own.toml"]);
-    assert!(asked.code == 6 && asked.err.contains("starts `a` in"), "{}", asked.err);
+    assert!(asked.code == 6 && asked.err.contains("runs `a` in"), "{}", asked.err);
 }
 
 #[test]

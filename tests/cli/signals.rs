@@ -168,7 +168,7 @@ fn a_check_that_is_ended_judges_nothing() {
     send("INT", &child);
     let (code, said) = end_of(child);
     assert_eq!(code, Some(6), "{said}");
-    assert!(said.contains("told to end: nothing is judged"), "{said}");
+    assert!(said.contains("interrupted: nothing was judged"), "{said}");
     assert!(!solver.iter().any(|process| runs(process)), "{solver:?} run on");
 }
 

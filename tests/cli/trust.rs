@@ -79,7 +79,7 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
         assert!(!was_started(at), "{words:?} starts it");
         assert_eq!(told.code, code, "{words:?}: {}{}", told.out, told.err);
         let says_how = ["run", "check", "report"].contains(&words[0]) && !words.contains(&"--from-records");
-        let how = "this study starts `sh adapter.sh {out} {study}` in";
+        let how = "this study runs `sh adapter.sh {out} {study}` in";
         assert_eq!(
             says_how,
             told.err.contains(how) && told.err.contains("--allow-solvers"),

@@ -271,7 +271,10 @@ fn a_run_that_is_told_to_end_keeps_what_is_done_and_says_what_is_left() {
     let output = child.wait_with_output().expect("it is over");
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(6), "{told}");
-    assert!(told.contains("not run, for the run was told to end: `--resume` goes on with them"), "{told}");
+    assert!(
+        told.contains("not run, because the run was interrupted: `--resume` continues with them"),
+        "{told}"
+    );
     let done = lines(&at.join("out"), "short").len() / 2;
     assert!((1..CASES).contains(&done), "{done} of {CASES}");
     let told = call(at, &["plan", "short.toml", "--missing", "out"]);

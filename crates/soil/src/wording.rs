@@ -43,6 +43,27 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// A time on the clock as a person types it: in the largest unit of which it is a whole number, or else with four digits in
+/// the unit that fits.
+pub fn clock_time(seconds: f64) -> String {
+    const UNITS: [(f64, &str, &str); 4] = [
+        (365.25 * 86400.0, "year", "years"),
+        (86400.0, "day", "days"),
+        (3600.0, "h", "h"),
+        (60.0, "min", "min"),
+    ];
+    for (unit, one, several) in UNITS {
+        let count = (seconds / unit).round();
+        if (1.0..1e4).contains(&count) && (seconds / (count * unit) - 1.0).abs() < 1e-9 {
+            return format!("{} {}", short(count), if count == 1.0 { one } else { several });
+        }
+    }
+    match UNITS.into_iter().find(|(unit, ..)| seconds >= 2.0 * unit) {
+        Some((unit, _, several)) => format!("{} {several}", short(seconds / unit)),
+        None => format!("{} s", short(seconds)),
+    }
+}
+
 /// A number of things: `1 case`, `3 cases`.
 pub fn count_of(count: usize, one: &str, several: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
@@ -139,6 +160,11 @@ mod tests {
             [0.0123, 90.0, 130.0, 216e3, 36.0 * 3600.0, 40.0 * 86400.0, 1e12].map(duration),
             ["0.012 s", "90 s", "2.2 min", "2.5 days", "36 h", "40 days", "3.2e4 years"]
         );
+        let days =
+            [365.0, 30.0, 1.0, 365.25, 730.5, 1.5, 400.0, 100.25].map(|days| clock_time(86400.0 * days));
+        assert_eq!(days, ["365 days", "30 days", "1 day", "1 year", "2 years", "36 h", "400 days", "2406 h"]);
+        let seconds = [90.0, 60.0, 7.3575, 86400.0 * 1234.5, 0.0].map(clock_time);
+        assert_eq!(seconds, ["90 s", "1 min", "7.357 s", "3.38 years", "0 s"]);
         assert_eq!([1, 0, 2].map(|n| count_of(n, "study", "studies")), ["1 study", "0 studies", "2 studies"]);
         assert_eq!([1e-300, 1e300].map(typed), ["1e-300", "1e300"]);
         assert_eq!(orders(&[2.0, -0.001, 1.234]), "2.00, 0.00, 1.23");

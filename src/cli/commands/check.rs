@@ -1,5 +1,6 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
+use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
@@ -157,6 +158,9 @@ fn run_all(
         [study] => study.name.as_str(),
         _ => "check",
     };
+    for study in studies {
+        refuse_endless(study, Tier::Ci)?;
+    }
     let bar = StudyBar::new(name);
     let store_of = |study: &Study| Some(RecordStore::new(records?, &study.name));
     let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
@@ -180,7 +184,7 @@ pub fn refuse_unfinished(reports: &[RunReport]) -> anyhow::Result<()> {
         return Ok(());
     }
     let cases = count_of(left, "case was", "cases were");
-    let sentence = format!("{cases} not run, for this run was told to end: nothing is judged");
+    let sentence = format!("{cases} not run, for this run was interrupted: nothing was judged");
     Err(Ended::with(Exit::IncompleteMerge, sentence))
 }
 

@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Divide the cases by estimated time, the longest first, instead of by hash
     #[arg(long, requires = "tasks")]
     balance: bool,
-    /// Have the commands reuse results of attached solvers that nothing proves to be of the present program
+    /// Have the commands reuse results of attached solvers that cannot be shown to come from the present program
     #[arg(long, requires = "tasks")]
     keep_unproven: bool,
     /// Folder for the results of the commands; by default that of `--missing`

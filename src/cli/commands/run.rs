@@ -1,6 +1,7 @@
 //! `oedometer run`: runs the cases of study files and writes their records and one tidy CSV per study.
 
 use crate::campaign::case_runner::time_study;
+use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, Tally, run_studies};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
@@ -55,7 +56,7 @@ pub struct Arguments {
     /// Reuse finished records of the same version and sources, from any build
     #[arg(long)]
     resume: bool,
-    /// With `--resume`: reuse results of attached solvers too that nothing proves to be of the present program
+    /// With `--resume`: also reuse results of attached solvers that cannot be shown to come from the present program
     #[arg(long, requires = "resume")]
     keep_unproven: bool,
     /// Write the tables as STUDY.csv.gz, which pandas reads too
@@ -160,7 +161,7 @@ fn with_case(study: &Study, hash: &str) -> Study {
 /// told of, and the others go on.
 ///
 /// # Errors
-/// When a result cannot be kept.
+/// When a case would take longer than anyone waits, or a result cannot be kept.
 pub fn run_and_store(
     studies: &[Study],
     selected: &[Study],
@@ -168,6 +169,9 @@ pub fn run_and_store(
     results: &Path,
     tables: Option<TableForm>,
 ) -> anyhow::Result<Vec<RunReport>> {
+    for study in selected {
+        refuse_endless(study, options.tier)?;
+    }
     let stores: Vec<RecordStore> =
         studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
     for (study, store) in studies.iter().zip(&stores) {
@@ -203,7 +207,10 @@ pub fn run_and_store(
         }
         if report.tally.left > 0 {
             let left = count_of(report.tally.left, "case was", "cases were");
-            say!("{}: {left} not run, for the run was told to end: `--resume` goes on with them", study.name);
+            say!(
+                "{}: {left} not run, because the run was interrupted: `--resume` continues with them",
+                study.name
+            );
         }
         if report.tally.recorded == 0 {
             continue;
@@ -228,8 +235,12 @@ fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
 }
 
 fn tell_of(study: &Study, report: &RunReport, table: &Path) {
+    let skipped = match report.tally.skipped {
+        0 => String::new(),
+        skipped => format!(", {skipped} skipped"),
+    };
     say!(
-        "{}: {} ({} from disk, {} failed), {}",
+        "{}: {} ({} from disk, {} failed{skipped}), {}",
         study.name,
         count_of(report.tally.recorded + report.errors.len(), "case", "cases"),
         report.resumed,

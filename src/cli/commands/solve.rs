@@ -1,16 +1,16 @@
 //! `oedometer solve`: one case from the command line, its errors on standard output.
 
 use crate::campaign::case_run::{ThisProgram, all_cores};
+use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::LongestCase;
 use crate::case::Case;
 use crate::case::outcome::{Course, Solver};
-use crate::case::planned::PlannedCase;
+use crate::case::planned::{PlannedCase, Tier};
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
-use crate::judge::findings::convergence::convergence_tables;
-use crate::judge::findings::within::within;
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::measure::record::record_of;
@@ -71,6 +71,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let study = study_of(arguments)?;
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
+    refuse_endless(&study, Tier::Full)?;
     tell_of_long(&study);
     let course = Course { threads: all_cores(), seconds: study.case_seconds, ..Course::alone() };
     let solved = |planned: &PlannedCase| {
@@ -107,8 +108,8 @@ fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyho
         }
         SolveFormat::Json => print_data(&json_of(&records.iter().map(SolveJson::of).collect::<Vec<_>>())?),
         SolveFormat::Table => {
-            let tables = convergence_tables(study, &StudyPaths::of(records));
-            print_data(text_of_answers(&within(study, records), &tables)?.trim_start_matches('\n'))
+            let answers = StudyAnswers::new(study, records, &StudyPaths::of(records))?;
+            print_data(text_of_answers(&answers)?.trim_start_matches('\n'))
         }
     }
 }
@@ -120,7 +121,7 @@ fn csv_rows(record: &Record) -> impl Iterator<Item = Vec<String>> + '_ {
     record.errors.iter().map(|row| row.csv_fields().to_vec()).chain(loads)
 }
 
-/// Warns of what cannot be right, and ends with a failure where the run did.
+/// Warns of broken balances and bounds, and ends with a failure where the run did.
 fn end_of(record: &Record) -> anyhow::Result<Exit> {
     for complaint in soundness::complaints(record).iter().filter(|_| record.status == Status::Ok) {
         say!("warning: {complaint}");

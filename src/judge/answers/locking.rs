@@ -2,6 +2,8 @@
 
 use crate::judge::comparison::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow, SweptStiffness};
 use crate::judge::study_results::StudyResults;
+use crate::record::Record;
+use crate::study::check::Study;
 use oedometer_exact::ExactError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,6 +77,18 @@ impl LockingFinding {
             }
         }
         Ok(widest.and_then(|(study, sweep)| Self::from_sweep(study, &sweep)))
+    }
+
+    /// What one study says, where it sweeps Poisson's ratio.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn of_study(study: &Study, records: &[Record]) -> Result<Option<Self>, ExactError> {
+        if !study.scene.shows_locking() {
+            return Ok(None);
+        }
+        let sweep = StiffnessSweep::of(study, records, SweptStiffness::Skeleton)?;
+        Ok(sweep.and_then(|sweep| Self::from_sweep(&study.name, &sweep)))
     }
 
     fn from_sweep(study: &str, sweep: &StiffnessSweep) -> Option<Self> {

@@ -54,7 +54,10 @@ pub fn convergence_tables(study: &Study, paths: &StudyPaths<'_>) -> Vec<Converge
     paths.iter().filter_map(|path| table_of(path, reference.name())).collect()
 }
 
+/// The table of the meshes whose runs ended: what failed has no error, and the others keep theirs.
 fn table_of(path: &Path<'_>, reference: &str) -> Option<ConvergenceTable> {
+    let ended = path.records.iter().copied().filter(|record| record.status.failure().is_none());
+    let path = &Path { records: ended.collect(), ..path.clone() };
     let first = &path.records.first().filter(|_| path.records.len() > 1)?;
     let time_factor = *first.case.time_factors.last()?;
     let main = first.main_sample();
@@ -98,6 +101,21 @@ fn label_without_cells(record: &Record) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::solved;
+
+    #[test]
+    fn a_mesh_whose_run_failed_leaves_the_others_in_the_table() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\n";
+        let (study, mut records) = solved("s", text);
+        let meshes = |records: &[Record]| {
+            let tables = convergence_tables(&study, &StudyPaths::of(records));
+            tables.into_iter().map(|table| (table.cells, table.columns.len())).collect::<Vec<_>>()
+        };
+        records[1].status = crate::campaign::runner::failed_at(3);
+        assert_eq!(meshes(&records), [(vec![4, 16], 3)]);
+        records[2].status = crate::campaign::runner::failed_at(3);
+        assert_eq!(meshes(&records), [], "one mesh is no series");
+    }
 
     #[test]
     fn every_mesh_has_its_error_and_the_rate_to_it() {

@@ -6,6 +6,8 @@
 
 pub mod convergence;
 mod series;
+pub mod settlement;
+pub mod study_answers;
 pub mod within;
 
 use crate::case::Tier;
@@ -20,6 +22,7 @@ use oedometer_mpm::run::results::outcome::FailureKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use series::SeriesFinding;
+use settlement::SettlementTable;
 pub use within::QuantityWithin;
 
 /// Version of the layout; it rises when a field goes or changes its meaning.
@@ -48,6 +51,8 @@ pub struct Findings {
     pub stiffness: Vec<StiffnessFinding>,
     /// For each quantity and bound the cheapest choice of method, mesh and step within it.
     pub within: Vec<QuantityWithin>,
+    /// Settlements at the outputs, of the runs that the answer for the settlement names.
+    pub settlements: Vec<SettlementTable>,
 }
 
 /// An expectation with its verdict.
@@ -162,6 +167,7 @@ impl Findings {
         for swept in SweptStiffness::ALL {
             stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
         }
+        let within = within::within(study, records);
         Ok(Self {
             schema: SCHEMA,
             study: study.name.clone(),
@@ -172,7 +178,8 @@ impl Findings {
             runs: records.iter().map(RunFinding::new).collect(),
             series: series::all_series(study, paths),
             stiffness,
-            within: within::within(study, records),
+            settlements: settlement::settlement_tables(study, records, &within)?,
+            within,
         })
     }
 }

@@ -31,6 +31,8 @@ pub struct QuantityWithin {
     pub sample: Sample,
     /// Reference.
     pub reference: String,
+    /// Problems that every choice solves: soils, loads and geometries.
+    pub problems: usize,
     /// The bounds, the largest first.
     pub bounds: Vec<BoundWithin>,
     /// The choice with the least error.
@@ -44,6 +46,8 @@ pub struct BoundWithin {
     pub bound: f64,
     /// `None` where no choice stays within it.
     pub choice: Option<WithinFinding>,
+    /// Other methods that stay within it too, on any mesh.
+    pub others: Vec<String>,
 }
 
 /// Method, mesh and step, with the largest error over all outputs and problems.
@@ -59,6 +63,8 @@ pub struct WithinFinding {
     pub points_per_cell: usize,
     /// Largest step of the run with the largest error, s; 0 where another solver does not tell it.
     pub largest_step: f64,
+    /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
+    pub is_longest_tried: bool,
     /// Largest error.
     pub error: f64,
     /// Time factor of the output that has it.
@@ -111,7 +117,10 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
             });
             let all: Vec<(&Record, ErrorRow)> = largest.collect::<Option<_>>()?;
             let (record, row) = all.into_iter().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()))?;
-            Some(WithinFinding::new(record, &row))
+            Some(WithinFinding {
+                is_longest_tried: is_longest_tried(record, records),
+                ..WithinFinding::new(record, &row)
+            })
         })
         .collect();
     let best = choices.iter().min_by(|a, b| a.error.total_cmp(&b.error))?.clone();
@@ -121,9 +130,17 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
         let fits = choices.iter().filter(|choice| choice.error <= bound);
         let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
         let cheapest = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)));
-        BoundWithin { bound, choice: cheapest.cloned() }
+        let passing = choices.iter().filter(|choice| choice.error <= bound).map(|choice| &choice.method);
+        let mut others: Vec<String> = Vec::new();
+        for method in passing.filter(|method| cheapest.is_some_and(|choice| choice.method != **method)) {
+            if !others.contains(method) {
+                others.push(method.clone());
+            }
+        }
+        BoundWithin { bound, choice: cheapest.cloned(), others }
     });
-    Some(QuantityWithin { quantity, sample, reference: reference.to_owned(), bounds: bounds.to_vec(), best })
+    let reference = reference.to_owned();
+    Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best })
 }
 
 impl WithinFinding {
@@ -135,6 +152,7 @@ impl WithinFinding {
             cells: case.cells,
             points_per_cell: case.points_per_cell,
             largest_step: record.step_sizes.largest,
+            is_longest_tried: false,
             error: row.value.abs(),
             time_factor: row.time_factor,
             seconds: row.time_factor * case.seconds_per_time_factor(),
@@ -145,8 +163,19 @@ impl WithinFinding {
     }
 }
 
+/// Whether no run of the same method and integrator on the same mesh of the same problem took larger steps.
+fn is_longest_tried(record: &Record, records: &[Record]) -> bool {
+    let what = |record: &Record| {
+        let case = &record.case;
+        let solver = (case.method.to_string(), case.integrator.name());
+        (solver, case.cells, case.points_per_cell, problem(case))
+    };
+    let alike = records.iter().filter(|other| what(other) == what(record));
+    alike.map(|other| other.step_sizes.largest).fold(0.0, f64::max) <= record.step_sizes.largest
+}
+
 /// A number for what is solved, whoever solves it and on whatever mesh.
-fn problem(case: &Case) -> u64 {
+pub(super) fn problem(case: &Case) -> u64 {
     case.number_with(|case| {
         let seed = Case::seed(case.task, case.scene);
         (case.method, case.integrator, case.formulation) = (seed.method, seed.integrator, seed.formulation);
@@ -156,7 +185,7 @@ fn problem(case: &Case) -> u64 {
 }
 
 /// A number for who solves it, on which mesh and by which steps, whatever the problem.
-fn choice(case: &Case) -> u64 {
+pub(super) fn choice(case: &Case) -> u64 {
     case.number_with(|case| {
         let seed = Case::seed(case.task, case.scene);
         (case.column, case.material, case.time_factors) = (seed.column, seed.material, seed.time_factors);
@@ -222,6 +251,29 @@ mod tests {
             change(record);
         }
         within(&study, &records)[0].bounds[0].choice.as_ref().map(|choice| choice.cells)
+    }
+
+    /// Four cells with 5 % of growth, eight with 5 and 10 %; MPM and GIMP are both within.
+    #[test]
+    fn other_methods_within_the_bound_are_named_and_so_is_the_longest_step_tried() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP', 'VP']\n\
+                    integrator = ['implicit']\ncells = [4]\ntime_step = [{ growth = 0.05 }, { growth = 0.1 }]\n";
+        let (study, mut records) = solved("s", text);
+        for (allowed, is_longest) in [(0.1, true), (0.05, false)] {
+            for record in &mut records {
+                let is_small = record.case.label().contains(&format!("growth={allowed}"));
+                let is_within = record.case.method.to_string() != "VP" && is_small;
+                record.errors.iter_mut().for_each(|row| row.value = if is_within { 0.005 } else { 0.5 });
+            }
+            let answer = &within(&study, &records)[0];
+            let [percent, promille] = &answer.bounds[..] else { panic!("{answer:?}") };
+            let choice = percent.choice.as_ref().expect("within");
+            let all: Vec<&str> =
+                std::iter::once(&choice.method).chain(&percent.others).map(String::as_str).collect();
+            assert!(all.len() == 2 && all.contains(&"MPM") && all.contains(&"GIMP"), "{all:?}");
+            assert_eq!((choice.is_longest_tried, answer.problems), (is_longest, 1));
+            assert_eq!((promille.choice.as_ref(), promille.others.len()), (None, 0));
+        }
     }
 
     #[test]

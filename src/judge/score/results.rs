@@ -21,7 +21,7 @@ use oedometer_soil::wording::short;
 #[non_exhaustive]
 pub enum ScoreError {
     /// No state is at a requested time.
-    #[error("no time is one of the requested ones: {0}; --time-tolerance sets how near is near")]
+    #[error("no state is at a requested time: {0}; --time-tolerance sets how far off a time may be")]
     NoTime(String),
     /// A reference refuses its inputs.
     #[error(transparent)]
@@ -327,7 +327,7 @@ mod tests {
         assert_eq!([name(&["a"]), name(&["a", "b", "c"])], ["a", "a, b, c"]);
         assert_eq!([name(&["a", "b", "c", "d"]), name(&[])], ["a … d (4 files)", ""]);
         let missing = ScoreError::NoTime("there is no T_v = 0.1".to_owned()).to_string();
-        let told = "no time is one of the requested ones: there is no T_v = 0.1; --time-tolerance sets how near is near";
+        let told = "no state is at a requested time: there is no T_v = 0.1; --time-tolerance sets how far off a time may be";
         assert_eq!(missing, told);
     }
 

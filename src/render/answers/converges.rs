@@ -87,8 +87,14 @@ fn table(found: &ConvergesFinding) -> Table {
     let more = ranked.len().saturating_sub(MOST_METHODS);
     let others = if more > 0 { format!("{more} more: on the pages of the studies") } else { String::new() };
     let notes = [norms, labels::class_meanings(&rows), others].into_iter().filter(|note| !note.is_empty());
-    Table::of(format!("Order on the finest three meshes, error on {} cells", found.cells), columns, rows)
-        .notes(notes)
+    let shown = ranked.iter().take(MOST_METHODS).flat_map(|name| {
+        found.columns.iter().filter_map(|column| method_of(column, name)).flat_map(|method| &method.orders)
+    });
+    // Not every study runs the mesh on which errors are quoted.
+    let mut shown = shown.filter(|order| order.error.is_some());
+    let errors = shown.next().map_or(String::new(), |_| format!(", error on {} cells", found.cells));
+    let title = format!("Order on the finest three meshes{errors}");
+    Table::of(title, columns, rows).notes(notes)
 }
 
 /// Order and error in a few characters.

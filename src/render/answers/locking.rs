@@ -15,7 +15,8 @@ pub fn section(locking: &LockingFinding) -> Result<Section, RenderError> {
     Ok(QUESTION.answered(&templates::sentence("locking", locking)?, [locking.study.as_str()], vec![table]))
 }
 
-fn table(locking: &LockingFinding) -> Table {
+/// The errors of all methods at the smallest and the largest ratio.
+pub fn table(locking: &LockingFinding) -> Table {
     let rows = locking.methods.iter().map(|method| {
         let error = |error: Option<f64>| Cell::of(error, Cell::Error, "no result");
         let LockingMethod { displacement, pressure, .. } = method;
@@ -42,7 +43,7 @@ fn table(locking: &LockingFinding) -> Table {
 fn result(result: &LockingResult) -> Cell {
     match result {
         LockingResult::Kept => Cell::Verdict(Mood::Pass, "kept".to_owned()),
-        LockingResult::Lost { from } => Cell::Verdict(Mood::Fail, format!("lost from ν = {}", typed(*from))),
+        LockingResult::Lost { from } => Cell::Verdict(Mood::Fail, format!("locks from ν = {}", typed(*from))),
         LockingResult::Failed { at, ending } => {
             Cell::Verdict(Mood::Fail, format!("failed at ν = {}: {ending}", typed(*at)))
         }
@@ -76,7 +77,7 @@ mod tests {
         };
         let table = table(&locking);
         let results: Vec<String> = table.rows.iter().map(|row| row[1].show()).collect();
-        assert_eq!(results, ["✓ kept", "✗ lost from ν = 0.4", "✗ failed at ν = 0.49: unstable at step 3"]);
+        assert_eq!(results, ["✓ kept", "✗ locks from ν = 0.4", "✗ failed at ν = 0.49: unstable at step 3"]);
         assert_eq!(table.rows[0][2..5], [0.01, 0.02, 0.03].map(Cell::Error));
         assert_eq!(table.rows[0][5], Cell::missing("no result"));
     }

@@ -6,7 +6,7 @@
 mod audit;
 mod converges;
 mod double_point;
-mod locking;
+pub(crate) mod locking;
 mod paper;
 mod race;
 

@@ -20,9 +20,9 @@ struct Failure<'a> {
 }
 
 /// Titles of the lists of failures, in the order of [`failures_of`].
-const TITLES: [&str; 3] = ["expectations not met", "failed cases", "records that cannot be right"];
+const TITLES: [&str; 3] = ["expectations not met", "failed cases", "records that break a balance or a bound"];
 
-/// What failed in a check, golden values aside: unmet expectations, failed cases, and records that cannot be right.
+/// What failed in a check, golden values aside: unmet expectations, failed cases, and records that break a balance or a bound.
 fn failures_of(check: &StudyCheck) -> [Vec<Failure<'_>>; 3] {
     let unmet = check.judgements.iter().filter(|judgement| !judgement.verdict.pass).map(|judgement| {
         let (class, reason) = (judgement.verdict.classification.class.name(), &judgement.verdict.reason);
@@ -239,6 +239,7 @@ mod tests {
     use crate::golden::GoldenError;
     use crate::golden::compare::{Difference, DifferenceGroup};
     use crate::golden::inputs::InputChange;
+    use crate::judge::findings::study_answers::StudyAnswers;
     use crate::judge::study_check::CaseNote;
 
     /// Golden values of one kind of change.
@@ -286,8 +287,7 @@ mod tests {
             taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
             diagnoses: Vec::new(),
-            within: Vec::new(),
-            convergence: Vec::new(),
+            answers: StudyAnswers::default(),
         }
     }
 

@@ -2,18 +2,18 @@
 
 use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::{CaseChange, Change, Difference};
-use crate::judge::findings::QuantityWithin;
-use crate::judge::findings::convergence::ConvergenceTable;
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
+use crate::render::answers::locking;
 use crate::render::checks::{TITLES, failures_of};
 use crate::render::marked_text::paragraphs;
 use crate::render::report::within::sentences;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::convergence;
 use crate::render::tables::golden_changes::{self, judgement_of, summary};
-use crate::render::tables::uncertainties;
-use crate::render::{RenderError, number};
+use crate::render::tables::{settlement, uncertainties};
+use crate::render::{RenderError, number, templates};
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
@@ -38,7 +38,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
     text += &text_of_failures(check);
     text += &text_of_changes(check);
     if is_alone {
-        text += &text_of_answers(&check.within, &check.convergence)?;
+        text += &text_of_answers(&check.answers)?;
     }
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
@@ -53,26 +53,37 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
     Ok(text)
 }
 
-/// Errors over the meshes with their rates, and what it takes to come within a bound.
+/// Errors over the meshes with their rates, what it takes to come within a bound, settlements by date, and who locks.
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn text_of_answers(
-    within: &[QuantityWithin],
-    tables: &[ConvergenceTable],
-) -> Result<String, RenderError> {
+pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
     let mut text = String::new();
-    for table in tables {
+    for table in &answers.convergence {
         let heading = wrapped(&convergence::heading(table), "", "  ");
         let classes = wrapped(&convergence::classes(table), "", "  ");
         let _ = write!(text, "\n{heading}\n{}\n{classes}", convergence::table_of(table).to_text()?);
     }
-    let sentences = sentences(within)?;
-    for paragraph in paragraphs(&sentences) {
-        let plain = paragraph.replace(['*', '`'], "");
-        let _ = write!(text, "\n{}", wrapped(&plain, "", "  "));
+    text += &plain_paragraphs(&sentences(&answers.within)?);
+    for table in &answers.settlements {
+        let heading = wrapped(&settlement::heading(table), "", "  ");
+        let _ = write!(text, "\n{heading}\n{}", settlement::table_of(table).to_text()?);
+    }
+    if let Some(locking) = &answers.locking {
+        text += &plain_paragraphs(&templates::sentence("locking", locking)?);
+        let _ = write!(text, "\n{}", locking::table(locking).to_text()?);
     }
     Ok(text)
+}
+
+/// Paragraphs without their marks, in lines of a terminal's width.
+fn plain_paragraphs(sentences: &str) -> String {
+    let plain = |paragraph: &str| wrapped(&paragraph.replace(['*', '`'], ""), "", "  ");
+    let mut text = String::new();
+    for paragraph in paragraphs(sentences) {
+        let _ = write!(text, "\n{}", plain(&paragraph));
+    }
+    text
 }
 
 /// The checks of several studies as Markdown. `file_of` knows the file of a study.
@@ -119,7 +130,7 @@ pub fn markdown_of(
     Ok(text)
 }
 
-/// Why the values of a study cannot be golden: unmet expectations, failed cases, records that cannot be right. `None`
+/// Why the values of a study cannot be golden: unmet expectations, failed cases, records that break a balance or a bound. `None`
 /// where there is no reason.
 pub fn objections_of(check: &StudyCheck) -> Option<String> {
     let text = text_of_failures(check);
@@ -218,7 +229,7 @@ fn headline(check: &StudyCheck) -> String {
         Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
         Err(_) if check.end() == CheckEnd::HeldBack => {
             let cases = count_of(check.held_back, "case", "cases");
-            return format!("{expectations}: {cases} not run, for their programs need --allow-solvers");
+            return format!("{expectations}: {cases} not run, because their programs need --allow-solvers");
         }
         Err(error) => error.to_string(),
     };
@@ -332,7 +343,7 @@ fn items_of(table: &Table) -> String {
     text
 }
 
-/// Unmet expectations, failed cases and records that cannot be right.
+/// Unmet expectations, failed cases and records that break a balance or a bound.
 fn text_of_failures(check: &StudyCheck) -> String {
     let sections = TITLES.iter().zip(failures_of(check)).map(|(title, failures)| {
         let items = failures.iter().map(|one| item(&format!("✗ {}", one.subject), &one.sentence)).collect();
@@ -348,8 +359,8 @@ fn text_of_inputs(check: &StudyCheck) -> String {
 }
 
 /// What stands above proposed expectations.
-pub(crate) const PROPOSED: &str = "The study expects nothing yet. These results meet the lines below, with room for half as \
-                                   much error again and a quarter of an order: paste those that should hold from now on.";
+pub(crate) const PROPOSED: &str = "The study has no expectations yet. These results meet the lines below, which allow errors \
+                                   half as large again and orders lower by 0.25: paste those that should hold from now on.";
 
 /// Expectations to paste into the file of a study; the report has those that are only counted.
 fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> String {

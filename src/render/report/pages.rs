@@ -2,12 +2,12 @@
 
 use crate::case::Task;
 use crate::case::quantity::Norm;
-use crate::judge::findings;
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
 use crate::measure::statistics::larger;
-use crate::render::RenderError;
+use crate::render::answers::locking;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
 use crate::render::report::labels::grouped;
@@ -15,7 +15,8 @@ use crate::render::report::{
     StudyResults, checks, cost, layer, maps, race, refinement, setting, theory_lines, within,
 };
 use crate::render::table::{Cell, Mood, Table, columns};
-use crate::render::tables::{runs, uncertainties};
+use crate::render::tables::{runs, settlement, uncertainties};
+use crate::render::{RenderError, templates};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_mpm::scene::SceneKind;
@@ -168,10 +169,11 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
     let mut blocks = unmet(results);
     let told = diagnoses(study, results.records);
     // The race has a page and sentences of its own.
-    let reached = if study.is_race { Vec::new() } else { findings::within::within(study, results.records) };
+    let answers = StudyAnswers::new(study, results.records, &results.paths)?;
     if study.is_race {
         blocks.extend(race::blocks(results));
     } else {
+        blocks.extend(answered(&answers)?);
         blocks.extend(maps::cheapest_methods(results));
         blocks.extend(layer::load_settlement(results));
         blocks.extend(layer::blocks(results)?);
@@ -206,7 +208,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
             "{}\n\n{}{}[All studies](index.html). Run it again: `{}`.",
             study.summary,
             setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
-            within::sentences(&reached)? + "\n\n",
+            within::sentences(&answers.within)? + "\n\n",
             results.run_command()
         ),
         callout: Some(verdict(results, &told)),
@@ -215,6 +217,25 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
         ..Page::default()
     };
     Ok(page.without_idle_figures())
+}
+
+/// Settlements by date, and who locks: what the answers on top of the page are read off from.
+fn answered(answers: &StudyAnswers) -> Result<Vec<Block>, RenderError> {
+    let mut blocks = Vec::new();
+    if !answers.settlements.is_empty() {
+        blocks.push(Block::Heading("Settlement by date".to_owned()));
+    }
+    for found in &answers.settlements {
+        let mut table = settlement::table_of(found);
+        table.title = settlement::heading(found);
+        blocks.push(Block::Table(table));
+    }
+    if let Some(found) = &answers.locking {
+        blocks.push(Block::Heading("Who locks?".to_owned()));
+        blocks.push(Block::Paragraph(templates::sentence("locking", found)?));
+        blocks.push(Block::Table(locking::table(found)));
+    }
+    Ok(blocks)
 }
 
 /// Whether everything is as expected, and the reasons if not.

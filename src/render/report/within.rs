@@ -32,6 +32,7 @@ mod tests {
             cells: 10,
             points_per_cell: 2,
             largest_step,
+            is_longest_tried: false,
             error,
             time_factor: 0.152_190_825_688_073_4,
             seconds: 180.0 * 86400.0,
@@ -40,12 +41,16 @@ mod tests {
         };
         let told = |bounds: [Option<f64>; 2], step: f64| {
             let bounds = [0.01, 0.001].into_iter().zip(bounds);
-            let bounds = bounds
-                .map(|(bound, error)| BoundWithin { bound, choice: error.map(|error| choice(error, step)) });
+            let bounds = bounds.map(|(bound, error)| BoundWithin {
+                bound,
+                choice: error.map(|error| choice(error, step)),
+                others: Vec::new(),
+            });
             let quantity = QuantityWithin {
                 quantity: Quantity::Settlement,
                 sample: Sample::Surface,
                 reference: "terzaghi".to_owned(),
+                problems: 1,
                 bounds: bounds.collect(),
                 best: choice(0.02, step),
             };
@@ -55,12 +60,12 @@ mod tests {
         let largest = "(largest 0.40 %, at T_v = 0.1522, 180 days)";
         assert_eq!(
             told([Some(0.004), None], 864_000.0),
-            format!("{within}, steps up to 10 days {largest}; within 0.1 %: no run.")
+            format!("{within}, steps up to 10 days {largest}; no run reaches 0.1 %.")
         );
-        assert_eq!(told([Some(0.004), None], 0.0), format!("{within} {largest}; within 0.1 %: no run."));
+        assert_eq!(told([Some(0.004), None], 0.0), format!("{within} {largest}; no run reaches 0.1 %."));
         assert_eq!(
             told([None, None], 0.0),
-            "**Settlement** within 1 %: no run; within 0.1 %: no run. The least error is 2.00 %, of `GC-SRI-patch`, implicit, \
+            "**Settlement**: no run reaches 1 %; no run reaches 0.1 %. The smallest error is 2.00 %, of `GC-SRI-patch`, implicit, \
              on 10 cells."
         );
     }

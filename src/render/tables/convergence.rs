@@ -4,7 +4,7 @@ use crate::judge::findings::convergence::{ConvergenceColumn, ConvergenceTable};
 use crate::render::number;
 use crate::render::report::labels;
 use crate::render::table::{Cell, Table, TableColumn};
-use oedometer_soil::wording::duration;
+use oedometer_soil::wording::clock_time;
 
 /// A row per mesh, an error and a rate per quantity.
 pub fn table_of(found: &ConvergenceTable) -> Table {
@@ -32,7 +32,7 @@ pub fn table_of(found: &ConvergenceTable) -> Table {
 
 /// What the runs share, and at which time they are compared with what.
 pub fn heading(found: &ConvergenceTable) -> String {
-    let (time, clock) = (number::time_factor(found.time_factor), duration(found.seconds));
+    let (time, clock) = (number::time_factor(found.time_factor), clock_time(found.seconds));
     format!("{}, T_v = {time} ({clock}), against {}", found.runs, found.reference)
 }
 

@@ -24,7 +24,11 @@ pub fn table_of(record: &Record) -> Result<String, RenderError> {
 pub fn errors_table(record: &Record) -> Table {
     let case = &record.case;
     let mut columns = columns("reference | quantity | sample");
-    columns.extend(case.time_factors.iter().map(|factor| TableColumn::number(format!("T_v {factor}"))));
+    columns.extend(
+        case.time_factors
+            .iter()
+            .map(|factor| TableColumn::number(format!("T_v {}", number::time_factor(*factor)))),
+    );
     let mut rows = Vec::new();
     for reference in &record.references {
         let is_footing = case.scene == SceneKind::Footing;

@@ -6,4 +6,5 @@ pub mod golden_changes;
 pub mod measures;
 pub mod runs;
 pub mod scores;
+pub mod settlement;
 pub mod uncertainties;

@@ -377,8 +377,8 @@ impl Checker<'_> {
         let diagnostic = Diagnostic::at(
             place.unwrap_or_else(|| file.scene.span()),
             format!(
-                "the load strains the column by m_vl q = {strain:.2e}: real soil is off this scene's small-strain \
-                 theory by a share of that size"
+                "the load strains the column by m_vl q = {strain:.2e}: this scene is small-strain theory, and real soil \
+                 departs from it by about that fraction"
             ),
             "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
         );
@@ -409,7 +409,7 @@ impl Checker<'_> {
             self.warn(&Diagnostic::at(
                 place,
                 format!(
-                    "`{key}` = {} {unit} is that of no soil: from {} to {} {unit}",
+                    "`{key}` = {} {unit} is outside the range of soils, {} to {} {unit}",
                     short(odd),
                     short(least),
                     short(most)

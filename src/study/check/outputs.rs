@@ -4,7 +4,7 @@ use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
 use crate::study::expectation::Selection;
 use crate::study::reading::{Placed, Typed};
-use oedometer_soil::wording::{duration, typed};
+use oedometer_soil::wording::{clock_time, duration, typed};
 use std::ops::{Range, RangeInclusive};
 
 /// Least time factor beside the undrained start: of shorter times steps no longer advance the sum.
@@ -117,7 +117,7 @@ impl Checker<'_> {
                 let is_possible = TIME_FACTORS.contains(&factor);
                 if !is_possible {
                     let unit = case.seconds_per_time_factor();
-                    let message = format!("{} ({} s) is T_v = {factor:.3e}", duration(*time), typed(*time));
+                    let message = format!("{} ({} s) is T_v = {factor:.3e}", clock_time(*time), typed(*time));
                     let whose = if case.column.soils.is_empty() {
                         "for this soil and height"
                     } else {

@@ -108,7 +108,7 @@ impl PhysicalBounds {
         let is_within = force <= most;
         (!is_within).then(|| {
             format!(
-                "a force of {force:.3e} N accelerates a node, more than the {most:.3e} N that the scene leaves out of balance at \
+                "the out-of-balance force at a node is {force:.3e} N, more than the {most:.3e} N that this scene can cause at \
                  that time"
             )
         })

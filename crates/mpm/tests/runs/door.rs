@@ -141,8 +141,8 @@ fn a_step_that_makes_energy_is_ended_before_its_pressures_are_wrong() {
         let grown = run(problem(name, 8, 2), &plan);
         let RunStatus::Failed(failure) = grown.status else { panic!("{name} {share} went on to its end") };
         assert_eq!(failure.kind, FailureKind::Unstable);
-        let is_named =
-            failure.reason.contains("without work") || failure.reason.contains("accelerates a node");
+        let is_named = failure.reason.contains("without work")
+            || failure.reason.contains("out-of-balance force at a node");
         assert!(is_named, "{name}: {}", failure.reason);
         for (sound, grown) in sound.snapshots.iter().zip(&grown.snapshots) {
             let (sound, grown) = (&sound.points.pressure, &grown.points.pressure);

@@ -15,8 +15,7 @@ use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
 use crate::judge::answers::ReportFindings;
-use crate::judge::findings::convergence::convergence_tables;
-use crate::judge::findings::within::within;
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
 use crate::record::provenance::Machine;
@@ -106,8 +105,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
     let written = write_files(&arguments.out, &results, changes.as_deref(), making, start)?;
     if let [one] = results.as_slice() {
-        let tables = convergence_tables(one.study, &one.paths);
-        print_data(text_of_answers(&within(one.study, one.records), &tables)?.trim_start_matches('\n'))?;
+        let answers = StudyAnswers::new(one.study, one.records, &one.paths)?;
+        print_data(text_of_answers(&answers)?.trim_start_matches('\n'))?;
     }
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
