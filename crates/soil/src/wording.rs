@@ -39,6 +39,7 @@ pub fn duration(seconds: f64) -> String {
     // A unit from two of it on: 90 s and 36 h say more than 1.5 min and 1.5 days.
     match UNITS.into_iter().find(|(unit, _)| seconds >= 2.0 * unit) {
         Some((unit, name)) => format!("{} {name}", two_digits(seconds / unit)),
+        None if (1e-6..1e-3).contains(&seconds) => format!("{} µs", two_digits(1e6 * seconds)),
         None => format!("{} s", two_digits(seconds)),
     }
 }
@@ -157,8 +158,8 @@ mod tests {
         assert_eq!(short(f64::NAN), "NaN");
         assert_eq!([0.05, 1e-4, -0.0, 50.0].map(typed), ["0.05", "0.0001", "0", "50"]);
         assert_eq!(
-            [0.0123, 90.0, 130.0, 216e3, 36.0 * 3600.0, 40.0 * 86400.0, 1e12].map(duration),
-            ["0.012 s", "90 s", "2.2 min", "2.5 days", "36 h", "40 days", "3.2e4 years"]
+            [3.6e-5, 0.0123, 90.0, 130.0, 216e3, 36.0 * 3600.0, 40.0 * 86400.0, 1e12].map(duration),
+            ["36 µs", "0.012 s", "90 s", "2.2 min", "2.5 days", "36 h", "40 days", "3.2e4 years"]
         );
         let days =
             [365.0, 30.0, 1.0, 365.25, 730.5, 1.5, 400.0, 100.25].map(|days| clock_time(86400.0 * days));
