@@ -402,7 +402,10 @@ impl<'a> Absent<'a> {
         }
         let sentence = |(solver, records): (&String, &Vec<&Record>)| {
             let why = records[0].status.failure().map_or("", |failure| failure.reason.as_str());
-            format!("{solver}: {} cases were skipped and not judged: {why}", records.len())
+            format!(
+                "{solver}: {} skipped and not judged: {why}",
+                count_of(records.len(), "case was", "cases were")
+            )
         };
         by_solver.iter().map(sentence).collect()
     }
@@ -443,7 +446,7 @@ mod tests {
         assert!(!absent.holds_all(|_| true), "half of it was run and is judged");
         assert!(!absent.holds_all(|_| false), "what selects nothing must fail");
         let told = absent.warnings();
-        assert!(told.len() == 1 && told[0].contains("MPM: 1 cases were skipped"), "{told:?}");
+        assert!(told.len() == 1 && told[0].contains("MPM: 1 case was skipped"), "{told:?}");
         // Golden values of others stay, however alike their labels are.
         let [skipped, run] = [0, 1].map(|place: usize| records[place].case.label());
         let name = |label: &str| format!("{label} | steps");

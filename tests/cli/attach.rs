@@ -106,7 +106,7 @@ fn each_end_has_its_status_and_the_rest_of_the_sweep_goes_on() {
         assert_eq!(status_of(&all, "nowhere", cells), "not-startable");
         assert_eq!(status_of(&all, "GC-SRI-patch", cells), "ok");
     }
-    assert!(told.err.contains("skip: 1 cases were skipped"), "{}", told.err);
+    assert!(told.err.contains("skip: 1 case was skipped"), "{}", told.err);
     // A study that is called as its solver: the words of a case are its own before its study's.
     fs::copy(folder.path().join("ends.toml"), folder.path().join("soft.toml")).expect("copied");
     let none = call(folder.path(), &["explain", "soft cells=10", "soft.toml", "--records", "none"]);
