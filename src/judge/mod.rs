@@ -4,6 +4,7 @@
 //! returned as a named reason, never as a number that could pass a test.
 
 pub mod answers;
+pub mod blocks;
 pub mod case_verdicts;
 pub mod comparison;
 pub mod explanation;

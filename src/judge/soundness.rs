@@ -11,9 +11,14 @@ use oedometer_exact::solution::ROUND_OFF;
 /// A reference must be more accurate than this share of the smallest error against it.
 const TAIL_SHARE: f64 = 0.1;
 
+/// What is wrong with the start and the balances of a record, as sentences.
+pub fn complaints_of_run(record: &Record) -> Vec<String> {
+    record_checks::complaints(record)
+}
+
 /// What is wrong with a record, as sentences; empty where it is sound.
 pub fn complaints(record: &Record) -> Vec<String> {
-    let mut found = record_checks::complaints(record);
+    let mut found = complaints_of_run(record);
     found.extend(record.references.iter().filter_map(|reference| reference.does_not_hold.clone()));
     if let Some(row) = record.errors.iter().find(|row| !row.value.is_finite()) {
         found.push(format!("the error of {} is {}", row.quantity.name(), row.value));

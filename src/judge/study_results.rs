@@ -102,7 +102,7 @@ impl<'a> StudyResults<'a> {
     /// # Errors
     /// When a reference refuses a case.
     pub fn findings(&self) -> Result<Findings, ExactError> {
-        Findings::new(self.study, self.records, &self.paths, &self.judgements, Tier::Full)
+        Findings::new(self, Tier::Full)
     }
 
     /// Whether every expectation is met, by records that are sound.

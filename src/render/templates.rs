@@ -1,7 +1,7 @@
 //! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
 
 use crate::case::Quantity;
-use crate::render::report::labels;
+use crate::render::report::{labels, setting};
 use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
@@ -9,7 +9,7 @@ use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 15] = [
+const TEMPLATES: [(&str, &str); 17] = [
     ("audit", include_str!("../../templates/audit.md")),
     ("changes", include_str!("../../templates/changes.md")),
     ("converges", include_str!("../../templates/converges.md")),
@@ -22,6 +22,8 @@ const TEMPLATES: [(&str, &str); 15] = [
     ("printed-equations", include_str!("../../templates/printed-equations.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
     ("race-limits", include_str!("../../templates/race-limits.md")),
+    ("sampling", include_str!("../../templates/sampling.md")),
+    ("setting", include_str!("../../templates/setting.md")),
     ("time-step", include_str!("../../templates/time-step.md")),
     ("verdict", include_str!("../../templates/verdict.md")),
     ("within", include_str!("../../templates/within.md")),
@@ -31,6 +33,7 @@ const TEMPLATES: [(&str, &str); 15] = [
 pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.add_filter("amount", |value: f64, unit: String| setting::with_unit(value, &unit));
     environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
     environment.add_filter("capital_quantity", |quantity: Serde<Quantity>| {
         labels::capitalised(labels::quantity(quantity.0))
@@ -42,6 +45,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("duration", duration);
     environment.add_filter("error", number::error);
     environment.add_filter("error_percent", number::percent);
+    environment.add_filter("millimetres", |metres: f64| setting::with_unit(1e3 * metres, "mm"));
     environment.add_filter("order", number::order);
     environment.add_filter("percent", number::rounded_percent);
     environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));

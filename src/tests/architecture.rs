@@ -56,6 +56,50 @@ fn a_planted_arrow_is_named() {
     assert!(upward("record", in_a_test).is_empty());
 }
 
+/// What computes: measures of records, exact solutions, fits of orders, statistics and mechanics. Names of kinds and words are
+/// no computation.
+const COMPUTING: [&str; 14] = [
+    "crate::measure",
+    "oedometer_exact::footing",
+    "oedometer_exact::solution",
+    "oedometer_exact::reference::Reference,",
+    "oedometer_exact::reference::Reference;",
+    "column_parameters",
+    "oedometer_soil::material",
+    "oedometer_convergence::{ErrorSeries",
+    "ErrorSeries",
+    "ValueSeries",
+    "classify(",
+    ".sqrt()",
+    ".median(",
+    "crate::exact",
+];
+
+/// Lines of a source of `render` that compute what the judge should have computed.
+fn computing(source: &str) -> Vec<&str> {
+    let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or(source);
+    let is_code = |line: &&str| !line.trim_start().starts_with("//");
+    code.lines().filter(is_code).filter(|line| COMPUTING.iter().any(|call| line.contains(call))).collect()
+}
+
+/// `render` prints what the judge has found; drawing has a geometry of its own.
+#[test]
+fn render_prints_and_computes_nothing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/render");
+    let mut wrong = Vec::new();
+    for path in sources_below(&root) {
+        let inside = path.strip_prefix(&root).expect("below render");
+        if inside.starts_with("chart") || is_test_module(inside) {
+            continue;
+        }
+        let source = fs::read_to_string(&path).expect("a source");
+        wrong.extend(computing(&source).iter().map(|line| format!("{}: {line}", inside.display())));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let planted = "use crate::measure::statistics::median;\n// a median\nlet middle = (low * high).sqrt();\n";
+    assert_eq!(computing(planted).len(), 2);
+}
+
 /// The tables of equations and steps on the crate's front page name functions that are there.
 #[test]
 fn every_equation_and_step_has_its_function() {

@@ -4,6 +4,8 @@ use crate::campaign::runner::records_of;
 use crate::case::planned::Tier;
 use crate::case::quantity::Norm;
 use crate::golden::compare::{Change, Difference};
+use crate::judge::blocks::outside_runs::outside_runs;
+use crate::judge::blocks::timing::timed_runs;
 use crate::judge::study_results::StudyResults;
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
@@ -271,7 +273,7 @@ fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
         meant.expect("measured").value
     };
     let (mut tables, mut figures) = (0, 0);
-    for block in cost::work_blocks(&results) {
+    for block in cost::work_blocks(&results, &timed_runs(&results)) {
         match block {
             Block::Table(table) => {
                 tables += 1;
@@ -326,7 +328,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     for (sample, (seconds, cpu)) in record.wall.iter_mut().zip([(3.0, 2.5), (41.0, 40.5), (2.0, 1.5)]) {
         (sample.seconds, sample.cpu_seconds) = (seconds, Some(cpu));
     }
-    let table = runs::attached_table(std::slice::from_ref(&record)).expect("one run");
+    let table = runs::attached_table(&outside_runs(std::slice::from_ref(&record))).expect("one run");
     for (header, cell) in [
         ("wall, least", Cell::Seconds(2.0)),
         ("wall, median", Cell::Seconds(3.0)),

@@ -12,6 +12,7 @@ mod judge_verdicts;
 mod measure_of_runs;
 mod measure_pressure_peak;
 mod option_pairs;
+mod page_numbers;
 mod paper;
 mod race_page;
 mod record_tables;

@@ -11,11 +11,11 @@ pub mod study_answers;
 pub mod within;
 
 use crate::case::Tier;
+use crate::judge::blocks::StudyBlocks;
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
-use crate::judge::paths::StudyPaths;
+use crate::judge::study_results::StudyResults;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::record::{ErrorRow, Record};
-use crate::study::check::Study;
 use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
 use oedometer_mpm::run::results::outcome::FailureKind;
@@ -53,6 +53,9 @@ pub struct Findings {
     pub within: Vec<QuantityWithin>,
     /// Settlements at the outputs, of the runs that the answer for the settlement names.
     pub settlements: Vec<SettlementTable>,
+    /// What the other blocks of the study's page print.
+    #[serde(default)]
+    pub blocks: StudyBlocks,
 }
 
 /// An expectation with its verdict.
@@ -147,6 +150,9 @@ pub struct StiffnessValue {
     pub displacement: Option<f64>,
     /// Relative L2 error of the pressure at the points.
     pub pressure: Option<f64>,
+    /// Total variation of the pressure over the exact one's, minus one.
+    #[serde(default)]
+    pub oscillation: Option<f64>,
     /// How the run failed, with its step.
     pub failed: Option<String>,
 }
@@ -156,13 +162,8 @@ impl Findings {
     ///
     /// # Errors
     /// When a reference refuses a case.
-    pub fn new(
-        study: &Study,
-        records: &[Record],
-        paths: &StudyPaths<'_>,
-        judgements: &[Judgement],
-        tier: Tier,
-    ) -> Result<Self, ExactError> {
+    pub fn new(results: &StudyResults<'_>, tier: Tier) -> Result<Self, ExactError> {
+        let StudyResults { study, records, paths, judgements, .. } = results;
         let mut stiffness = Vec::new();
         for swept in SweptStiffness::ALL {
             stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
@@ -180,6 +181,7 @@ impl Findings {
             stiffness,
             settlements: settlement::settlement_tables(study, records, &within)?,
             within,
+            blocks: StudyBlocks::new(results)?,
         })
     }
 }
@@ -234,8 +236,14 @@ fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
     };
     let of_row = |row: &crate::judge::comparison::stiffness_sweep::SweepRow| {
         let value = |(place, value): (usize, &f64)| {
-            let [displacement, pressure, _] = row.found[place];
-            StiffnessValue { value: *value, displacement, pressure, failed: row.failed[place].clone() }
+            let [displacement, pressure, oscillation] = row.found[place];
+            StiffnessValue {
+                value: *value,
+                displacement,
+                pressure,
+                oscillation,
+                failed: row.failed[place].clone(),
+            }
         };
         StiffnessFinding {
             swept: swept.to_owned(),
@@ -254,7 +262,6 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, solved};
     use crate::judge::comparison::stiffness_sweep::SweepRow;
-    use crate::judge::verdict::judge_paths;
 
     /// Two meshes and one time, the least that answers anything: every error is in the findings once, a failed run is told
     /// with its reason and is within no bound, and what is read is what was written.
@@ -264,9 +271,8 @@ mod tests {
             method = ['MPM', 'GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4, 8]\n";
         let (study, mut records) = solved("s", text);
         records[0].status = failed_at(3);
-        let paths = StudyPaths::of(&records);
-        let judgements = judge_paths(&study, &records, &paths, Tier::Full);
-        let found = Findings::new(&study, &records, &paths, &judgements, Tier::Full).expect("sound cases");
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let found = Findings::new(&results, Tier::Full).expect("sound cases");
         assert_eq!((found.runs.len(), found.left_out), (4, 0));
         let failure = found.runs[0].failure.as_ref().expect("it failed");
         assert_eq!((failure.kind.name(), failure.step), ("unstable", 3));
@@ -293,16 +299,17 @@ mod tests {
             let (values, rows) = (vec![0.1, 0.2, 0.3], vec![row.clone()]);
             let found =
                 of_sweep(&StiffnessSweep { stiffness, cells: 8, values, time_factors: vec![0.25], rows });
-            let value = |value, displacement, pressure, failed: Option<&str>| StiffnessValue {
+            let value = |value, displacement, pressure, oscillation, failed: Option<&str>| StiffnessValue {
                 value,
                 displacement,
                 pressure,
+                oscillation,
                 failed: failed.map(str::to_owned),
             };
             let values = vec![
-                value(0.1, Some(0.01), Some(0.02), None),
-                value(0.2, Some(0.04), Some(0.5), None),
-                value(0.3, None, None, Some("unstable at step 7")),
+                value(0.1, Some(0.01), Some(0.02), Some(0.03), None),
+                value(0.2, Some(0.04), Some(0.5), Some(0.06), None),
+                value(0.3, None, None, None, Some("unstable at step 7")),
             ];
             let (swept, method) = (swept.to_owned(), "VP".to_owned());
             let right =

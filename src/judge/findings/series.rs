@@ -3,7 +3,7 @@
 use crate::case::{Norm, Quantity, Sample};
 use crate::judge::paths::{Path, StudyPaths, first_measure};
 use crate::study::check::Study;
-use crate::study::expectation::{Axis, Measure};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::{Class, LimiterKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -82,10 +82,12 @@ pub fn all_series(study: &Study, paths: &StudyPaths<'_>) -> Vec<SeriesFinding> {
     let mut found = Vec::new();
     for axis in Axis::ALL {
         for path in paths.along(axis) {
-            for reference in &study.references {
+            // Over the step also the differences between neighbouring steps, which the mesh leaves alone.
+            let differences = (axis == Axis::TimeStep).then_some(NEXT_FINER);
+            for reference in study.references.iter().map(|reference| reference.name()).chain(differences) {
                 for time_factor in path.records[0].case.time_factors.iter() {
                     let of = |(quantity, sample)| {
-                        let measure = first_measure(quantity, sample, reference.name(), *time_factor);
+                        let measure = first_measure(quantity, sample, reference, *time_factor);
                         series_of(path, &path.own_measure(&measure))
                     };
                     found.extend(MEASURED.into_iter().filter_map(of));

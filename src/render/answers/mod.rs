@@ -16,6 +16,7 @@ use crate::history::comparison::StudyComparison;
 use crate::judge::answers::cost::{CostFinding, timed_study};
 use crate::judge::answers::time_step::TimeStepFinding;
 use crate::judge::answers::{ReportFindings, VerdictFinding};
+use crate::judge::blocks::setting::SettingFinding;
 use crate::judge::findings::within::within as reached;
 use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
@@ -192,7 +193,8 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
 /// The setting of a report of one study, and what it takes to come within bounds.
 fn setting_of(results: &[StudyResults<'_>]) -> Result<String, RenderError> {
     let [one] = results else { return Ok(String::new()) };
-    let setting = setting::sentence(one.records).map_or(String::new(), |sentence| sentence + "\n\n");
+    let setting = setting::sentence(SettingFinding::new(one.records).as_ref())?;
+    let setting = if setting.is_empty() { setting } else { setting + "\n\n" };
     Ok(setting + &within::sentences(&reached(one.study, one.records))? + "\n\n")
 }
 

@@ -1,6 +1,7 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
 use crate::judge::answers::paper::{PaperFinding, PaperRun, paper_runs};
+use crate::judge::blocks::profiles::{Consolidation, Isochrones};
 use crate::judge::study_results::StudyResults;
 use crate::record::{Record, Status};
 use crate::render::answers::Question;
@@ -22,10 +23,12 @@ pub fn section(paper: &PaperFinding, results: &[StudyResults<'_>]) -> Result<Sec
     let mut figures = Vec::new();
     for run in paper_runs(results) {
         let (number, theory) = (run.number, run.reference());
+        let own = run.results.study.references[0];
         // The second pair reads as the first.
         let is_first = figures.is_empty();
-        let isochrones = theory_lines::isochrones(run.results, run.record)?;
-        let consolidation = theory_lines::consolidation(run.results, &beside(&run))?;
+        let isochrones = theory_lines::isochrones(run.results, &Isochrones::new(run.record, own)?);
+        let consolidation =
+            theory_lines::consolidation(run.results, &Consolidation::new(&beside(&run), own)?);
         for (figure, letter) in [(isochrones, 'a'), (consolidation, 'b')] {
             let mut figure = quarter(figure, &format!("{number}{letter}"), theory);
             if !is_first {

@@ -1,25 +1,17 @@
 //! How every case of a hard study ended, and what a study measures beside errors of fields: peaks, quantities that must not
 //! move, start checks and balances.
 
-use crate::case::quantity::{Quantity, Sample};
+use crate::judge::blocks::checks::{EndFinding, GroupFinding, MeasureFinding, WorstCheck};
 use crate::judge::paths::distinct;
-use crate::judge::study_results::StudyResults;
-use crate::measure::record_checks;
-use crate::record::{MeasureRow, Record, Status};
 use crate::render::number;
 use crate::render::page::Block;
-use crate::render::report::labels::first_measure;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
-use crate::render::tables::measures::{bound_cell, groups_of};
+use crate::render::tables::measures::bound_cell;
 use std::collections::HashMap;
 
 /// One row per case and measure, of its worst output; empty where nothing is measured so.
-pub fn measures(results: &StudyResults<'_>) -> Vec<Block> {
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
-    for record in results.records {
-        let case = record.case.label();
-        rows.extend(worst_of(record).into_iter().map(|row| cells_of(&case, row)));
-    }
+pub fn measures(found: &[MeasureFinding]) -> Vec<Block> {
+    let rows: Vec<Vec<Cell>> = found.iter().map(cells_of).collect();
     if rows.is_empty() {
         return Vec::new();
     }
@@ -35,21 +27,14 @@ pub fn measures(results: &StudyResults<'_>) -> Vec<Block> {
 }
 
 /// The worst of every check over the runs of a study, and the largest of every dimensionless group.
-pub fn worst_checks(results: &StudyResults<'_>) -> Block {
-    // Runs that failed have no result to check.
-    let sound = results.records.iter().filter(|record| record.status == Status::Ok);
-    let mut rows: Vec<Vec<Cell>> = record_checks::worst_of(sound)
-        .iter()
-        .map(|check| vec![check.what.into(), Cell::Error(check.value.abs()), bound_cell(check)])
-        .collect();
-    let largest = results.records.iter().map(groups_of).reduce(|mut largest, groups| {
-        for (largest, group) in largest.iter_mut().zip(groups) {
-            largest.1 = largest.1.max(group.1);
-        }
-        largest
-    });
-    let groups = largest.into_iter().flatten();
-    rows.extend(groups.map(|(what, value)| vec![what.into(), Cell::Error(value), "".into()]));
+pub fn worst_checks(checks: &[WorstCheck], groups: &[GroupFinding]) -> Block {
+    let of_check = |check: &WorstCheck| {
+        let size = check.value.map_or(f64::NAN, f64::abs);
+        vec![check.what.as_str().into(), Cell::Error(size), bound_cell(check)]
+    };
+    let of_group =
+        |group: &GroupFinding| vec![group.what.as_str().into(), Cell::Error(group.value), "".into()];
+    let rows: Vec<Vec<Cell>> = checks.iter().map(of_check).chain(groups.iter().map(of_group)).collect();
     let table =
         Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
             .note(
@@ -64,30 +49,17 @@ pub fn worst_checks(results: &StudyResults<'_>) -> Block {
 }
 
 /// A measure as a row: found, exact, and the error.
-fn cells_of(case: &str, row: &MeasureRow) -> Vec<Cell> {
+fn cells_of(row: &MeasureFinding) -> Vec<Cell> {
     let number =
         |value: f64| if row.exact == 0.0 { Cell::Error(value) } else { Cell::Text(format!("{value:.7}")) };
     vec![
-        case.into(),
+        row.case.as_str().into(),
         Cell::Code(row.name.clone()),
         row.time_factor.map_or(String::new(), |factor| factor.to_string()).into(),
-        number(row.found),
+        number(row.found.unwrap_or(f64::NAN)),
         number(row.exact),
-        Cell::Error(row.error()),
+        Cell::Error(row.error.unwrap_or(f64::NAN)),
     ]
-}
-
-/// The row with the largest error of every measure of a record, in the order of the record; NaN is worst.
-fn worst_of(record: &Record) -> Vec<&MeasureRow> {
-    let mut worst: Vec<&MeasureRow> = Vec::new();
-    for row in &record.measures {
-        match worst.iter_mut().find(|other| other.name == row.name) {
-            Some(other) if row.error().is_nan() || row.error().abs() > other.error().abs() => *other = row,
-            Some(_) => {}
-            None => worst.push(row),
-        }
-    }
-    worst
 }
 
 /// Why a cell is empty.
@@ -97,31 +69,29 @@ const NOT_TRIED: &str = "not tried";
 const MEANINGLESS: f64 = 1.0;
 
 /// The ends of all cases of a study that expects how its cases end; `None` for others.
-pub fn survival(one: &StudyResults<'_>) -> Option<Table> {
-    if one.study.case_expectations.iter().all(|expectation| expectation.demand.status.is_none()) {
+pub fn survival(ends: &[EndFinding]) -> Option<Table> {
+    if ends.is_empty() {
         return None;
     }
-    let methods = distinct(one.records.iter().map(runner_of));
+    let methods = distinct(ends.iter().map(|end| end.runner.as_str()));
     let mut columns = columns("case");
-    columns.extend(methods.iter().map(|method| TableColumn::text(method.clone())));
+    columns.extend(methods.iter().map(|method| TableColumn::text(*method)));
     // A row a setup, found by its name: there may be thousands.
     let mut rows: Vec<([usize; 2], Vec<Cell>)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
-    for record in one.records {
-        let setup = setup_of(record);
-        let place = *places.entry(setup).or_insert_with_key(|setup| {
+    for end in ends {
+        let place = *places.entry(setup_of(end)).or_insert_with_key(|setup| {
             let not_tried = methods.iter().map(|_| Cell::missing(NOT_TRIED));
-            let mesh = [record.case.cells, record.case.points_per_cell];
+            let mesh = [end.cells, end.points_per_cell];
             rows.push((mesh, std::iter::once(setup.as_str().into()).chain(not_tried).collect()));
             rows.len() - 1
         });
-        let runner = runner_of(record);
-        let column = methods.iter().position(|method| *method == runner).map(|column| column + 1);
+        let column = methods.iter().position(|method| *method == end.runner).map(|column| column + 1);
         // Of several runs of a setup the first is shown.
         if let Some(cell) = column.and_then(|column| rows[place].1.get_mut(column))
             && matches!(cell, Cell::Missing(_))
         {
-            *cell = end_of(record);
+            *cell = end_cell(end);
         }
     }
     rows.sort_by_key(|(mesh, _)| *mesh);
@@ -132,37 +102,18 @@ pub fn survival(one: &StudyResults<'_>) -> Option<Table> {
     ))
 }
 
-/// Method, with the integrator where it is not the explicit one.
-fn runner_of(record: &Record) -> String {
-    let case = &record.case;
-    if case.is_explicit() {
-        case.method.to_string()
-    } else {
-        format!("{}, {}", case.method, case.integrator.name())
-    }
-}
-
-fn setup_of(record: &Record) -> String {
-    let case = &record.case;
-    let variant = case.variant();
+fn setup_of(end: &EndFinding) -> String {
+    let EndFinding { cells, points_per_cell, variant, .. } = end;
     let comma = if variant.is_empty() { "" } else { ", " };
-    format!("{} cells, {} points{comma}{variant}", case.cells, case.points_per_cell)
+    format!("{cells} cells, {points_per_cell} points{comma}{variant}")
 }
 
-fn end_of(record: &Record) -> Cell {
-    match &record.status {
-        Status::Failed(failure) => Cell::Verdict(Mood::Fail, failure.name_with_step()),
-        Status::Ok => {
-            let own = record.references.first().zip(record.case.time_factors.last());
-            let error = own.and_then(|(own, at)| {
-                first_measure(Quantity::Pressure, Sample::Points, &own.name, *at).error(record)
-            });
-            match error.map(|row| row.value) {
-                None => Cell::Verdict(Mood::Pass, "ran".to_owned()),
-                Some(value) if value < MEANINGLESS => Cell::Verdict(Mood::Pass, number::error(value)),
-                Some(value) => Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(value))),
-            }
-        }
+fn end_cell(end: &EndFinding) -> Cell {
+    match (&end.failure, end.error) {
+        (Some(failure), _) => Cell::Verdict(Mood::Fail, failure.clone()),
+        (None, None) => Cell::Verdict(Mood::Pass, "ran".to_owned()),
+        (None, Some(error)) if error < MEANINGLESS => Cell::Verdict(Mood::Pass, number::error(error)),
+        (None, Some(error)) => Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(error))),
     }
 }
 
@@ -171,14 +122,17 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{records_of, solved};
     use crate::case::planned::Tier;
+    use crate::judge::blocks::checks::{self, end_of};
+    use crate::judge::study_results::StudyResults;
+    use crate::record::{MeasureRow, Record};
 
     #[test]
     fn a_peak_stands_beside_the_exact_one_and_of_outputs_the_worst() {
         let text = "title = \"t\"\nscene = \"mandel\"\noutput = { time_factors = [0.0645, 0.068, 0.0717] }\n[[sweep]]\n\
                     method = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\ncells = [10]\ntime_step = [{ growth = 0.02 }]\n";
-        let (study, mut records) = solved("s", text);
+        let (_, mut records) = solved("s", text);
         let told = |records: &[Record]| {
-            let blocks = measures(&StudyResults::new(&study, records, Tier::Full));
+            let blocks = measures(&checks::measures(records));
             let Some(Block::Table(table)) = blocks.last() else { return String::new() };
             table.to_text().expect("a table")
         };
@@ -205,14 +159,14 @@ mod tests {
     fn each_group_of_all_runs_is_the_largest_wherever_it_stands() {
         let text = "title = \"t\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.2] }\n[[sweep]]\n\
                     method = [\"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [2, 3, 4]\n";
-        let (study, mut records) = solved("s", text);
+        let (_, mut records) = solved("s", text);
         for (record, [storage, strain, inertia]) in
             records.iter_mut().zip([[0.3, 0.02, 0.001], [0.1, 0.05, 0.004], [0.2, 0.03, 0.007]])
         {
             let groups = &mut record.groups;
             (groups.storage, groups.finite_strain, groups.inertia) = (storage, strain, inertia);
         }
-        let block = worst_checks(&StudyResults::new(&study, &records, Tier::Full));
+        let block = worst_checks(&checks::worst_checks(&records), &checks::largest_groups(&records));
         let Block::Details { blocks, .. } = block else { panic!("what the reader opens") };
         let [Block::Table(table)] = &blocks[..] else { panic!("one table") };
         let last: Vec<&Cell> = table.rows.iter().rev().take(3).map(|row| &row[1]).collect();
@@ -229,11 +183,11 @@ mod tests {
     fn every_setup_has_its_row_every_method_its_column_and_the_first_of_several_runs_is_shown() {
         let (study, records) = solved("s", STUDY);
         let results = StudyResults::new(&study, &records, Tier::Full);
-        let table = survival(&results).expect("a table");
+        let table = survival(&checks::ends(&results)).expect("a table");
         assert_eq!((table.columns.len(), table.rows.len()), (4, 2));
         let shown = |method: &str, cells: usize| {
             let fits = |one: &&Record| one.case.cells == cells && one.case.method.to_string() == method;
-            end_of(records.iter().find(fits).expect("a record"))
+            end_cell(&end_of(records.iter().find(fits).expect("a record")))
         };
         for (row, cells) in table.rows.iter().zip([4, 8]) {
             assert_eq!(row[0], Cell::Text(format!("{cells} cells, 2 points")));
@@ -252,8 +206,11 @@ mod tests {
         for row in &mut record.errors {
             row.value = if row.time_factor == 0.4 { 0.25 } else { 3.0 };
         }
-        assert_eq!(end_of(&record), Cell::Verdict(Mood::Pass, number::error(0.25)));
+        assert_eq!(end_cell(&end_of(&record)), Cell::Verdict(Mood::Pass, number::error(0.25)));
         record.errors.iter_mut().for_each(|row| row.value = 1.0);
-        assert_eq!(end_of(&record), Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(1.0))));
+        assert_eq!(
+            end_cell(&end_of(&record)),
+            Cell::Verdict(Mood::Fail, format!("ran, error {}", number::error(1.0)))
+        );
     }
 }

@@ -2,14 +2,13 @@
 //! other programs.
 
 use crate::case::IntegratorKind;
-use crate::case::quantity::{Quantity, Sample};
+use crate::judge::blocks::timing::{TimingFinding, error_of, timed_measure};
 use crate::judge::comparison::peers::{self, Comparison, Peer};
 use crate::judge::comparison::work_precision::WorkPrecision;
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::distinct;
 use crate::judge::study_results::StudyResults;
-use crate::measure::statistics::spread;
-use crate::record::{Record, Status};
+use crate::record::Record;
 use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size};
 use crate::render::number;
 use crate::render::page::Block;
@@ -20,9 +19,9 @@ use crate::render::table::{Cell, Table, columns};
 use crate::study::expectation::{Axis, Measure};
 
 /// Error over point updates, and the wall times of runs that had the machine to themselves.
-pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
+pub fn work_blocks(results: &StudyResults<'_>, timing: &[TimingFinding]) -> Vec<Block> {
     let mut blocks = Vec::new();
-    let Some(measure) = measure_of(results) else { return blocks };
+    let Some(measure) = timed_measure(results) else { return blocks };
     let mut along_mesh = results.paths.along(Axis::Cells).to_vec();
     along_mesh.retain(|path| path.records.iter().all(|record| record.case.counts_work()));
     if along_mesh.len() > 1 {
@@ -37,7 +36,7 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         chart.subtitle = Some(format!("{words}, T_v = {}{end}", number::time_factor(measure.time_factor)));
         for (path, label) in paths.iter().zip(labels.each) {
             let point =
-                |record: &&Record| Some((record.counters.point_updates as f64, error(record, &measure)?));
+                |record: &&Record| Some((record.counters.point_updates as f64, error_of(record, &measure)?));
             chart.series.push(Series::new(label, path.records.iter().filter_map(point).collect()));
         }
         let caption = "Work up to the last output, counted and not timed: every step visits every point once, or does the \
@@ -47,39 +46,24 @@ pub fn work_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         blocks.push(Block::Figure(figure_of(results, "work", chart, caption)));
         blocks.extend(note.map(Block::Paragraph));
     }
-    let is_timed = |record: &&Record| !record.wall_alone().is_empty() && record.status == Status::Ok;
-    let timed: Vec<&Record> = results.records.iter().filter(is_timed).collect();
-    if timed.len() > 1 && results.study.timing_repeats > 0 {
-        blocks.push(Block::Table(timing_table(&timed, &measure)));
+    if !timing.is_empty() {
+        blocks.push(Block::Table(timing_table(timing, &measure)));
     }
     blocks
 }
 
-/// Pressure at the points against the scene's own reference at the last output.
-fn measure_of(results: &StudyResults<'_>) -> Option<Measure> {
-    let reference = results.study.references.first()?.name();
-    let last = *results.records.first()?.case.time_factors.last()?;
-    Some(labels::first_measure(Quantity::Pressure, Sample::Points, reference, last))
-}
-
-fn error(record: &Record, measure: &Measure) -> Option<f64> {
-    let own = Measure { sample: record.main_sample(), ..measure.clone() };
-    Some(own.error(record)?.value.abs())
-}
-
-fn timing_table(timed: &[&Record], measure: &Measure) -> Table {
-    let rows = timed.iter().filter_map(|record| {
-        let wall = spread(&record.wall_alone())?;
-        let updates = Some(record.counters.point_updates as f64).filter(|updates| *updates > 0.0);
-        Some(vec![
-            Cell::Code(record.case.label()),
-            Cell::of(error(record, measure), Cell::Error, "no error was measured"),
-            labels::counted(record, record.counters.steps),
-            labels::counted(record, record.counters.point_updates),
-            Cell::Seconds(wall.median),
-            format!("{:.3} … {:.3} s, {} runs", wall.minimum, wall.maximum, wall.count).into(),
-            Cell::of(updates.map(|updates| 1e9 * wall.median / updates), Cell::Number, labels::NOT_COUNTED),
-        ])
+fn timing_table(timing: &[TimingFinding], measure: &Measure) -> Table {
+    let counted = |work: Option<u64>| work.map_or(Cell::missing(labels::NOT_COUNTED), Cell::Count);
+    let rows = timing.iter().map(|run| {
+        vec![
+            Cell::Code(run.case.clone()),
+            Cell::of(run.error, Cell::Error, "no error was measured"),
+            counted(run.steps),
+            counted(run.point_updates),
+            Cell::Seconds(run.median),
+            format!("{:.3} … {:.3} s, {} runs", run.least, run.most, run.runs).into(),
+            Cell::of(run.nanoseconds_per_update, Cell::Number, labels::NOT_COUNTED),
+        ]
     });
     let title = format!(
         "Cost, with the error of the {} at T_v = {}",

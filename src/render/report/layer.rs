@@ -1,102 +1,62 @@
 //! A plane layer: pressure fields beside the exact one, and errors and oscillation against the stiffness of the water and
 //! of the skeleton; of a footing the load-settlement curves of all methods.
 
+use crate::judge::blocks::fields::{FieldFinding, FieldsFinding, LoadCurves, SHOWN_CELLS};
 use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
 use crate::judge::study_results::StudyResults;
-use crate::measure::fields::PlaneField;
-use crate::record::{Record, Status};
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, Style};
 use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
-use crate::render::report::labels::grouped;
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use oedometer_exact::exact_error::ExactError;
-use oedometer_exact::footing::LOAD_FACTOR;
 use oedometer_mpm::scene::SceneKind;
 
-/// Cells over the height of the runs whose fields are drawn.
-const SHOWN_CELLS: usize = 8;
-
 /// Fields and sweeps of a study of a layer; empty for a column.
-pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+///
+/// # Errors
+/// When a reference refuses a case.
+pub fn blocks(results: &StudyResults<'_>, fields: Option<&FieldsFinding>) -> Result<Vec<Block>, ExactError> {
     let scene = results.study.scene;
     if !scene.has_plane_fields() || scene == SceneKind::Footing {
         return Ok(Vec::new());
     }
     let mut blocks = Vec::new();
-    let shown = shown_records(results.records);
-    if let Some(first) = shown.first() {
-        let ratio = first.case.material.poissons_ratio;
+    if let Some(found) = fields {
+        let ratio = found.poissons_ratio;
         blocks.push(Block::Heading(format!(
             "Pressure at the points, {SHOWN_CELLS} cells over the height, ν = {ratio}"
         )));
-        let time_factor = first.case.time_factors[0];
-        let mut figures = Vec::new();
-        if let Some(field) = PlaneField::of(first, time_factor)? {
-            figures.push(figure(results, "Exact", &field, &field.exact, time_factor, None));
-        }
-        for record in shown {
-            if let Some(field) = PlaneField::of(record, time_factor)? {
-                let name = record.case.method.to_string();
-                let index = field.oscillation_index();
-                figures.push(figure(results, &name, &field, &field.computed, time_factor, Some(index)));
-            }
-        }
-        blocks.push(Block::Figures(figures));
+        let drawn = found.fields.iter().map(|field| figure(results, field, found.time_factor));
+        blocks.push(Block::Figures(drawn.collect()));
     }
     blocks.extend(sweep_blocks(results)?);
     Ok(blocks)
 }
 
-/// The first sound run of each method on the shown mesh, in the undisturbed soil.
-fn shown_records(records: &[Record]) -> Vec<&Record> {
-    let mut shown: Vec<&Record> = Vec::new();
-    for record in records {
-        let case = &record.case;
-        if case.cells == SHOWN_CELLS
-            && record.status == Status::Ok
-            && case.has_usual_compressibility()
-            && shown.iter().all(|other| other.case.method != case.method)
-        {
-            shown.push(record);
-        }
-    }
-    shown
-}
-
-fn figure(
-    results: &StudyResults<'_>,
-    name: &str,
-    field: &PlaneField,
-    values: &[f64],
-    time_factor: f64,
-    oscillation: Option<f64>,
-) -> Figure {
-    // All fields share their size and their colours, which reach a little beyond the exact values.
-    let largest_of = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    let reach = REACH * largest_of(&field.exact);
+fn figure(results: &StudyResults<'_>, found: &FieldFinding, time_factor: f64) -> Figure {
+    let name = found.method.as_deref().unwrap_or("Exact");
     let mut chart = Chart::new(
         name.to_owned(),
         ChartAxis::linear("x/H (–)"),
         ChartAxis::linear("height above the base y/H (–)"),
     );
+    // All fields share their size and their colours, which reach a little beyond the exact values.
     chart.field = Some(ColourField {
         label: "p/q (–)".to_owned(),
-        reach: Some(reach),
-        x_edges: field.x_edges.clone(),
-        y_edges: field.y_edges.clone(),
-        values: values.to_vec(),
+        reach: Some(found.reach),
+        x_edges: found.x_edges.clone(),
+        y_edges: found.y_edges.clone(),
+        values: found.values.clone(),
     });
     chart.size = Size { width: 380.0, plot_height: 240.0, equal_units: true };
-    let largest = largest_of(values);
-    let beyond = if largest > reach {
-        format!(" Values reach {}, beyond the common scale.", number::number(largest))
+    let beyond = if found.largest > found.reach {
+        format!(" Values reach {}, beyond the common scale.", number::number(found.largest))
     } else {
         String::new()
     };
     let time = number::time_factor(time_factor);
-    let caption = match oscillation {
+    let caption = match found.oscillation {
         None => format!("Theory at T_v = {time}. All these fields share one scale."),
         Some(index) => {
             format!("{name} at T_v = {time}: oscillation index {}.{beyond}", number::fixed(index, 2))
@@ -104,9 +64,6 @@ fn figure(
     };
     figure_of(results, &format!("field-{name}"), chart, caption)
 }
-
-/// Reach of the colours over the largest exact value.
-const REACH: f64 = 1.25;
 
 /// Figures of the last output and, behind a click, every number.
 fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
@@ -217,40 +174,24 @@ fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Ta
 /// Top of the figure of loads, over the exact collapse load.
 const HIGHEST: f64 = 2.5;
 
-/// Curves on the finest of the meshes that most methods have run, the first run of each method, all kept undrained as in the
-/// study's first case; empty for other scenes.
-pub fn load_settlement(results: &StudyResults<'_>) -> Vec<Block> {
-    let Some(first) = results.records.first() else { return Vec::new() };
-    let undrained = first.case.column.footing.undrained;
-    let is_drawn = |record: &&Record| {
-        results.study.scene == SceneKind::Footing
-            && record.status == Status::Ok
-            && record.case.column.footing.undrained == undrained
-    };
-    let sound = results.records.iter().filter(is_drawn);
-    let of_methods = grouped(sound.map(|record| (record.case.method, record)));
-    let has = |own: &[&Record], cells: usize| own.iter().any(|record| record.case.cells == cells);
-    let methods_on = |cells: usize| of_methods.iter().filter(|(_, own)| has(own, cells)).count();
-    let meshes = of_methods.iter().flat_map(|(_, own)| own.iter().map(|record| record.case.cells));
-    let Some(cells) = meshes.max_by_key(|cells| (methods_on(*cells), *cells)) else { return Vec::new() };
+/// Load over settlement of a footing; empty for other scenes.
+pub fn load_settlement(results: &StudyResults<'_>, loads: Option<&LoadCurves>) -> Vec<Block> {
+    let Some(found) = loads else { return Vec::new() };
     let mut chart = Chart::new(
         "Load and settlement of the plate",
         ChartAxis::linear("settlement over the width u/B (–)"),
-        ChartAxis::linear("load factor F/(B c_u) (–)").between(0.0, HIGHEST * LOAD_FACTOR),
+        ChartAxis::linear("load factor F/(B c_u) (–)").between(0.0, HIGHEST * found.exact),
     );
     chart.size = Size::PANEL;
-    let mut end: f64 = 0.0;
-    for (slot, (method, own)) in of_methods.iter().enumerate() {
-        let Some(record) = own.iter().find(|record| record.case.cells == cells) else { continue };
-        let curve: Vec<(f64, f64)> =
-            record.history.iter().filter_map(|row| Some((row.time_factor, row.load_factor?))).collect();
-        end = curve.iter().fold(end, |end, (settlement, _)| end.max(*settlement));
-        chart.series.push(Series::new(method.to_string(), curve).style(Style::Line).slot(slot));
+    for run in &found.runs {
+        let series = Series::new(run.method.as_str(), run.points.clone());
+        chart.series.push(series.style(Style::Line).slot(run.place));
     }
-    chart.series.push(Series::theory("2 + π", vec![(0.0, LOAD_FACTOR), (end, LOAD_FACTOR)]));
+    chart.series.push(Series::theory("2 + π", vec![(0.0, found.exact), (found.end, found.exact)]));
     let caption = format!(
-        "{cells} cells under the plate, undrained by {}. The line of a method that locks leaves the figure at its top.",
-        undrained.name().replace('-', " ")
+        "{} cells under the plate, undrained by {}. The line of a method that locks leaves the figure at its top.",
+        found.cells,
+        found.undrained.replace('-', " ")
     );
     vec![
         Block::Heading("Load and settlement".to_owned()),
@@ -264,10 +205,18 @@ mod tests {
     use crate::campaign::runner::{failed_at, records_of, solved, study_of};
     use crate::case::SolverName;
     use crate::case::planned::Tier;
+    use crate::judge::blocks::fields::shown_records;
     use crate::judge::comparison::stiffness_sweep::SweepRow;
+    use crate::measure::fields::PlaneField;
     use crate::record::HistoryRow;
+    use crate::record::Record;
     use oedometer_mpm::method::Method;
     use oedometer_mpm::scene::column::Undrained;
+
+    fn curves_of(study: &crate::study::check::Study, records: &[Record]) -> Vec<Block> {
+        let results = StudyResults::new(study, records, Tier::Full);
+        load_settlement(&results, LoadCurves::new(&results).as_ref())
+    }
 
     #[test]
     fn fields_share_the_reach_of_the_exact_one_and_say_what_lies_beyond() {
@@ -286,7 +235,8 @@ mod tests {
             [("GIMP-SRI".to_owned(), 8, 2), ("GIMP".to_owned(), 8, 2)],
             "the first run of each"
         );
-        let found = blocks(&results).expect("theory");
+        let fields = FieldsFinding::new(&results).expect("theory");
+        let found = blocks(&results, fields.as_ref()).expect("theory");
         assert_eq!(
             found[0],
             Block::Heading("Pressure at the points, 8 cells over the height, ν = 0.25".to_owned())
@@ -303,7 +253,10 @@ mod tests {
             computed: vec![-2.6, 1.0],
             exact: vec![-2.0, 1.0],
         };
-        let drawn = |values: &[f64], index: Option<f64>| figure(&results, "GIMP", &field, values, 0.2, index);
+        let drawn = |values: &[f64], index: Option<f64>| {
+            let run = index.map(|index| ("GIMP".to_owned(), index));
+            figure(&results, &FieldFinding::new(&field, values, run), 0.2)
+        };
         let beyond = drawn(&field.computed, Some(0.456));
         let caption = "GIMP at T_v = 0.2: oscillation index 0.46. Values reach 2.6, beyond the common scale.";
         assert_eq!(beyond.caption, caption);
@@ -391,7 +344,7 @@ mod tests {
             record
         };
         let drawn = |study: &_, records: &[Record]| {
-            let blocks = load_settlement(&StudyResults::new(study, records, Tier::Full));
+            let blocks = curves_of(study, records);
             let Some(Block::Figures(figures)) = blocks.get(1) else { return (String::new(), Vec::new()) };
             let curve = |one: &Series| (one.name.clone(), one.points.last().map_or(0.0, |last| last.0));
             (figures[0].caption.clone(), figures[0].chart.series.iter().map(curve).collect())
@@ -424,7 +377,7 @@ mod tests {
         assert!(caption.starts_with("4 cells") && curves.len() == 3, "{caption} {curves:?}");
         assert!(curves.iter().all(|(_, end)| *end == 4.0), "{curves:?}");
         for (study, records) in [(&study, &[][..]), (&study, &records[1..2]), (&column, &records)] {
-            assert_eq!(load_settlement(&StudyResults::new(study, records, Tier::Full)), []);
+            assert_eq!(curves_of(study, records), []);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Maps over inputs: the cheapest method for one percent on each soil, and critical steps, predicted and observed.
 
+use crate::judge::blocks::soil_map::{MapFinding, soils_of};
 use crate::judge::comparison::stability_map::{MapAxis, MapScale, maps_of};
-use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE, Way, mapped_soils};
+use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE};
 use crate::judge::study_results::StudyResults;
-use crate::measure::statistics::median;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::Block;
 use crate::render::report::figure_of;
@@ -11,16 +11,10 @@ use crate::render::table::{Cell, Table, columns};
 use crate::render::tables::runs;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Fewest soils that make a map.
-const LEAST_SOILS: usize = 4;
-
 /// Map and table of a study that varies conductivity and stiffness; empty for others.
-pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
-    let Some(reference) = results.study.references.first() else { return Vec::new() };
-    let soils = mapped_soils(results.records, reference.name());
-    if soils.len() < LEAST_SOILS {
-        return Vec::new();
-    }
+pub fn cheapest_methods(results: &StudyResults<'_>, map: Option<&MapFinding>) -> Vec<Block> {
+    let soils = soils_of(results);
+    let Some(map) = map.filter(|_| !soils.is_empty()) else { return Vec::new() };
     let mut blocks = vec![Block::Heading("Which method is cheapest where".to_owned())];
     let cheapest = winners(&soils);
     let mut figures = Vec::new();
@@ -39,7 +33,7 @@ pub fn cheapest_methods(results: &StudyResults<'_>) -> Vec<Block> {
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
-    blocks.push(Block::Table(methods_table(&soils)));
+    blocks.push(Block::Table(methods_table(map)));
     blocks
 }
 
@@ -109,32 +103,24 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
 
 /// Every method and integrator over the soils: where it was tried, reaches the tolerance, is cheapest, its cost over the
 /// cheapest, and where it fails.
-fn methods_table(soils: &[MappedSoil]) -> Table {
-    let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
-    let rows = names.into_iter().map(|name| {
-        let count = |is: &dyn Fn(&MappedSoil) -> bool| {
-            Cell::Count(soils.iter().filter(|soil| is(soil)).count() as u64)
-        };
-        let ways: Vec<(&Way, &Way)> =
-            soils.iter().filter_map(|soil| Some((soil.way_of(name)?, soil.cheapest()?))).collect();
-        let over: Vec<f64> = ways.iter().map(|(own, best)| own.seconds / best.seconds).collect();
-        let cells: Vec<f64> = ways.iter().map(|(own, _)| own.cells as f64).collect();
+fn methods_table(map: &MapFinding) -> Table {
+    let rows = map.methods.iter().map(|method| {
         vec![
-            Cell::Code(name.to_owned()),
-            count(&|soil| soil.tried.iter().any(|tried| tried == name)),
-            Cell::Count(ways.len() as u64),
-            count(&|soil| soil.cheapest().is_some_and(|way| way.name == name)),
-            Cell::of(median(&over), Cell::Number, "never within the tolerance"),
-            Cell::of(median(&cells), Cell::Number, "never within the tolerance"),
-            count(&|soil| soil.broken.iter().any(|broken| broken == name)),
+            Cell::Code(method.name.clone()),
+            Cell::Count(method.tried as u64),
+            Cell::Count(method.within as u64),
+            Cell::Count(method.cheapest as u64),
+            Cell::of(method.cost_over_cheapest, Cell::Number, "never within the tolerance"),
+            Cell::of(method.cells, Cell::Number, "never within the tolerance"),
+            Cell::Count(method.broken as u64),
         ]
     });
     let header = format!(
         "method and integrator | > soils tried | > within {} % on | > cheapest on | > its cost over the cheapest, median | > \
          its cells, median | > a run failed on",
-        100.0 * TOLERANCE
+        100.0 * map.tolerance
     );
-    Table::of("Methods over the map", columns(&header), rows).note(format!("of {} soils", soils.len()))
+    Table::of("Methods over the map", columns(&header), rows).note(format!("of {} soils", map.soils))
 }
 
 /// Ratio of the largest to the smallest step from which a map has a logarithmic axis.
@@ -193,6 +179,7 @@ fn axis_of(axis: &MapAxis) -> ChartAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::comparison::work_precision::Way;
 
     #[test]
     fn a_soil_lies_at_its_conductivity_along_and_its_stiffness_up() {
@@ -254,7 +241,7 @@ mod tests {
             ]
         );
         assert_eq!(broken(&soils[..1]), None);
-        let table = methods_table(&soils);
+        let table = methods_table(&MapFinding::new(&soils).expect("soils"));
         let shown: Vec<Vec<String>> =
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         // Medians of 1, 3, 1 and of 4, 1, 7 times the cheapest; of 8, 10, 8 and of 16, 4, 20 cells.

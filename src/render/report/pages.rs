@@ -2,11 +2,11 @@
 
 use crate::case::Task;
 use crate::case::quantity::Norm;
+use crate::judge::blocks::{StudyBlocks, used_references};
 use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
-use crate::measure::statistics::larger;
 use crate::render::answers::locking;
 use crate::render::checks::verdicts::{PROPOSED, judgements_table};
 use crate::render::page::{Block, Callout, Page, Section, slug};
@@ -21,7 +21,6 @@ use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::wording::count_of;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The list of studies, and how their numbers were made.
@@ -114,14 +113,9 @@ fn met_cell(one: &StudyResults<'_>) -> Cell {
 /// Norms and references of all records.
 fn numbers_section(results: &[StudyResults<'_>]) -> Section {
     let norms = Norm::ALL.iter().map(|norm| vec![Cell::Code(norm.name().to_owned()), norm.formula().into()]);
-    let mut used: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
-    for reference in results.iter().flat_map(|one| one.records).flat_map(|record| &record.references) {
-        let entry = used.entry(reference.name.as_str()).or_default();
-        entry.0 = entry.0.max(reference.terms);
-        entry.1 = larger(entry.1, reference.tail_bound);
-    }
-    let references = used.iter().map(|(name, (terms, tail))| {
-        vec![Cell::Code((*name).to_owned()), Cell::Count(*terms as u64), Cell::Error(*tail)]
+    let used = used_references(results);
+    let references = used.iter().map(|used| {
+        vec![Cell::Code(used.name.clone()), Cell::Count(used.terms as u64), Cell::Error(used.tail_bound)]
     });
     let blocks = vec![
         Block::Table(
@@ -167,6 +161,7 @@ const MOST_OPEN: usize = 4;
 pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
     let study = results.study;
     let mut blocks = unmet(results);
+    let found = StudyBlocks::new(results)?;
     let told = diagnoses(study, results.records);
     // The race has a page and sentences of its own.
     let answers = StudyAnswers::new(study, results.records, &results.paths)?;
@@ -174,40 +169,43 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
         blocks.extend(race::blocks(results));
     } else {
         blocks.extend(answered(&answers)?);
-        blocks.extend(maps::cheapest_methods(results));
-        blocks.extend(layer::load_settlement(results));
-        blocks.extend(layer::blocks(results)?);
-        blocks.extend(theory_lines::blocks(results)?);
+        blocks.extend(maps::cheapest_methods(results, found.map.as_ref()));
+        blocks.extend(layer::load_settlement(results, found.loads.as_ref()));
+        blocks.extend(layer::blocks(results, found.fields.as_ref())?);
+        blocks.extend(theory_lines::blocks(results, found.profiles.as_ref())?);
         for axis in Axis::REFINEMENTS {
             blocks.extend(refinement::blocks(results, axis));
         }
     }
     blocks.push(Block::Heading("Runs".to_owned()));
-    blocks.extend(checks::survival(results).map(|table| Block::Details {
+    blocks.extend(checks::survival(&found.ends).map(|table| Block::Details {
         summary: "How each case ended".to_owned(),
         blocks: vec![Block::Table(table)],
     }));
     blocks.extend(uncertainties::table_of(&results.judgements).map(Block::Table));
-    blocks.extend(checks::measures(results));
+    blocks.extend(checks::measures(&found.measures));
     blocks.extend(maps::critical_steps(results));
-    if let Some(table) = runs::attached_table(results.records) {
+    if let Some(table) = runs::attached_table(&found.outside_runs) {
         blocks.push(Block::Heading("Attached solvers".to_owned()));
         blocks.extend(results.taken_over.iter().map(|sentence| Block::Paragraph(format!("{sentence}."))));
         blocks.push(Block::Table(table.notes(told.clone())));
     }
     if results.records.iter().any(|record| record.stability.is_none()) {
-        blocks.extend(cost::work_blocks(results));
+        blocks.extend(cost::work_blocks(results, &found.timing));
         blocks.extend(cost::wall_time_blocks(results));
-        blocks.push(checks::worst_checks(results));
+        blocks.push(checks::worst_checks(&found.checks, &found.groups));
     }
     blocks.push(Block::Heading("Expectations".to_owned()));
     blocks.extend(expectations(results));
+    let mut setting = setting::sentence(found.setting.as_ref())?;
+    if !setting.is_empty() {
+        setting += "\n\n";
+    }
     let page = Page {
         title: study.title.clone(),
         lead: format!(
-            "{}\n\n{}{}[All studies](index.html). Run it again: `{}`.",
+            "{}\n\n{setting}{}[All studies](index.html). Run it again: `{}`.",
             study.summary,
-            setting::sentence(results.records).map_or(String::new(), |sentence| sentence + "\n\n"),
             within::sentences(&answers.within)? + "\n\n",
             results.run_command()
         ),

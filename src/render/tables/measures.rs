@@ -1,8 +1,8 @@
 //! Tables of one record.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::measure::record_checks;
-use crate::measure::record_checks::RecordCheck;
+use crate::judge::blocks::checks::{WorstCheck, checks_of, groups_of};
+use crate::judge::soundness;
 use crate::record::Record;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
@@ -97,8 +97,8 @@ pub fn checks_table(record: &Record) -> Table {
     if let Some(start) = &record.start {
         add("points at the start", Cell::Count(start.points as u64), "".into());
     }
-    for check in &record_checks::worst_of([record]) {
-        add(check.what, Cell::Error(check.value), bound_cell(check));
+    for check in &checks_of([record]) {
+        add(&check.what, Cell::Error(check.value.unwrap_or(f64::NAN)), bound_cell(check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
         add(&row.name, format!("{:.7}", row.found).into(), format!("exactly {:.7}", row.exact).into());
@@ -107,23 +107,13 @@ pub fn checks_table(record: &Record) -> Table {
         add(name, Cell::Error(value), "".into());
     }
     Table::of("checks and groups", columns("what | > value | bound"), rows)
-        .notes(record_checks::complaints(record).iter().map(|one| format!("✗ {one}")))
-}
-
-/// The dimensionless groups of a record.
-pub(crate) fn groups_of(record: &Record) -> [(&'static str, f64); 3] {
-    let groups = &record.groups;
-    [
-        ("storage n E_oed/K_w", groups.storage),
-        ("finite strain m_vl q", groups.finite_strain),
-        ("inertia c_v/(H V)", groups.inertia),
-    ]
+        .notes(soundness::complaints_of_run(record).iter().map(|one| format!("✗ {one}")))
 }
 
 /// The bound of a check with the mark of its judgement.
-pub fn bound_cell(check: &RecordCheck) -> Cell {
+pub fn bound_cell(check: &WorstCheck) -> Cell {
     match check.bound {
-        Some(bound) => Cell::Verdict(Mood::of(check.holds()), format!("≤ {}", number::error(bound))),
+        Some(bound) => Cell::Verdict(Mood::of(check.holds), format!("≤ {}", number::error(bound))),
         None if check.unjudged.is_empty() => Cell::Text("not judged".to_owned()),
         None => Cell::Text(format!("not judged: {}", check.unjudged)),
     }

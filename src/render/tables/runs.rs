@@ -1,21 +1,17 @@
 //! Tables over several runs: those of attached solvers, and critical time steps.
 
-use crate::measure::statistics::{WallSpread, spread};
+use crate::judge::blocks::outside_runs::{BUSY, OutsideRunFinding, is_busy, megabytes, over};
 use crate::record::{Probe, Record, WallSample};
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_soil::wording::{count_of, short};
 
-/// Ratio of wall to processor time from which the machine was busy or the solver waited.
-const BUSY: f64 = 2.0;
-
 /// One row per run of an attached solver: how it ended, what it took, and whether its repeats agree. `None` where no
 /// solver is attached.
-pub fn attached_table(records: &[Record]) -> Option<Table> {
-    let outside: Vec<&Record> = records.iter().filter(|record| record.outside_run().is_some()).collect();
+pub fn attached_table(outside: &[OutsideRunFinding]) -> Option<Table> {
     if outside.is_empty() {
         return None;
     }
-    let busy = outside.iter().filter(|record| is_busy(&record.wall)).count();
+    let busy = outside.iter().filter(|run| run.busy).count();
     let busy = (busy > 0).then(|| {
         format!(
             "{busy} of {} runs took more than {BUSY} times their processor time: the machine was busy or they waited, so \
@@ -27,51 +23,31 @@ pub fn attached_table(records: &[Record]) -> Option<Table> {
         "case | ended | made by | > wall, least [s] | > wall, median [s] | > processor [s] | > memory [MB] \
          | > by its own account [s] | > repeats differ by",
     );
-    let rows = outside.iter().map(|record| attached_row(record));
-    let table = Table::of("Runs of attached solvers", columns, rows).note(
+    let table = Table::of("Runs of attached solvers", columns, outside.iter().map(attached_row)).note(
         "wall time: least and median over the repeats; processor time and memory: of the solver and of the processes that \
          it waited for",
     );
     Some(table.notes(busy))
 }
 
-fn attached_row(record: &Record) -> Vec<Cell> {
-    let about = record.outside_run();
-    let wall = over(&record.wall, |sample| Some(sample.seconds));
-    let median = |field| over(&record.wall, field).map(|spread| spread.median);
-    let mood = match record.status.failure() {
-        None => Mood::Pass,
-        Some(_) if record.status.is_skipped() => Mood::Note,
-        Some(_) => Mood::Fail,
+fn attached_row(run: &OutsideRunFinding) -> Vec<Cell> {
+    let mood = match (run.failed, run.skipped) {
+        (false, _) => Mood::Pass,
+        (true, true) => Mood::Note,
+        (true, false) => Mood::Fail,
     };
     let not_told = "the system does not report it";
     vec![
-        Cell::Code(record.case.label()),
-        Cell::Verdict(mood, record.status.name()),
-        about.map_or("–".to_owned(), |about| about.made_by().replace('`', "")).as_str().into(),
-        Cell::of(wall.map(|wall| wall.minimum), Cell::Seconds, "not run"),
-        Cell::of(wall.map(|wall| wall.median), Cell::Seconds, "not run"),
-        Cell::of(median(|sample| sample.cpu_seconds), Cell::Seconds, not_told),
-        Cell::of(over(&record.wall, megabytes).map(|memory| memory.maximum), Cell::Number, not_told),
-        Cell::of(median(|sample| sample.own_seconds), Cell::Seconds, "the solver does not report it"),
-        Cell::of(about.and_then(|about| about.repeats_differ_by), Cell::Error, "run once"),
+        Cell::Code(run.case.clone()),
+        Cell::Verdict(mood, run.status.clone()),
+        run.made_by.as_str().into(),
+        Cell::of(run.least_wall, Cell::Seconds, "not run"),
+        Cell::of(run.median_wall, Cell::Seconds, "not run"),
+        Cell::of(run.processor, Cell::Seconds, not_told),
+        Cell::of(run.memory, Cell::Number, not_told),
+        Cell::of(run.reported, Cell::Seconds, "the solver does not report it"),
+        Cell::of(run.repeats_differ_by, Cell::Error, "run once"),
     ]
-}
-
-/// The spread of a quantity over the samples that have it.
-fn over(samples: &[WallSample], field: fn(&WallSample) -> Option<f64>) -> Option<WallSpread> {
-    spread(&samples.iter().filter_map(field).collect::<Vec<_>>())
-}
-
-fn megabytes(sample: &WallSample) -> Option<f64> {
-    sample.peak_memory.map(|bytes| 1e-6 * bytes as f64)
-}
-
-/// Whether the wall times of a run are far above its processor times.
-fn is_busy(samples: &[WallSample]) -> bool {
-    let wall = over(samples, |sample| Some(sample.seconds));
-    wall.zip(over(samples, |sample| sample.cpu_seconds))
-        .is_some_and(|(wall, cpu)| wall.median > BUSY * cpu.median)
 }
 
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
@@ -166,8 +142,13 @@ fn probe_words(probe: &Probe) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::blocks::outside_runs::outside_runs;
     use crate::record::{AttachedRun, CriticalStep, Status};
     use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    fn table_of(records: &[Record]) -> Option<Table> {
+        attached_table(&outside_runs(records))
+    }
 
     #[test]
     fn a_run_is_busy_where_its_wall_time_is_far_above_the_processors() {
@@ -248,7 +229,7 @@ mod tests {
             ..WallSample::default()
         };
         let mut all = [record(), record(), record(), record()];
-        assert!(attached_table(&all).is_none() && attached_notes(&all[0]).is_empty());
+        assert!(table_of(&all).is_none() && attached_notes(&all[0]).is_empty());
         for record in &mut all[1..] {
             record.attached = Some(AttachedRun::default());
         }
@@ -259,7 +240,7 @@ mod tests {
         (all[1].wall, all[2].wall) =
             (vec![sample(5.0, Some(2.0), 3.0), sample(6.0, Some(2.5), 1.5)], Vec::new());
         all[3].wall = vec![sample(1.0, None, 0.5)];
-        let table = attached_table(&all).expect("three");
+        let table = table_of(&all).expect("three");
         let ends: Vec<String> = table.rows.iter().map(|row| row[1].show()).collect();
         assert_eq!(ends[0], "✓ ok");
         assert!(ends[1].starts_with("• ") && ends[2].starts_with("✗ "), "{ends:?}");
@@ -270,7 +251,7 @@ mod tests {
         );
         assert_eq!(table.rows[1][3], Cell::missing("not run"));
         assert_eq!(table.rows[2][5], Cell::missing("the system does not report it"));
-        assert_eq!(attached_table(&all[2..]).expect("two").notes.len(), 1, "none was busy");
+        assert_eq!(table_of(&all[2..]).expect("two").notes.len(), 1, "none was busy");
         let about = all[1].attached.as_mut().expect("attached");
         (about.command, about.version) = (["sh", "{case}"].map(str::to_owned).into(), Some("2.1".to_owned()));
         (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
