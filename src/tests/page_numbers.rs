@@ -20,8 +20,11 @@ fn collect(value: &Value, numbers: &mut Vec<u64>) {
 
 fn numbers_of(cell: &Cell) -> Vec<f64> {
     match cell {
-        Cell::Error(value) | Cell::Number(value) | Cell::Percent(value) => vec![*value],
-        Cell::Seconds(value) | Cell::Order(value) => vec![*value],
+        Cell::Error(value)
+        | Cell::Number(value)
+        | Cell::Percent(value)
+        | Cell::Seconds(value)
+        | Cell::Order(value) => vec![*value],
         Cell::OrderWithin(order, half) => vec![*order, *half],
         Cell::Count(count) => vec![*count as f64],
         _ => Vec::new(),

@@ -7,6 +7,7 @@ use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
 use crate::record::{MeasureRow, Record, Status};
+use oedometer_mpm::run::results::outcome::Failure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -168,7 +169,7 @@ pub fn end_of(record: &Record) -> EndFinding {
         points_per_cell: case.points_per_cell,
         variant: case.variant(),
         runner,
-        failure: record.status.failure().map(|failure| failure.name_with_step()),
+        failure: record.status.failure().map(Failure::name_with_step),
         error: error.filter(|_| record.status == Status::Ok),
     }
 }

@@ -49,7 +49,7 @@ impl OutsideRunFinding {
         let median = |field| over(&record.wall, field).map(|spread| spread.median);
         Some(Self {
             case: record.case.label(),
-            status: record.status.name().into(),
+            status: record.status.name(),
             failed: record.status.failure().is_some(),
             skipped: record.status.is_skipped(),
             made_by: about.made_by().replace('`', ""),

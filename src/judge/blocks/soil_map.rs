@@ -52,7 +52,7 @@ impl MapFinding {
     pub fn new(soils: &[MappedSoil]) -> Option<Self> {
         let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
         let methods = names.into_iter().map(|name| MapMethod::new(name, soils)).collect();
-        (!soils.is_empty()).then(|| Self { tolerance: TOLERANCE, soils: soils.len(), methods })
+        (!soils.is_empty()).then_some(Self { tolerance: TOLERANCE, soils: soils.len(), methods })
     }
 }
 
