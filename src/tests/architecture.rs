@@ -75,16 +75,17 @@ const COMPUTING: [&str; 14] = [
     "crate::exact",
 ];
 
-/// Lines of a source of `render` that compute what the judge should have computed.
+/// Lines of a source of `render` that name one of `COMPUTING`, the computations that have moved to the judge.
 fn computing(source: &str) -> Vec<&str> {
     let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or(source);
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
     code.lines().filter(is_code).filter(|line| COMPUTING.iter().any(|call| line.contains(call))).collect()
 }
 
-/// `render` prints what the judge has found; drawing has a geometry of its own.
+/// What has moved from `render` to the judge stays there; drawing has a geometry of its own. Orders along a path, the map and
+/// work against precision are still asked of the judge by `render`, and not looked for.
 #[test]
-fn render_prints_and_computes_nothing() {
+fn what_moved_to_the_judge_is_not_computed_in_render() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/render");
     let mut wrong = Vec::new();
     for path in sources_below(&root) {
