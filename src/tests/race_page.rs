@@ -112,12 +112,12 @@ fn the_committed_page_says_what_its_own_table_comes_to() {
                 format!(
                     "take `{method}`:** it reaches 1 % of pressure, effective stress and settlement in {reached}"
                 ),
-                format!("and in {nearly} at no more than twice the cost of the fastest method"),
+                format!("in {nearly} at no more than twice the cost of the fastest method"),
                 format!("`{integrator}` in {count})"),
             ],
             Question::Total => [
                 format!("take `{method}`:** it reaches 1 % in {reached}"),
-                format!("and in {nearly} at no more than twice the cost of the fastest of"),
+                format!("in {nearly} at no more than twice the cost of the fastest of"),
                 format!("`{integrator}` in {count} of {} situations", situations(&rows).len()),
             ],
         };

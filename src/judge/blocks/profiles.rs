@@ -44,7 +44,7 @@ pub struct Isochrones {
     pub sample: Option<Sample>,
     /// Reference.
     pub reference: String,
-    /// One per output.
+    /// One per output, or a few from the first to the last.
     pub curves: Vec<Isochrone>,
 }
 
@@ -134,7 +134,7 @@ impl Isochrones {
     /// # Errors
     /// When the reference refuses the case.
     pub fn new(record: &Record, own: ReferenceKind) -> Result<Self, ExactError> {
-        let curves = theory_isochrones(&record.case, own)?.into_iter().map(|theory| Isochrone {
+        let curves = few(theory_isochrones(&record.case, own)?).into_iter().map(|theory| Isochrone {
             time_factor: theory.time_factor,
             degree: theory.degree,
             computed: computed_isochrone(record, theory.time_factor),
@@ -197,6 +197,17 @@ fn shown_records(records: &[Record], has_kink: bool) -> Vec<&Record> {
         |record: &&Record| is_sound(record) && Some(record.case.points_per_cell) == points_per_cell;
     let runs = records.iter().filter(is_shown);
     grouped(runs, |record| record.case.method.to_string()).into_iter().map(|(_, own)| own[0]).collect()
+}
+
+/// Most isochrones of a figure: as many as a reader tells apart.
+const MOST_CURVES: usize = 6;
+
+/// A few of many items, evenly spread, with the first and the last.
+fn few<T>(items: Vec<T>) -> Vec<T> {
+    let last = items.len().saturating_sub(1);
+    let kept: Vec<usize> = (0..MOST_CURVES).map(|place| (place * last).div_ceil(MOST_CURVES - 1)).collect();
+    let is_kept = |place: usize| last < MOST_CURVES || kept.contains(&place);
+    items.into_iter().enumerate().filter(|(place, _)| is_kept(*place)).map(|(_, item)| item).collect()
 }
 
 /// Markers of one run on a curve of consolidation.
@@ -272,6 +283,15 @@ mod tests {
                 assert_eq!(found(errors), coincide, "{method} {output} {change}");
             }
         }
+    }
+
+    #[test]
+    fn six_isochrones_of_many_are_shown_with_the_first_and_the_last() {
+        let shown = |count: usize| few((0..count).collect());
+        assert_eq!(shown(6), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(shown(7), [0, 2, 3, 4, 5, 6]);
+        assert_eq!(shown(12), [0, 3, 5, 7, 9, 11]);
+        assert_eq!([shown(0), shown(1)], [vec![], vec![0]]);
     }
 
     #[test]

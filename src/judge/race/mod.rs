@@ -2,6 +2,7 @@
 //! to, as numbers and names; pages make sentences of it.
 
 pub mod correlation;
+pub mod family;
 pub mod finish;
 pub mod profile;
 pub mod sensitivity;
@@ -10,6 +11,7 @@ pub mod trade;
 
 use crate::case::contender::CONTENDERS;
 use crate::judge::race::correlation::{Correlation, correlations};
+use crate::judge::race::family::{FamilyCurve, family_curves};
 use crate::judge::race::finish::{RaceQuantity, Reason};
 use crate::judge::race::profile::{Choice, CostRow, CostTable, Profile};
 use crate::judge::race::sensitivity::{THRESHOLD, Variant, variants};
@@ -136,6 +138,8 @@ pub struct RaceFindings {
     pub answers: Vec<Answer>,
     /// Performance profiles to 1 %.
     pub profiles: Vec<QuestionProfiles>,
+    /// Error over work in each family, a curve per contender.
+    pub families: Vec<FamilyCurve>,
     /// What each operator buys and costs.
     pub trades: Vec<Trade>,
     /// The pairs of situations that are most alike.
@@ -180,6 +184,10 @@ impl RaceFindings {
                 .filter_map(|question| answer(question, &situations))
                 .collect(),
             profiles,
+            families: by_family(&situations)
+                .into_iter()
+                .flat_map(|(family, situations)| family_curves(family, &situations))
+                .collect(),
             trades: trades(&samples(&situations)),
             correlations,
             situations,
@@ -200,15 +208,25 @@ impl RaceFindings {
 
     /// The families of its situations, each once, with their situations.
     pub fn families(&self) -> Vec<(&str, Vec<&Situation>)> {
-        let mut families: Vec<(&str, Vec<&Situation>)> = Vec::new();
-        for situation in &self.situations {
-            match families.iter_mut().find(|(family, _)| *family == situation.family) {
-                Some((_, known)) => known.push(situation),
-                None => families.push((&situation.family, vec![situation])),
-            }
-        }
-        families
+        by_family(&self.situations)
     }
+
+    /// The curves of a family.
+    pub fn curves<'a>(&'a self, family: &'a str) -> impl Iterator<Item = &'a FamilyCurve> {
+        self.families.iter().filter(move |curve| curve.family == family)
+    }
+}
+
+/// Situations by their families, both in the order of their first appearance.
+fn by_family(situations: &[Situation]) -> Vec<(&str, Vec<&Situation>)> {
+    let mut families: Vec<(&str, Vec<&Situation>)> = Vec::new();
+    for situation in situations {
+        match families.iter_mut().find(|(family, _)| *family == situation.family) {
+            Some((_, known)) => known.push(situation),
+            None => families.push((&situation.family, vec![situation])),
+        }
+    }
+    families
 }
 
 /// Costs of all contenders to a threshold of a quantity.

@@ -35,6 +35,8 @@ const LINE: f64 = 1.3;
 const BELOW: f64 = 42.0;
 /// Gap before the colour bar and its width, px.
 const BAR: (f64, f64) = (18.0, 16.0);
+/// Gap between the labels of the colour bar and its words, px.
+const BAR_WORDS: f64 = 8.0;
 /// Tick, gap to its label, and room for the words of an upright axis, px.
 const BESIDE: f64 = 10.0 + 1.4 * LABEL.size;
 
@@ -74,17 +76,25 @@ impl Layout {
         let top = PAD + head + 8.0;
 
         let y_axis = |height: f64| PlacedAxis::new(&chart.y, y_ends, (top + height, top), true);
-        let left = PAD + y_axis(tall).label_width() + BESIDE;
         let bar_axis = |height: f64| {
             let reach = chart.drawn_field()?.0.extent();
             let ends = Ends { scale: Scale::Linear, low: -reach, high: reach };
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };
         let beside = end_names_width(chart);
-        let right = bar_axis(tall)
-            .map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE);
-        let room = (wide - left - right).max(60.0);
-        let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
+        // The room for the ticks' labels, for a plot of some height.
+        let margins = |height: f64| {
+            let left = PAD + y_axis(height).label_width() + BESIDE;
+            let right = bar_axis(height).map_or(PAD + 14.0 + beside, |bar| {
+                PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE + BAR_WORDS
+            });
+            (left, right)
+        };
+        let fitting =
+            |(left, right): (f64, f64)| shape(chart, (x_ends, y_ends), (wide - left - right).max(60.0), tall);
+        // A lower plot has other ticks, with labels of another width.
+        let (left, right) = margins(fitting(margins(tall)).1);
+        let (plot_width, plot_height) = fitting((left, right));
         let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
         let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
         let y = y_axis(plot_height);
@@ -97,8 +107,8 @@ impl Layout {
         let legend = Legend::of(chart, &looks, is_drawn, inner);
         let notes: Vec<String> =
             notes(chart, &x_ends, &y_ends).iter().flat_map(|note| wrap(note, inner / NOTE.size)).collect();
-        let height =
-            plot.bottom + BELOW + 8.0 + legend.height() + notes.len() as f64 * NOTE.size * LINE + PAD * 0.8;
+        let below = legend.height() + notes.len() as f64 * NOTE.size * LINE;
+        let height = plot.bottom + BELOW + if below > 0.0 { 8.0 + below + PAD * 0.8 } else { 0.0 };
         let size = (wide, height.ceil());
         Self { size, plot, x, y, bar: bar_axis(plot_height), title, subtitle, notes, legend, looks, points }
     }
@@ -279,7 +289,7 @@ impl Chart {
         let Some(bar) = &layout.bar else { return Ok(()) };
         let (plot, size) = (layout.plot, layout.size);
         let left = plot.right + BAR.0;
-        let label_room = bar.label_width() + BESIDE;
+        let label_room = bar.label_width() + BESIDE + BAR_WORDS;
         for step in 0..STEPS {
             let share = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
             let (low, high) = (share(step), share(step + 1));

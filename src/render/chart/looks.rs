@@ -165,11 +165,12 @@ const ROW: f64 = 19.0;
 const LINE: f64 = 14.0;
 const BETWEEN_COLUMNS: f64 = 22.0;
 
-/// The legend below the plot, in columns of equal width.
+/// The legend below the plot, in columns of equal width; a name that is wider than those of most takes more than one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Legend {
     entries: Vec<(Look, Vec<String>)>,
-    columns: usize,
+    /// `[entry] = (row, column)`.
+    places: Vec<(usize, usize)>,
     column_width: f64,
     row: f64,
 }
@@ -189,25 +190,42 @@ impl Legend {
         }
         let most = (room - SAMPLE - GAP) / FONT.size;
         let entries: Vec<_> = seen.into_iter().map(|(look, name)| (look, wrap(name, most))).collect();
-        let lines = || entries.iter().flat_map(|(_, lines)| lines);
-        let widest = lines().map(|line| width(line) * FONT.size).fold(0.0, f64::max);
+        let width_of = |(_, lines): &(Look, Vec<String>)| {
+            lines.iter().map(|line| width(line) * FONT.size).fold(0.0, f64::max)
+        };
+        // The name of the theory is a sentence; it does not make the columns of the others wide.
+        let narrow = entries.iter().filter(|(look, _)| !look.is_theory).map(width_of);
+        let widest =
+            narrow.reduce(f64::max).unwrap_or_else(|| entries.iter().map(width_of).fold(0.0, f64::max));
         let column_width = SAMPLE + GAP + widest + BETWEEN_COLUMNS;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few columns")]
-        let columns = ((room + BETWEEN_COLUMNS) / column_width).floor().max(1.0) as usize;
+        let whole = |columns: f64| columns.max(1.0) as usize;
+        let columns = whole(((room + BETWEEN_COLUMNS) / column_width).floor());
+        let (mut row, mut column) = (0, 0);
+        let mut places = Vec::new();
+        for entry in &entries {
+            let needed = SAMPLE + GAP + width_of(entry) + BETWEEN_COLUMNS;
+            let span = whole((needed / column_width).ceil()).min(columns);
+            if column + span > columns {
+                (row, column) = (row + 1, 0);
+            }
+            places.push((row, column));
+            column += span;
+        }
         let tallest = entries.iter().map(|(_, lines)| lines.len()).max().unwrap_or(1).max(1);
-        Self { entries, columns, column_width, row: ROW + LINE * (tallest - 1) as f64 }
+        Self { entries, places, column_width, row: ROW + LINE * (tallest - 1) as f64 }
     }
 
     pub fn height(&self) -> f64 {
-        self.entries.len().div_ceil(self.columns) as f64 * self.row
+        self.places.last().map_or(0.0, |(row, _)| (row + 1) as f64 * self.row)
     }
 
     /// The elements of the legend with its upper left corner at a place.
     pub fn elements(&self, size: Px, corner: Px) -> Result<String, String> {
         let mut out = String::new();
-        for (place, (look, lines)) in self.entries.iter().enumerate() {
-            let x = corner.0 + (place % self.columns) as f64 * self.column_width;
-            let y = corner.1 + (place / self.columns) as f64 * self.row + ROW / 2.0;
+        for ((look, lines), (row, column)) in self.entries.iter().zip(&self.places) {
+            let x = corner.0 + *column as f64 * self.column_width;
+            let y = corner.1 + *row as f64 * self.row + ROW / 2.0;
             let mut entry = String::new();
             if look.has_line {
                 let style = stroke(look.colour, look.width());
@@ -266,6 +284,18 @@ mod tests {
         let ends = [-1.0, 0.0, 99.0].map(field_colour);
         assert_eq!(ends, [FIELD_COLOURS[0], FIELD_COLOURS[4], FIELD_COLOURS[8]]);
         assert_eq!(field_colour(f64::NAN), RGBColor(0xC9, 0xC9, 0xC9));
+    }
+
+    #[test]
+    fn a_wide_name_of_the_theory_takes_columns_instead_of_widening_all() {
+        let mut chart = Chart::new("", ChartAxis::linear("x"), ChartAxis::linear("y"))
+            .with(Series::theory("a solution with a name as long as a sentence", vec![]));
+        for name in ["a", "b", "c", "d"] {
+            chart = chart.with(Series::new(name, vec![]));
+        }
+        let places = |room: f64| Legend::of(&chart, &looks(&chart), |_| true, room).places;
+        assert_eq!(places(450.0), [(0, 0), (0, 5), (1, 0), (1, 1), (1, 2)]);
+        assert_eq!(places(120.0), [(0, 0), (1, 0), (2, 0), (3, 0), (4, 0)]);
     }
 
     #[test]

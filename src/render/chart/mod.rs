@@ -43,8 +43,15 @@ pub struct Chart {
     pub size: Size,
 }
 
-/// Values along an axis closer than this, relative, are one.
-const SAME_PLACE: f64 = 1e-6;
+/// Share of the largest value within which results are one.
+const SAME: f64 = 1e-2;
+
+/// Whether some values lie further apart than a share of the largest.
+fn differ(values: impl Iterator<Item = f64> + Clone, share: f64) -> bool {
+    let least = values.clone().fold(f64::INFINITY, f64::min);
+    let most = values.fold(f64::NEG_INFINITY, f64::max);
+    most - least > share * least.abs().max(most.abs())
+}
 
 /// Where the names of series stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,19 +90,22 @@ impl Chart {
         self
     }
 
-    /// Whether it shows more than a sentence would: a field, or three values that do not all stand above each other.
+    /// Whether it shows more than a sentence would: a field, or results that make more than one point, one upright or one level
+    /// line.
     pub fn is_telling(&self) -> bool {
         let has_results = self.series.iter().any(|series| series.style != Style::Theory);
         let shown = self.series.iter().filter(|series| !has_results || series.style != Style::Theory);
-        let points = shown.flat_map(|series| &series.points);
-        let drawn = points
-            .filter(|(x, y)| drawable(*x, self.x.scale).is_ok() && drawable(*y, self.y.scale).is_ok())
-            .map(|(x, _)| *x);
-        let [least, most] = drawn
-            .clone()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)]);
+        let is_drawn =
+            |(x, y): &&(f64, f64)| drawable(*x, self.x.scale).is_ok() && drawable(*y, self.y.scale).is_ok();
+        let drawn: Vec<(&Series, Vec<(f64, f64)>)> =
+            shown.map(|series| (series, series.points.iter().filter(is_drawn).copied().collect())).collect();
+        let points = || drawn.iter().flat_map(|(_, points)| points);
+        let joins = drawn.iter().any(|(series, points)| series.style == Style::Markers || points.len() > 1);
         self.field.is_some()
-            || (drawn.count() >= 3 && most - least > SAME_PLACE * least.abs().max(most.abs()))
+            || joins
+                && points().count() >= 3
+                && differ(points().map(|(x, _)| *x), SAME)
+                && differ(points().map(|(_, y)| *y), SAME)
     }
 
     /// The data as CSV with all digits: one row per point of a series, and one per cell of a field, at its middle.

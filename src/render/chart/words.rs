@@ -151,7 +151,7 @@ pub(super) fn names(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
             continue;
         }
         let (w, h) = half_size(&one.name);
-        let places: [(Px, f64); 8] = [
+        let beside = [
             ((w + 7.0, -5.0), 0.0),
             ((w + 7.0, 6.0), 0.1),
             ((0.0, -13.0), 0.3),
@@ -161,11 +161,21 @@ pub(super) fn names(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
             ((0.7 * w, -24.0), 0.6),
             ((-0.7 * w, 25.0), 0.6),
         ];
-        let offers = places.map(|((dx, dy), penalty)| {
-            let at = (x + dx, y + dy);
-            Offer { room: Frame::around(at, w, h), penalty, drawn: at }
+        let away = [24.0, 40.0, 56.0].into_iter().flat_map(|far| {
+            [(w, -far), (w, far), (-w, -far), (-w, far), (w + far, 0.0)].map(|off| (off, 0.05 * far))
         });
-        if let Some(at) = space.take(offers.into(), false) {
+        let offers = beside.into_iter().map(|place| (place, false)).chain(away.map(|place| (place, true)));
+        let offers = offers.map(|(((dx, dy), penalty), is_away)| {
+            let at = (x + dx, y + dy);
+            Offer { room: Frame::around(at, w, h), penalty, drawn: (at, is_away) }
+        });
+        if let Some((at, is_away)) = space.take(offers.collect(), false) {
+            if is_away {
+                // A thin line leads from the point to the nearest edge of its words.
+                let end = (x.clamp(at.0 - w, at.0 + w), y.clamp(at.1 - h, at.1 + h));
+                let leader = layer(layout.size, |area| line(area, &[(x, y), end], stroke(QUIET, 0.7)))?;
+                out += &group("", "", &leader);
+            }
             out += &words(layout.size, &one.name, at, TEXT)?;
             written.push(&one.name);
         }

@@ -9,7 +9,7 @@ use crate::judge::paths::{Path, SeriesSummary};
 use crate::record::Record;
 use crate::render::number;
 use crate::render::table::Cell;
-use crate::study::expectation::{Axis, Measure};
+use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::Class;
 use oedometer_mpm::run::TimeStepRule;
 
@@ -74,15 +74,35 @@ pub fn ticks(sizes: impl Iterator<Item = f64>) -> Vec<f64> {
     ticks
 }
 
-/// A reference in words, for running text and legends.
+/// A reference in words, for running text.
 pub fn solution(reference: &str) -> String {
-    match reference {
-        "terzaghi" => "Terzaghi's solution with compressible water".to_owned(),
-        "terzaghi-incompressible" => "Terzaghi's solution".to_owned(),
-        "large-strain" => "the exact large-strain solution of its own equations".to_owned(),
-        "xie-leo" => "Xie & Leo's solution".to_owned(),
-        other => format!("the exact solution `{other}`"),
-    }
+    let words = match reference {
+        NEXT_FINER => "the next finer run",
+        "terzaghi" => "Terzaghi's solution with compressible water",
+        "terzaghi-incompressible" => "Terzaghi's solution",
+        "single-mode" => "the exact slowest mode",
+        "xie-leo" => "Xie & Leo's solution",
+        "dynamic-column" => "the exact column with inertia",
+        "dynamic-single-mode" => "the exact slowest mode with inertia",
+        "standing-wave" => "the exact standing wave",
+        "large-strain" => "the exact large-strain solution of its own equations",
+        "cosine-layer" => "the exact layer with compressible water",
+        "cosine-layer-incompressible" => "the exact layer with incompressible water",
+        "mandel" => "Mandel's solution with compressible water",
+        "at-rest" => "the state of rest",
+        "layered" => "the exact column of layers",
+        "yield-front" => "the exact yield front",
+        "sealed-element" => "the exact sealed column",
+        "footing" => "Prandtl's load at collapse",
+        "manufactured-box" | "manufactured-shear" | "manufactured-vortex" => "the manufactured motion",
+        other => return format!("the exact solution `{other}`"),
+    };
+    words.to_owned()
+}
+
+/// A reference as the name of a line.
+pub fn theory(reference: &str) -> String {
+    capitalised(solution(reference).trim_start_matches("the ")).replace('`', "")
 }
 
 /// A quantity in words.
@@ -205,6 +225,7 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::judge::paths::paths;
     use crate::study::expectation::Axis;
+    use oedometer_exact::reference::ReferenceKind;
 
     #[test]
     fn every_size_has_one_tick_in_rising_order() {
@@ -247,15 +268,20 @@ mod tests {
     fn quantities_places_references_axes_and_orders_have_words_of_their_own() {
         use Quantity::{Displacement, EffectiveStress, LoadFactor, Pressure, Settlement};
         assert_eq!(
-            ["terzaghi", "terzaghi-incompressible", "large-strain", "xie-leo", "mandel"].map(solution),
+            ["terzaghi", "terzaghi-incompressible", "large-strain", "xie-leo", "stokes"].map(solution),
             [
                 "Terzaghi's solution with compressible water",
                 "Terzaghi's solution",
                 "the exact large-strain solution of its own equations",
                 "Xie & Leo's solution",
-                "the exact solution `mandel`"
+                "the exact solution `stokes`"
             ]
         );
+        assert_eq!(["stokes", "standing-wave"].map(theory), ["Exact solution stokes", "Exact standing wave"]);
+        // Each solution that a scene is judged by has words.
+        for kind in ReferenceKind::ALL {
+            assert!(!solution(kind.name()).contains('`'), "{}", kind.name());
+        }
         let all = [
             (
                 Pressure,

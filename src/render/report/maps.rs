@@ -42,6 +42,10 @@ const CAPTION: &str = "Error of the pore pressure at the points; time from the n
 const CAPTION_OF_BROKEN: &str =
     "Soils on which some run of an integrator failed with the steps that the study tried.";
 
+/// End of the name of an integrator on the soils where it has no run.
+const NOT_TRIED: &str = ": not tried";
+/// Grey, and the first of the hollow markers.
+const UNTRIED: (usize, usize) = (6, 7);
 /// Name of the soils on which every run reached its end.
 const NONE_FAILED: &str = "no run failed";
 
@@ -88,7 +92,7 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
     let mut names: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for soil in soils {
         let (tried, broken) = (integrators(&soil.tried), integrators(&soil.broken));
-        let untried = of_study.difference(&tried).map(|integrator| format!("{integrator}: not tried"));
+        let untried = of_study.difference(&tried).map(|integrator| format!("{integrator}{NOT_TRIED}"));
         let mut states: Vec<String> = broken.into_iter().chain(untried).collect();
         if states.is_empty() {
             states.push(NONE_FAILED.to_owned());
@@ -98,7 +102,14 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
         }
     }
     let names = names.iter().map(|(name, places)| (name.as_str(), places.clone())).collect();
-    Some(map_of("Where runs break".to_owned(), names))
+    let mut chart = map_of("Where runs break".to_owned(), names);
+    // What was not tried is no result: hollow and grey.
+    for (place, series) in
+        chart.series.iter_mut().filter(|series| series.name.ends_with(NOT_TRIED)).enumerate()
+    {
+        (series.slot, series.marker) = (Some(UNTRIED.0), Some(UNTRIED.1 + place));
+    }
+    Some(chart)
 }
 
 /// Every method and integrator over the soils: where it was tried, reaches the tolerance, is cheapest, its cost over the

@@ -191,7 +191,10 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
         blocks.push(Block::Table(table.notes(told.clone())));
     }
     if results.records.iter().any(|record| record.stability.is_none()) {
-        blocks.extend(cost::work_blocks(results, &found.timing));
+        // The race has figures of its own of error against work.
+        if !study.is_race {
+            blocks.extend(cost::work_blocks(results, &found.timing));
+        }
         blocks.extend(cost::wall_time_blocks(results));
         blocks.push(checks::worst_checks(&found.checks, &found.groups));
     }

@@ -6,11 +6,13 @@ use crate::judge::race::sensitivity::{OTHER_THRESHOLDS, THRESHOLD};
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question, RaceFindings};
 use crate::judge::study_results::StudyResults;
-use crate::render::chart::{Chart, ChartAxis, Series, Size};
+use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
 
+/// Contenders that are named and coloured.
+const NAMED: usize = 6;
 /// Words of an entry that arrives.
 const ARRIVES: &str = "arrives";
 
@@ -77,10 +79,18 @@ fn figure(
         ChartAxis::log10("counted work (s)"),
         ChartAxis::log10("relative error (–)"),
     );
-    chart.size = Size::PANEL;
+    chart.size = Size { width: 860.0, plot_height: 380.0, equal_units: false };
+    chart.naming = Naming::Ends;
     let is_drawn = !drawn.is_empty();
-    chart.series.extend(drawn.into_iter().map(|(name, points)| Series::new(name, points)));
-    let caption = "Each marker is a mesh, twice as fine as the one before. Counted work is in seconds of the calibration.";
+    let named = drawn.iter().take(NAMED).enumerate();
+    let named: Vec<Series> =
+        named.map(|(slot, (name, points))| Series::new(*name, points.clone()).slot(slot)).collect();
+    let others = drawn.into_iter().skip(NAMED);
+    chart.series.extend(others.map(|(name, points)| Series::new(name, points).style(Style::Context)));
+    chart.series.extend(named);
+    chart.rules.push(Rule { at: THRESHOLD, label: "1 %".to_owned() });
+    let caption = "In colour: the six cheapest to 1 %; grey: the others. Each marker is a mesh, twice as fine as the one before. \
+                   Counted work is in seconds of the calibration.";
     is_drawn.then(|| figure_of(results, &format!("race-{}", quantity.name()), chart, caption))
 }
 

@@ -131,8 +131,9 @@ fn figure(
     );
     let labels = path_labels(all).with_places(&summaries, sample);
     chart.subtitle = Some(format!(
-        "T_v = {}, against {reference}{}",
+        "T_v = {}, against {}{}",
         number::time_factor(time_factor),
+        labels::solution(reference),
         labels.subtitle_end()
     ));
     chart.size = Size::PANEL;
@@ -257,8 +258,9 @@ fn orders_table(
     if !labels.shared.is_empty() {
         notes.insert(0, format!("all with {}", labels.shared));
     }
-    Table::of(format!("T_v = {}, against {reference}", number::time_factor(time_factor)), columns, rows)
-        .notes(notes)
+    let title =
+        format!("T_v = {}, against {}", number::time_factor(time_factor), labels::solution(reference));
+    Table::of(title, columns, rows).notes(notes)
 }
 
 fn orders_row(

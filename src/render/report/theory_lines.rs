@@ -6,7 +6,7 @@ use crate::judge::blocks::profiles::{Consolidation, Isochrone, Isochrones, Profi
 use crate::judge::study_results::StudyResults;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
-use crate::render::report::figure_of;
+use crate::render::report::{figure_of, labels};
 use crate::render::{RenderError, number, templates};
 
 /// Profiles of a column; empty where there are none.
@@ -60,14 +60,15 @@ pub fn isochrones(results: &StudyResults<'_>, found: &Isochrones) -> Figure {
         ChartAxis::linear(depth_name(&found.reference)).between(0.0, 1.0).inverted(),
     );
     chart.size = Size::PANEL;
+    let reference = labels::theory(&found.reference);
     for (slot, curve) in found.curves.iter().enumerate() {
         let theory = curve.theory.clone();
         chart.series.push(if has_waves {
             // Lines of waves cross: each has the colour of its time.
-            let name = if slot == 0 { found.reference.as_str() } else { "" };
+            let name = if slot == 0 { reference.as_str() } else { "" };
             Series::new(name, theory).style(Style::Line).slot(slot)
         } else {
-            Series::theory(found.reference.as_str(), theory).slot(0)
+            Series::theory(reference.as_str(), theory).slot(0)
         });
         let name = isochrone_name(results, curve);
         chart.series.push(Series::new(name, curve.computed.clone()).style(Style::Markers).slot(slot));
@@ -82,15 +83,25 @@ pub fn isochrones(results: &StudyResults<'_>, found: &Isochrones) -> Figure {
     figure_of(results, &format!("isochrones-{}", found.method), chart, caption)
 }
 
+/// The end of an axis of degrees of consolidation: all of it, or the tenth beyond all that is drawn, so that an early part fills
+/// the figure.
+fn end_of_axis(found: &Consolidation) -> f64 {
+    let runs = found.runs.iter().flat_map(|run| &run.points);
+    let most = found.theory.iter().chain(runs).map(|(_, degree)| *degree).fold(0.0, f64::max);
+    ((10.0 * most).floor() + 1.0).clamp(1.0, 10.0) / 10.0
+}
+
 /// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
 pub fn consolidation(results: &StudyResults<'_>, found: &Consolidation) -> Figure {
     let mut chart = Chart::new(
         "Degree of consolidation",
         ChartAxis::log10("time factor T_v (–)"),
-        ChartAxis::linear("degree of consolidation by settlement U (–)").between(0.0, 1.0).inverted(),
+        ChartAxis::linear("degree of consolidation by settlement U (–)")
+            .between(0.0, end_of_axis(found))
+            .inverted(),
     );
     chart.size = Size::PANEL;
-    chart.series.push(Series::theory(found.reference.as_str(), found.theory.clone()));
+    chart.series.push(Series::theory(labels::theory(&found.reference), found.theory.clone()));
     for (slot, run) in found.runs.iter().enumerate() {
         let series = Series::new(run.method.as_str(), run.points.clone());
         chart.series.push(series.style(Style::Markers).slot(slot));
