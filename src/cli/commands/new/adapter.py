@@ -3,10 +3,10 @@
 
     adapter.py CASE.json OUT
 
-CASE.json says what is to be solved (`oedometer schema case` has every key; SI units), OUT is a fresh folder for the
-result. The little solver below is a start that runs: put yours in the place of `solve`.
+CASE.json describes the problem (`oedometer schema case` has every key; SI units), OUT is an empty folder for the
+result. The small solver below works: replace `solve` by yours.
 
-Exit code 0: solved. 77: it cannot run here (a package is missing), the case is skipped. Any other: it failed, and
+Exit code 0: solved. 77: it cannot run here (a package is missing), so the case is skipped. Any other: it failed, and
 the last lines on standard error are kept.
 """
 

@@ -3,8 +3,8 @@
 #
 #     adapter.sh CASE.json OUT
 #
-# CASE.json says what is to be solved (`oedometer schema case` has every key; SI units), OUT is a fresh folder for the
-# result. The little solver below, in awk, is a start that runs: put yours in its place.
+# CASE.json describes the problem (`oedometer schema case` has every key; SI units), OUT is an empty folder for the
+# result. The small solver below, in awk, works: replace it by yours.
 #
 # Exit code 0: solved. 77: it cannot run here, the case is skipped. Any other: it failed, and the last lines on
 # standard error are kept.
