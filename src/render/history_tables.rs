@@ -655,7 +655,7 @@ mod tests {
         let gone = "\"1 value is no longer measured, in 1 case\"";
         assert_eq!(
             told[3],
-            [format!("timed,{moved},{value},7.50e-1,1.00e0"), format!("gone,{gone},{value},2.50e-1,")]
+            [format!("timed,{moved},{value},7.50e-1,1.00"), format!("gone,{gone},{value},2.50e-1,")]
         );
         assert_eq!(told[4], ["timed,its series,2.0,asymptotic,,divergent"]);
         assert_eq!(

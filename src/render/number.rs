@@ -2,9 +2,13 @@
 
 pub use oedometer_soil::wording::{order, short as number};
 
-/// An error: three digits and a power of ten, `5.62e-3`.
+/// An error: three digits, `5.62e-3`, and a power of ten unless it lies between one and a thousand.
 pub fn error(value: f64) -> String {
-    if value == 0.0 { "0".to_owned() } else { finite(value, |v| format!("{v:.2e}")) }
+    finite(value, |v| match v.abs() {
+        0.0 => "0".to_owned(),
+        1.0..999.5 => three_digits(v),
+        _ => format!("{v:.2e}"),
+    })
 }
 
 /// Two errors with three digits, or with as many as show their difference.
@@ -154,7 +158,7 @@ mod tests {
 
     #[test]
     fn errors_have_three_digits() {
-        assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00e0", "0", "-2.50e-10"]);
+        assert_eq!([5.62e-3, 1.0, 0.0, -2.5e-10].map(error), ["5.62e-3", "1.00", "0", "-2.50e-10"]);
     }
 
     #[test]

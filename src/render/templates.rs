@@ -9,7 +9,7 @@ use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 17] = [
+const TEMPLATES: [(&str, &str); 18] = [
     ("audit", include_str!("../../templates/audit.md")),
     ("changes", include_str!("../../templates/changes.md")),
     ("converges", include_str!("../../templates/converges.md")),
@@ -22,6 +22,7 @@ const TEMPLATES: [(&str, &str); 17] = [
     ("printed-equations", include_str!("../../templates/printed-equations.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
     ("race-limits", include_str!("../../templates/race-limits.md")),
+    ("race-situation", include_str!("../../templates/race-situation.md")),
     ("sampling", include_str!("../../templates/sampling.md")),
     ("setting", include_str!("../../templates/setting.md")),
     ("time-step", include_str!("../../templates/time-step.md")),

@@ -6,6 +6,7 @@ use crate::case::contender::{CONTENDERS, Contender};
 use crate::case::{Quantity, Sample, Task};
 use crate::judge::path_context;
 use crate::judge::paths::{Path, first_error, first_measure};
+use crate::judge::race::Question;
 use crate::judge::race::finish::{Level, RaceQuantity, Reason, cost_to, reason_of, seconds_to};
 use crate::judge::race::sensitivity::THRESHOLD;
 use crate::measure::statistics::median;
@@ -129,6 +130,45 @@ impl Situation {
                 .map(|(contender, runs)| entry(study, contender, runs, common_cells))
                 .collect(),
         })
+    }
+}
+
+/// What a reader asks first of a situation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Arrivals {
+    /// Contenders that reach 1 %.
+    pub arrived: usize,
+    /// Contenders of the race.
+    pub contenders: usize,
+    /// The cheapest to 1 % for each question, where one arrives.
+    pub cheapest: Vec<Cheapest>,
+}
+
+/// The cheapest contender to 1 % for a question.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Cheapest {
+    /// The question.
+    pub question: Question,
+    /// The contender.
+    pub method: String,
+    /// Its counted cost, s.
+    pub cost: f64,
+}
+
+impl Situation {
+    /// Who arrives, and who at the least cost.
+    pub fn arrivals(&self) -> Arrivals {
+        let arrived = || self.entries.iter().filter_map(|entry| Some((entry, entry.costs[1]?)));
+        let cheapest = |question: Question| {
+            let own = arrived().filter(|(entry, _)| question.takes(&entry.contender));
+            let (entry, cost) = own.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(Cheapest { question, method: entry.contender.clone(), cost })
+        };
+        Arrivals {
+            arrived: arrived().count(),
+            contenders: self.entries.len(),
+            cheapest: Question::BOTH.into_iter().filter_map(cheapest).collect(),
+        }
     }
 }
 

@@ -44,7 +44,7 @@ pub struct Chart {
 }
 
 /// Share of the largest value within which results are one.
-const SAME: f64 = 1e-2;
+const SAME: f64 = 1e-3;
 
 /// Whether some values lie further apart than a share of the largest.
 fn differ(values: impl Iterator<Item = f64> + Clone, share: f64) -> bool {

@@ -239,3 +239,36 @@ fn every_point_and_every_cell_has_a_row() {
          \"f\",0.5,4.0,8.0\n\"f\",1.5,4.0,9.0\n\"f\",3.0,4.0,10.0\n"
     );
 }
+
+#[test]
+fn a_figure_that_says_one_number_is_not_telling() {
+    let telling = |series: &[(Style, &[(f64, f64)])]| {
+        let mut chart = Chart::new("", ChartAxis::log10("x"), ChartAxis::linear("y"));
+        chart
+            .series
+            .extend(series.iter().map(|(style, points)| Series::new("a", points.to_vec()).style(*style)));
+        chart.is_telling()
+    };
+    use Style::{Line, LineAndMarkers, Markers, Theory};
+    let theory: (Style, &[(f64, f64)]) = (Theory, &[(1.0, 0.0), (2.0, 1.0), (4.0, 5.0)]);
+    for (what, series, wanted) in [
+        ("three values", &[theory, (LineAndMarkers, &[(1.0, 2.0), (2.0, 1.0), (4.0, 0.5)])][..], true),
+        ("theory alone", &[theory], true),
+        ("two values", &[theory, (Line, &[(1.0, 2.0), (2.0, 1.0)])], false),
+        ("values above each other", &[theory, (Markers, &[(1.0, 2.0), (1.0, 1.0), (1.0, 0.5)])], false),
+        ("a level line", &[theory, (Line, &[(1.0, 2.0), (2.0, 2.0), (4.0, 2.001)])], false),
+        (
+            "one value in each of three lines",
+            &[(Line, &[(1.0, 2.0)]), (Line, &[(2.0, 1.0)]), (Line, &[(4.0, 0.5)])],
+            false,
+        ),
+        (
+            "three markers",
+            &[(Markers, &[(1.0, 2.0)]), (Markers, &[(2.0, 1.0)]), (Markers, &[(4.0, 0.5)])],
+            true,
+        ),
+        ("two that can be drawn", &[(Line, &[(0.0, 2.0), (2.0, 1.0), (4.0, 0.5)])], false),
+    ] {
+        assert_eq!(telling(series), wanted, "{what}");
+    }
+}

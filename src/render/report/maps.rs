@@ -93,7 +93,8 @@ fn broken(soils: &[MappedSoil]) -> Option<Chart> {
     for soil in soils {
         let (tried, broken) = (integrators(&soil.tried), integrators(&soil.broken));
         let untried = of_study.difference(&tried).map(|integrator| format!("{integrator}{NOT_TRIED}"));
-        let mut states: Vec<String> = broken.into_iter().chain(untried).collect();
+        let broken = broken.into_iter().map(|integrator| format!("{integrator}: a run failed"));
+        let mut states: Vec<String> = broken.chain(untried).collect();
         if states.is_empty() {
             states.push(NONE_FAILED.to_owned());
         }
@@ -245,9 +246,9 @@ mod tests {
         assert_eq!(
             series(&chart),
             [
-                at("explicit", &[1, 2]),
+                at("explicit: a run failed", &[1, 2]),
                 at("explicit: not tried", &[3]),
-                at("implicit", &[3]),
+                at("implicit: a run failed", &[3]),
                 at("no run failed", &[0])
             ]
         );

@@ -166,7 +166,7 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
     // The race has a page and sentences of its own.
     let answers = StudyAnswers::new(study, results.records, &results.paths)?;
     if study.is_race {
-        blocks.extend(race::blocks(results));
+        blocks.extend(race::blocks(results)?);
     } else {
         blocks.extend(answered(&answers)?);
         blocks.extend(maps::cheapest_methods(results, found.map.as_ref()));
@@ -212,7 +212,9 @@ pub fn study_page(results: &StudyResults<'_>) -> Result<Page, RenderError> {
             within::sentences(&answers.within)? + "\n\n",
             results.run_command()
         ),
-        callout: Some(verdict(results, &told)),
+        // A situation of the race is judged by its answer.
+        callout: (!study.is_race || !results.judgements.is_empty() || !results.passes())
+            .then(|| verdict(results, &told)),
         sections: sections(blocks),
         files: Some(slug(&study.name)),
         ..Page::default()

@@ -10,15 +10,21 @@ use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
+use crate::render::{RenderError, templates};
 
 /// Contenders that are named and coloured.
 const NAMED: usize = 6;
 /// Words of an entry that arrives.
 const ARRIVES: &str = "arrives";
 
-/// Figures and the table of a situation; empty for any other study.
-pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
-    let Some(situation) = Situation::from_records(results.study, results.records) else { return Vec::new() };
+/// Answer, figures and table of a situation; empty for any other study.
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, RenderError> {
+    let Some(situation) = Situation::from_records(results.study, results.records) else {
+        return Ok(Vec::new());
+    };
     let ranked = ranked(&situation.entries);
     let last = if results.study.scene.has_plane_fields() { "displacement" } else { "settlement" };
     let quantities = [
@@ -28,6 +34,9 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         (RaceQuantity::Settlement, last),
     ];
     let mut blocks = vec![Block::Heading("Every contender".to_owned())];
+    if !situation.is_property {
+        blocks.push(Block::Paragraph(templates::sentence("race-situation", &situation.arrivals())?));
+    }
     let views = quantities.into_iter().filter_map(|(quantity, words)| {
         Some((words.to_owned(), vec![Block::Figure(figure(results, &ranked, quantity, words)?)]))
     });
@@ -36,7 +45,7 @@ pub fn blocks(results: &StudyResults<'_>) -> Vec<Block> {
         blocks.push(Block::Switch(views));
     }
     blocks.push(Block::Table(table_of(&situation, &ranked)));
-    blocks
+    Ok(blocks)
 }
 
 /// Those that arrive first by their cost, then those with an error, then the others.
