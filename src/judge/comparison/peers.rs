@@ -59,10 +59,18 @@ pub static PEERS: LazyLock<Vec<Peer>> = LazyLock::new(|| {
     read(text).expect("a test reads the table of the sources")
 });
 
-/// The programs with their meshes, each time scheme by itself.
+/// The programs with their meshes, each time scheme by itself; a program that has several is named with each.
 pub fn by_program_and_scheme() -> Vec<(String, Vec<&'static Peer>)> {
-    let groups = grouped(PEERS.iter(), |peer| (peer.name.clone(), peer.time_scheme.clone()));
-    groups.into_iter().map(|((program, _), peers)| (program, peers)).collect()
+    let groups = grouped(PEERS.iter(), |peer| (peer.name.as_str(), peer.time_scheme.as_str()));
+    let schemes = |program: &str| groups.iter().filter(|((name, _), _)| *name == program).count();
+    let named = |(program, scheme): (&str, &str)| {
+        let scheme = scheme.split(',').next().and_then(|scheme| scheme.split(" with").next());
+        match scheme.filter(|_| schemes(program) > 1) {
+            Some(scheme) => format!("{program}, {scheme}"),
+            None => program.to_owned(),
+        }
+    };
+    groups.iter().map(|(key, peers)| (named(*key), peers.clone())).collect()
 }
 
 fn read(text: &str) -> Result<Vec<Peer>, csv::Error> {

@@ -96,6 +96,8 @@ pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
     blocks
 }
 
+/// Factor on the longest time up to which the axis goes.
+const ROOM_FOR_NAMES: f64 = 5.0;
 /// Slot of other programs, which no method has.
 const PEERS_SLOT: usize = 6;
 
@@ -123,6 +125,12 @@ pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
             let points = peers.iter().map(|peer| (peer.seconds, peer.worst_error())).collect();
             add_named(&mut chart, Series::new(program, points).slot(PEERS_SLOT));
         }
+    }
+    // Room for the names right of the last points.
+    let times = || chart.series.iter().flat_map(|series| &series.points).map(|(seconds, _)| *seconds);
+    let (least, most) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    if least < most {
+        chart.x = chart.x.between(0.8 * least, ROOM_FOR_NAMES * most);
     }
     chart
 }
