@@ -66,7 +66,7 @@ fn quarter(mut figure: Figure, number: &str, theory: &str) -> Figure {
         chart.title = format!("Fig. {number}: {}", chart.title);
         chart.size = QUARTER;
         for series in chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
-            labels::solution(theory).clone_into(&mut series.name);
+            series.name = labels::theory(theory);
         }
     })
 }

@@ -179,9 +179,7 @@ fn profile_figure(
             "Grey: other methods. Left end: how often a method is the fastest, ties included; right end: how often it reaches 1 % at all."
         }
         (RaceQuestion::Moving, _) => "",
-        (RaceQuestion::Total, _) => {
-            "Total Lagrangian methods alone: each profile is over the fastest of them."
-        }
+        (RaceQuestion::Total, _) => "Total Lagrangian methods alone.",
     };
     Figure::new(format!("race-profile-{}-{}", question.name(), quantity.name()), chart, caption)
 }
@@ -252,8 +250,8 @@ fn trade_table(findings: &RaceFindings) -> Table {
         rows,
     )
     .note(
-        "each step of the ladder from GIMP over the method of the row above: cost and errors on equal cells, geometric means over \
-         families in which both ran; errors below 0.1 % count as 0.1 %; situations won and lost",
+        "each row over the one above, the first over GIMP; cost and errors on equal cells, geometric means over families; errors \
+         below 0.1 % count as 0.1 %",
     )
 }
 

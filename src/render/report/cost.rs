@@ -154,7 +154,7 @@ pub fn caption(precision: &WorkPrecision<'_>) -> String {
     };
     format!(
         "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both time and \
-         error. Wall time: median over repeats in rounds over all runs.{noise}{others}"
+         error. Wall time: median over repeats.{noise}{others}"
     )
 }
 
@@ -289,7 +289,7 @@ mod tests {
         let first = &peers::PEERS[0];
         assert_eq!(
             (series(2).0, series(2).1[0]),
-            (first.name.as_str(), (first.seconds, first.worst_error()))
+            (format!("{}, SDIRK2", first.name).as_str(), (first.seconds, first.worst_error()))
         );
         let ends: Vec<_> = chart.series.iter().map(|series| (series.points.last(), &series.name)).collect();
         let names: Vec<_> = chart.names.iter().map(|named| (Some(&named.at), &named.name)).collect();

@@ -106,7 +106,7 @@ pub fn consolidation(results: &StudyResults<'_>, found: &Consolidation) -> Figur
         let series = Series::new(run.method.as_str(), run.points.clone());
         chart.series.push(series.style(Style::Markers).slot(slot));
     }
-    let caption = "Settlement over its final value, downward as engineers draw it.";
+    let caption = "Settlement over its final value.";
     figure_of(results, "consolidation", chart, caption)
 }
 
