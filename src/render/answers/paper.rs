@@ -147,7 +147,7 @@ mod tests {
         // The theory by its name.
         let (small_strain, large_strain) = (
             "Terzaghi's solution with compressible water",
-            "the exact large-strain solution of its own equations",
+            "Exact large-strain solution of its own equations",
         );
         assert_eq!(
             told[..3],
