@@ -5,6 +5,7 @@ use crate::case::{Case, Norm};
 use crate::golden::compare::{Difference, compare};
 use crate::golden::inputs::{CaseInputs, InputChange, Pairing};
 use crate::golden::{GoldenFile, measure_name, values_of};
+use crate::judge::blocks::outside_runs::OutsideRunFinding;
 use crate::judge::paths::{grouped, level_size, paths};
 use crate::measure::fields::{exact_samples, largest_contribution};
 use crate::measure::theory::known_reference;
@@ -45,7 +46,7 @@ pub struct LevelSeries {
 }
 
 /// The explanation of a case.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Default, Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Explanation {
     /// Carriers, the largest error first.
     pub carriers: Vec<Carrier>,
@@ -59,6 +60,8 @@ pub struct Explanation {
     pub agreeing: usize,
     /// Whether there are golden values.
     pub has_golden: bool,
+    /// How the run of another program went.
+    pub outside_run: Option<OutsideRunFinding>,
 }
 
 /// Explains a record. `focus` puts the carrier of a golden value's name first. Golden values are those beside the cases of
@@ -85,7 +88,15 @@ pub fn explain(
     let inputs = golden.map_or(Vec::new(), |golden| {
         Pairing::of(&golden.inputs.only(&record.case.label()), &CaseInputs::of([&record.case])).changes
     });
-    Ok(Explanation { carriers, levels, inputs, differences, agreeing, has_golden: golden.is_some() })
+    Ok(Explanation {
+        carriers,
+        levels,
+        inputs,
+        differences,
+        agreeing,
+        has_golden: golden.is_some(),
+        outside_run: OutsideRunFinding::new(record),
+    })
 }
 
 /// Whether two names are of one quantity and place, whatever norm and time.

@@ -19,5 +19,6 @@ pub mod race;
 pub mod score;
 pub mod soundness;
 pub mod study_check;
+pub mod study_findings;
 pub mod study_results;
 pub mod verdict;

@@ -255,7 +255,7 @@ mod tests {
     use crate::case::SolverName;
     use crate::case::quantity::Norm;
     use crate::case::quantity::Sample;
-    use crate::judge::paths::{first_measure, first_norm, paths};
+    use crate::judge::paths::{first_measure, paths};
     use oedometer_convergence::{Class, Classification, ErrorBound, OrderBand};
     use oedometer_mpm::run::integrator::IntegratorKind;
 
@@ -270,7 +270,7 @@ mod tests {
     fn class_of(records: &[Record], quantity: Quantity, reference: &str, time_factor: f64) -> Classification {
         let all = paths(records, Axis::Cells);
         let sample = if quantity == Quantity::Settlement { Sample::Surface } else { Sample::Points };
-        let norm: Norm = first_norm(quantity);
+        let norm: Norm = quantity.first_norm();
         let reference = reference.to_owned();
         let measure = Measure { quantity, sample, norm, reference, time_factor, probe: None };
         all[0].summary(&measure).classification

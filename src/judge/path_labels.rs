@@ -11,13 +11,6 @@ pub struct PathLabels {
     pub shared: String,
 }
 
-impl PathLabels {
-    /// What all share, as the end of a subtitle.
-    pub fn subtitle_end(&self) -> String {
-        if self.shared.is_empty() { String::new() } else { format!("; {}", self.shared) }
-    }
-}
-
 /// A part of a label with a long number as a study has it: `reload_modulus=1.2e7`.
 fn short(part: &str) -> String {
     let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() >= 1e5);

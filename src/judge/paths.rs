@@ -1,6 +1,7 @@
 //! Groups the records of a study into paths along an axis, with their series of errors.
 
-use crate::case::{Norm, Quantity, Sample, step_label};
+pub(crate) use crate::case::grouping::grouped;
+use crate::case::{Quantity, Sample, step_label};
 use crate::judge::explanation::place_in_kept;
 use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
@@ -12,7 +13,6 @@ use oedometer_convergence::{
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_soil::material::Material;
 use std::collections::HashMap;
-use std::hash::Hash;
 
 /// Relative errors up to this are round-off.
 pub const ROUND_OFF: f64 = 1e-12;
@@ -104,35 +104,6 @@ fn add_smaller_steps<'a>(paths: &mut [Path<'a>], records: &[&'a Record]) {
             alike.copied().filter(|record| record.step_sizes.target < SMALLER * finest.step_sizes.target);
         path.smaller_step = smaller.min_by(|a, b| a.step_sizes.target.total_cmp(&b.step_sizes.target));
     }
-}
-
-/// Groups things by a key, groups and things in their order of appearance.
-pub(crate) fn grouped<T, K: Clone + Eq + Hash>(
-    things: impl IntoIterator<Item = T>,
-    key: impl Fn(&T) -> K,
-) -> Vec<(K, Vec<T>)> {
-    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
-    let mut places: HashMap<K, usize> = HashMap::new();
-    for thing in things {
-        let key = key(&thing);
-        let place = *places.entry(key.clone()).or_insert(groups.len());
-        match groups.get_mut(place) {
-            Some((_, group)) => group.push(thing),
-            None => groups.push((key, vec![thing])),
-        }
-    }
-    groups
-}
-
-/// Items in the order of their first appearance, each once.
-pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut seen = Vec::new();
-    for item in items {
-        if !seen.contains(&item) {
-            seen.push(item);
-        }
-    }
-    seen
 }
 
 /// The times of the outputs that all paths have.
@@ -278,14 +249,9 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
     relative_error(measure.norm, computed, exact, &fine.volume)
 }
 
-/// The norm in which a quantity is reported first.
-pub fn first_norm(quantity: Quantity) -> Norm {
-    quantity.first_norm()
-}
-
 /// A quantity in its first norm, against a reference at a time factor.
 pub fn first_measure(quantity: Quantity, sample: Sample, reference: &str, time_factor: f64) -> Measure {
-    let (norm, reference) = (first_norm(quantity), reference.to_owned());
+    let (norm, reference) = (quantity.first_norm(), reference.to_owned());
     Measure { quantity, sample, norm, reference, time_factor, probe: None }
 }
 
@@ -297,7 +263,7 @@ pub fn first_error(
     reference: &str,
     time_factor: f64,
 ) -> Option<f64> {
-    let row = record.error(quantity, sample, first_norm(quantity), reference, time_factor)?;
+    let row = record.error(quantity, sample, quantity.first_norm(), reference, time_factor)?;
     Some(row.value.abs())
 }
 

@@ -1,9 +1,9 @@
 //! A study with its records, their paths and the verdicts on them: what pages are made of.
 
 use crate::case::planned::Tier;
-use crate::judge::findings::Findings;
 use crate::judge::paths::{Path, StudyPaths};
 use crate::judge::soundness;
+use crate::judge::study_findings::StudyFindings;
 use crate::judge::verdict::{Judgement, judge_paths};
 use crate::record::{Record, Status};
 use crate::study::check::Study;
@@ -97,12 +97,12 @@ impl<'a> StudyResults<'a> {
         }
     }
 
-    /// Everything that is found about the study, as plain data.
+    /// Everything that is found about the study.
     ///
     /// # Errors
     /// When a reference refuses a case.
-    pub fn findings(&self) -> Result<Findings, ExactError> {
-        Findings::new(self, Tier::Full)
+    pub fn findings(&self) -> Result<StudyFindings, ExactError> {
+        StudyFindings::new(self)
     }
 
     /// Whether every expectation is met, by records that are sound.

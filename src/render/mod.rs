@@ -30,9 +30,6 @@ pub enum RenderError {
     /// A template cannot be filled with what was found.
     #[error("a sentence of the page cannot be written: {0}")]
     Template(#[from] minijinja::Error),
-    /// An exact solution on the page refuses its time.
-    #[error(transparent)]
-    Exact(#[from] oedometer_exact::exact_error::ExactError),
     /// Two figures of one page would be written to the same file, or two sections share an anchor.
     #[error("page `{title}` uses the name `{name}` twice")]
     Duplicate {

@@ -137,6 +137,21 @@ fn unsigned_zero(text: String) -> String {
     }
 }
 
+/// A value in the unit that suits it.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    let scaled = |scale: f64| format!("{:.3e}", value / scale).parse::<f64>().unwrap_or(value);
+    let prefixes: &[(f64, &str)] = match unit {
+        "Pa" => &[(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")],
+        _ => &[],
+    };
+    if let Some((scale, name)) = prefixes.iter().find(|(scale, _)| value.abs() >= *scale) {
+        return format!("{} {name}", scaled(*scale));
+    }
+    let is_plain = (1e-3..1e4).contains(&value.abs());
+    let number = if is_plain { format!("{}", scaled(1.0)) } else { format!("{:e}", scaled(1.0)) };
+    format!("{number} {unit}").trim_end().to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,6 +228,25 @@ mod tests {
     fn machine_numbers_read_back() {
         for v in [0.1, 1.0 / 3.0, 5e-324, f64::MAX, -0.0] {
             assert_eq!(exact(v).parse::<f64>().map(f64::to_bits), Ok(v.to_bits()));
+        }
+    }
+
+    #[test]
+    fn numbers_have_the_unit_that_suits_them() {
+        for (value, unit, words) in [
+            (1e9, "Pa", "1 GPa"),
+            (9.99e8, "Pa", "999 MPa"),
+            (1e6, "Pa", "1 MPa"),
+            (-2500.0, "Pa", "-2.5 kPa"),
+            (1.0, "Pa", "1 Pa"),
+            (0.5, "Pa", "0.5 Pa"),
+            (1e-3, "m/s", "0.001 m/s"),
+            (9.9e-4, "m/s", "9.9e-4 m/s"),
+            (9999.0, "m", "9999 m"),
+            (1e4, "m", "1e4 m"),
+            (0.123_456, "", "0.1235"),
+        ] {
+            assert_eq!(with_unit(value, unit), words);
         }
     }
 }

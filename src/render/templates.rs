@@ -1,7 +1,7 @@
 //! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
 
 use crate::case::Quantity;
-use crate::render::report::{labels, setting};
+use crate::render::report::labels;
 use crate::render::{RenderError, number};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
@@ -9,32 +9,41 @@ use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 18] = [
+const TEMPLATES: [(&str, &str); 27] = [
     ("audit", include_str!("../../templates/audit.md")),
+    ("balances", include_str!("../../templates/balances.md")),
     ("changes", include_str!("../../templates/changes.md")),
+    ("cheapest", include_str!("../../templates/cheapest.md")),
     ("converges", include_str!("../../templates/converges.md")),
     ("cost", include_str!("../../templates/cost.md")),
+    ("critical-steps", include_str!("../../templates/critical-steps.md")),
     ("double-point", include_str!("../../templates/double-point.md")),
+    ("drawn", include_str!("../../templates/drawn.md")),
     ("locking", include_str!("../../templates/locking.md")),
     ("mapping-back", include_str!("../../templates/mapping-back.md")),
     ("paper", include_str!("../../templates/paper.md")),
     ("peers", include_str!("../../templates/peers.md")),
     ("printed-equations", include_str!("../../templates/printed-equations.md")),
+    ("proposed", include_str!("../../templates/proposed.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
     ("race-limits", include_str!("../../templates/race-limits.md")),
     ("race-situation", include_str!("../../templates/race-situation.md")),
+    ("race-table", include_str!("../../templates/race-table.md")),
     ("sampling", include_str!("../../templates/sampling.md")),
     ("setting", include_str!("../../templates/setting.md")),
+    ("sweep", include_str!("../../templates/sweep.md")),
     ("time-step", include_str!("../../templates/time-step.md")),
     ("verdict", include_str!("../../templates/verdict.md")),
+    ("wall-time", include_str!("../../templates/wall-time.md")),
     ("within", include_str!("../../templates/within.md")),
+    ("work", include_str!("../../templates/work.md")),
 ];
 
 /// An environment that knows every template and the filters that all share.
 pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.add_filter("amount", |value: f64, unit: String| setting::with_unit(value, &unit));
+    environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
     environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
     environment.add_filter("capital_quantity", |quantity: Serde<Quantity>| {
         labels::capitalised(labels::quantity(quantity.0))
@@ -46,7 +55,8 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("duration", duration);
     environment.add_filter("error", number::error);
     environment.add_filter("error_percent", number::percent);
-    environment.add_filter("millimetres", |metres: f64| setting::with_unit(1e3 * metres, "mm"));
+    environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
+    environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
     environment.add_filter("order", number::order);
     environment.add_filter("percent", number::rounded_percent);
     environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));
@@ -90,7 +100,8 @@ mod tests {
     fn a_template_without_its_finding_is_an_error() {
         let environment = environment().expect("templates of this program");
         // What needs no finding says the same on every page.
-        let filled = TEMPLATES.map(|(name, _)| name).into_iter().filter(|name| *name != "mapping-back");
+        let fixed = ["balances", "mapping-back", "proposed", "work"];
+        let filled = TEMPLATES.map(|(name, _)| name).into_iter().filter(|name| !fixed.contains(name));
         for name in filled.chain(["no such template"]) {
             let told = render(&environment, name, &()).expect_err(name).to_string();
             assert!(told.starts_with("a sentence of the page cannot be written: "), "{told}");

@@ -1,5 +1,7 @@
 //! What the borders of the crates cannot say: which folder of `src/` uses which.
 
+use regex_lite::Regex;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -56,49 +58,137 @@ fn a_planted_arrow_is_named() {
     assert!(upward("record", in_a_test).is_empty());
 }
 
-/// What computes: measures of records, exact solutions, fits of orders, statistics and mechanics. Names of kinds and words are
-/// no computation.
-const COMPUTING: [&str; 14] = [
-    "crate::measure",
-    "oedometer_exact::footing",
-    "oedometer_exact::solution",
-    "oedometer_exact::reference::Reference,",
-    "oedometer_exact::reference::Reference;",
-    "column_parameters",
-    "oedometer_soil::material",
-    "oedometer_convergence::{ErrorSeries",
-    "ErrorSeries",
-    "ValueSeries",
-    "classify(",
-    ".sqrt()",
-    ".median(",
-    "crate::exact",
+/// What pages may ask of values of the judge: words of an enumeration, and look-ups that return what a finding holds.
+const ACCESSORS: [&str; 12] = [
+    // Words.
+    "name",
+    "words",
+    "label",
+    "sentence",
+    // Look-ups in the findings of the race, and in a check of a study.
+    "answer",
+    "curves",
+    "error_in",
+    "families",
+    "largest_error",
+    "profiles",
+    "differences",
+    "end",
 ];
 
-/// Lines of a source of `render` that name one of `COMPUTING`, the computations that have moved to the judge.
-fn computing(source: &str) -> Vec<&str> {
+/// Mechanics, measures and statistics that `render` does not name either.
+const COMPUTING: [&str; 8] = [
+    "crate::measure",
+    "crate::exact",
+    "oedometer_exact",
+    "column_parameters",
+    "oedometer_soil::material",
+    "ErrorSeries",
+    ".sqrt()",
+    ".median(",
+];
+
+/// A source without its comments and without the tests inside it.
+fn code_of(source: &str) -> String {
     let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or(source);
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
-    code.lines().filter(is_code).filter(|line| COMPUTING.iter().any(|call| line.contains(call))).collect()
+    code.lines().filter(is_code).collect::<Vec<_>>().join("\n")
 }
 
-/// What has moved from `render` to the judge stays there; drawing has a geometry of its own. Orders along a path, the map and
-/// work against precision are still asked of the judge by `render`, and not looked for.
+/// Names of the functions that a source of the judge offers, methods among them.
+fn functions_of(source: &str) -> BTreeSet<String> {
+    let offered = Regex::new(r"pub(\([a-z]+\))? (const )?fn (\w+)").expect("a pattern");
+    offered.captures_iter(&code_of(source)).map(|found| found[3].to_owned()).collect()
+}
+
+/// Every call of a function of the judge that a source of `render` makes, but for accessors: by an imported name, by the name
+/// of an imported type or module, by its whole path, or as a method.
+fn calls_of_the_judge(source: &str, functions: &BTreeSet<String>) -> Vec<String> {
+    let code = code_of(source);
+    let import = Regex::new(r"(?m)^(pub )?use (crate::judge[^;]*);").expect("a pattern");
+    let leaf = Regex::new(r"(\w+)(\s+as\s+\w+)?\s*(,|\}|$)").expect("a pattern");
+    let uses: Vec<String> = import.captures_iter(&code).map(|found| found[2].to_owned()).collect();
+    let folder = Regex::new(r"(\w+)::\{\s*self\b").expect("a pattern");
+    let body = import.replace_all(&code, "").into_owned();
+    let ends = |line: &String| {
+        let both = leaf.captures_iter(line).chain(folder.captures_iter(line));
+        both.map(|found| found[1].to_owned()).collect::<Vec<_>>()
+    };
+    let leaves: BTreeSet<String> = uses.iter().flat_map(ends).collect();
+    let is_call = |name: &str| functions.contains(name) && !ACCESSORS.contains(&name);
+    let mut calls: Vec<String> =
+        leaves.iter().filter(|leaf| is_call(leaf)).map(|leaf| format!("use {leaf}")).collect();
+    let named = Regex::new(r"(\w+)::(\w+)").expect("a pattern");
+    for found in named.captures_iter(&body) {
+        if leaves.contains(&found[1]) && is_call(&found[2]) {
+            calls.push(found[0].to_owned());
+        }
+    }
+    let whole = Regex::new(r"crate::judge(::\w+)*::(\w+)").expect("a pattern");
+    calls.extend(
+        whole.captures_iter(&body).filter(|found| is_call(&found[2])).map(|found| found[0].to_owned()),
+    );
+    // Where no value of the judge is named there is no method of one.
+    if code.contains("crate::judge") {
+        let method = Regex::new(r"\.(\w+)\(").expect("a pattern");
+        calls.extend(
+            method.captures_iter(&body).filter(|found| is_call(&found[1])).map(|found| found[0].to_owned()),
+        );
+    }
+    calls
+}
+
+/// Pages, tables and the terminal take values that the judge has made: `render` calls none of its functions, and neither
+/// measures nor solves anything. Drawing has a geometry of its own.
 #[test]
-fn what_moved_to_the_judge_is_not_computed_in_render() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/render");
+fn render_prints_what_the_judge_has_found_and_asks_it_nothing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let read = |path: &PathBuf| fs::read_to_string(path).expect("a source");
+    let judge = sources_below(&root.join("judge"));
+    let judge = judge.iter().filter(|path| !is_test_module(path));
+    let functions: BTreeSet<String> = judge.flat_map(|path| functions_of(&read(path))).collect();
+    assert!(functions.len() > 100, "{}", functions.len());
     let mut wrong = Vec::new();
-    for path in sources_below(&root) {
-        let inside = path.strip_prefix(&root).expect("below render");
-        if inside.starts_with("chart") || is_test_module(inside) {
+    for path in sources_below(&root.join("render")) {
+        let inside = path.strip_prefix(&root).expect("below src");
+        if is_test_module(inside) {
             continue;
         }
-        let source = fs::read_to_string(&path).expect("a source");
-        wrong.extend(computing(&source).iter().map(|line| format!("{}: {line}", inside.display())));
+        let source = read(&path);
+        let mut found = calls_of_the_judge(&source, &functions);
+        if !inside.starts_with("render/chart") {
+            let code = code_of(&source);
+            let lines = code.lines().filter(|line| COMPUTING.iter().any(|word| line.contains(word)));
+            found.extend(lines.map(str::to_owned));
+        }
+        wrong.extend(found.iter().map(|call| format!("{}: {call}", inside.display())));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    let planted = "use crate::measure::statistics::median;\n// a median\nlet middle = (low * high).sqrt();\n";
-    assert_eq!(computing(planted).len(), 2);
+}
+
+#[test]
+fn a_planted_call_of_the_judge_is_named_however_it_is_made() {
+    let functions =
+        functions_of("pub fn compare() {}\npub(crate) const fn of() {}\npub fn name(self) {}\nfn own() {}\n");
+    let named = |functions: &BTreeSet<String>| functions.iter().cloned().collect::<Vec<_>>().join(" ");
+    assert_eq!(named(&functions), "compare name of");
+    for (planted, call) in [
+        ("use crate::judge::peers::{self, Peer};\nfn f() { peers::compare() }\n", "peers::compare"),
+        ("use crate::judge::{\n    a::Sweep,\n    b::X,\n};\nfn f() { x.map(Sweep::of) }\n", "Sweep::of"),
+        ("use crate::judge::peers::compare;\n", "use compare"),
+        ("use crate::judge::peers::compare as with;\n", "use compare"),
+        ("fn f() { crate::judge::peers::compare() }\n", "crate::judge::peers::compare"),
+        ("use crate::judge::Peer;\nfn f(peer: &Peer) { peer.compare() }\n", ".compare("),
+    ] {
+        assert_eq!(calls_of_the_judge(planted, &functions), [call], "{planted}");
+    }
+    for sound in [
+        "use crate::judge::compare::Peer;\nfn f(peer: &Peer) { Chart::of(peer.name()) }\n",
+        "fn f() { x.compare() }\n",
+        "#[cfg(test)]\nmod tests {\n    use crate::judge::peers::compare;\n}\n",
+    ] {
+        assert!(calls_of_the_judge(sound, &functions).is_empty(), "{sound}");
+    }
 }
 
 /// The tables of equations and steps on the crate's front page name functions that are there.

@@ -4,8 +4,11 @@ use crate::campaign::runner::records_of;
 use crate::case::planned::Tier;
 use crate::case::quantity::Norm;
 use crate::golden::compare::{Change, Difference};
-use crate::judge::blocks::outside_runs::outside_runs;
+use crate::judge::blocks::checks::RecordChecks;
+use crate::judge::blocks::outside_runs::{OutsideRunFinding, outside_runs};
+use crate::judge::blocks::stability::critical_steps;
 use crate::judge::blocks::timing::timed_runs;
+use crate::judge::blocks::work::WorkFinding;
 use crate::judge::study_results::StudyResults;
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
@@ -153,7 +156,7 @@ fn every_error_stands_under_its_time_beside_its_reference_quantity_and_sample() 
 #[test]
 fn every_check_and_group_has_its_own_number() {
     for record in records() {
-        let table = measures::checks_table(&record);
+        let table = measures::checks_table(&record, &RecordChecks::new(&record));
         let (start, last) = (record.start.expect("a start"), *record.balance.last().expect("an output"));
         let expected = [
             ("points at the start", Cell::Count(start.points as u64)),
@@ -189,7 +192,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         probes: Vec::new(),
         asymmetry: None,
     });
-    let table = runs::critical_steps(&[record.clone()]);
+    let table = runs::critical_steps(&critical_steps(&[record.clone()]));
     for (header, value) in [
         ("predicted", Cell::Error(0.011)),
         ("observed", Cell::Error(0.013)),
@@ -273,7 +276,9 @@ fn cost_and_the_figure_of_error_over_work_have_the_numbers_of_their_cases() {
         meant.expect("measured").value
     };
     let (mut tables, mut figures) = (0, 0);
-    for block in cost::work_blocks(&results, &timed_runs(&results)) {
+    for block in cost::work_blocks("s", &WorkFinding::new(&results).expect("errors"), &timed_runs(&results))
+        .expect("filled")
+    {
         match block {
             Block::Table(table) => {
                 tables += 1;
@@ -338,7 +343,7 @@ fn times_of_an_attached_run_are_the_least_and_the_median_and_the_processor_s_own
     ] {
         assert_eq!(*under(&table, 0, header), cell, "{header}");
     }
-    let notes = runs::attached_notes(&record).join("\n");
+    let notes = runs::attached_notes(&record, OutsideRunFinding::new(&record).as_ref()).join("\n");
     for said in [
         "wall time at least 2 s, median 3 s of 3 runs",
         "processor 2.5 s",

@@ -3,7 +3,9 @@
 
 use crate::campaign::runner::records_of;
 use crate::golden::{GoldenError, GoldenFile};
+use crate::judge::blocks::checks::RecordChecks;
 use crate::judge::study_check::StudyCheck;
+use crate::judge::study_findings::AllStudies;
 use crate::judge::verdict::differing_repeats;
 use crate::record::{Record, WallSample};
 use crate::study::check::Study;
@@ -284,7 +286,7 @@ fn figure_told(svg: &str) -> String {
 }
 
 fn page_told(results: &StudyResults<'_>) -> String {
-    let page = study_page(results).expect("a page");
+    let page = study_page(&results.findings().expect("sound cases")).expect("a page");
     let mut text = render_markdown(&page).expect("Markdown");
     for (name, svg) in figures(&page).expect("figures") {
         writeln!(text, "\n### {name}\n{}", figure_told(&svg)).expect("memory");
@@ -305,7 +307,8 @@ fn pages_of_studies_are_what_they_were() {
 #[test]
 fn the_page_in_html_has_what_the_page_in_markdown_has() {
     let (study, records) = (study(MESH), records(MESH));
-    let page = study_page(&StudyResults::new(&study, &records, Tier::Ci)).expect("a page");
+    let results = StudyResults::new(&study, &records, Tier::Ci);
+    let page = study_page(&results.findings().expect("sound cases")).expect("a page");
     let html = render_html(&page).expect("HTML");
     let svg = Regex::new(r"(?s)<svg.*?</svg>").expect("a pattern");
     assert_snapshot("page_html", &without_round_off(&svg.replace_all(&html, "<svg/>")));
@@ -326,9 +329,10 @@ fn the_first_pages_are_what_they_were() {
         cases_run: 17,
         left_out: 5,
     };
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
+    let all = AllStudies::new(&results).expect("sound cases");
+    let answers = Answers { all: &all, changes: Some(&[]), making: &making, findings: &findings };
     let front = answer_page(&answers).expect("a page");
-    let mut text = render_markdown(&index_page(&results)).expect("Markdown");
+    let mut text = render_markdown(&index_page(&all)).expect("Markdown");
     text += &render_markdown(&front).expect("Markdown");
     for (name, svg) in figures(&front).expect("figures") {
         writeln!(text, "\n### {name}\n{}", figure_told(&svg)).expect("memory");
@@ -397,7 +401,12 @@ fn measures_of_single_runs_are_told_as_they_were() {
     for study_text in [MESH, STEP, STIFF, LAYER, FOOTING, LARGE, SETS, FAILING] {
         for record in records(study_text).iter().step_by(5) {
             let label = record.case.label();
-            writeln!(text, "## {label}\n{}", measures::table_of(record).expect("a table")).expect("memory");
+            writeln!(
+                text,
+                "## {label}\n{}",
+                measures::table_of(record, &RecordChecks::new(record)).expect("a table")
+            )
+            .expect("memory");
         }
     }
     assert_snapshot("measures_of_runs", &without_round_off(&text));

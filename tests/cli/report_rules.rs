@@ -3,8 +3,9 @@
 
 use crate::program::{call, folder_with};
 use oedometer::{
-    Answers, Block, Making, Page, RaceFindings, Record, ReportFindings, RunOptions, Study, StudyResults,
-    StudySource, Table, Tier, answer_page, matrix_page, render_html, render_markdown, run_study, study_page,
+    AllStudies, Answers, Block, Making, Page, RaceFindings, Record, ReportFindings, RunOptions, Study,
+    StudyResults, StudySource, Table, Tier, answer_page, matrix_page, render_html, render_markdown,
+    run_study, study_page,
 };
 use std::fs;
 use std::sync::LazyLock;
@@ -87,7 +88,8 @@ fn page_of(all: &[&(Study, Vec<Record>)]) -> Page {
         all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
     let findings = ReportFindings::new(&results).expect("sound cases");
     let making = Making::default();
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
+    let all = AllStudies::new(&results).expect("sound cases");
+    let answers = Answers { all: &all, changes: Some(&[]), making: &making, findings: &findings };
     answer_page(&answers).expect("a page")
 }
 
@@ -149,7 +151,7 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     assert!(matrix.contains("href=\"studies/race-plate.html#figure-race-plate-race-all\" title="));
     assert!(matrix.contains("\">MPM</abbr>"));
     let results = StudyResults::new(&RACE.0, &RACE.1, Tier::Full);
-    let situation = study_page(&results).expect("a page");
+    let situation = study_page(&results.findings().expect("sound cases")).expect("a page");
     assert!(render_html(&situation).expect("a page").contains("id=\"figure-race-plate-race-all\""));
 }
 

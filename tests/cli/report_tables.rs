@@ -5,9 +5,9 @@
 
 use crate::program::assert_snapshot;
 use oedometer::{
-    Answers, Block, GoldenFile, Making, Page, Provenance, Record, ReportFindings, RunOptions, Study,
-    StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures, junit, measures,
-    render_html, render_markdown, run_study, study_page, values_of, verdicts,
+    AllStudies, Answers, Block, GoldenFile, Making, Page, Provenance, Record, RecordChecks, ReportFindings,
+    RunOptions, Study, StudyCheck, StudyResults, StudySource, Table, Tier, WallSample, answer_page, figures,
+    junit, measures, render_html, render_markdown, run_study, study_page, values_of, verdicts,
 };
 
 const STUDY: &str = r#"
@@ -58,7 +58,8 @@ fn small_study() -> (Study, Vec<Record>) {
 
 fn page_of_small() -> Page {
     let (study, records) = small_study();
-    study_page(&StudyResults::new(&study, &records, Tier::Full)).expect("a page")
+    let results = StudyResults::new(&study, &records, Tier::Full);
+    study_page(&results.findings().expect("sound cases")).expect("a page")
 }
 
 fn tables(blocks: &[Block]) -> Vec<&Table> {
@@ -117,7 +118,8 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     let results = [StudyResults::new(&study, &records, Tier::Full)];
     let making = making();
     let findings = ReportFindings::new(&results).expect("sound cases");
-    let answers = Answers { results: &results, changes: Some(&[]), making: &making, findings: &findings };
+    let all = AllStudies::new(&results).expect("sound cases");
+    let answers = Answers { all: &all, changes: Some(&[]), making: &making, findings: &findings };
     let page = answer_page(&answers).expect("a page");
     let markdown = render_markdown(&page).expect("a page");
     assert!(markdown.contains("[`small`](studies/small.md)"), "{markdown}");
@@ -127,7 +129,8 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
     let alone: Vec<Record> = records.iter().take(1).cloned().collect();
     let results = [StudyResults::new(&study, &alone, Tier::Full)];
     let findings = ReportFindings::new(&results).expect("sound cases");
-    let answers = Answers { results: &results, changes: None, findings: &findings, ..answers };
+    let all = AllStudies::new(&results).expect("sound cases");
+    let answers = Answers { all: &all, changes: None, findings: &findings, ..answers };
     let page = answer_page(&answers).expect("a page");
     assert!(page.sections.is_empty(), "nothing is asked without runs to answer from");
 }
@@ -135,7 +138,10 @@ fn the_answer_page_answers_from_records_and_asks_nothing_else() {
 #[test]
 fn the_table_of_one_case_reads_as_it_did() {
     let (_, records) = small_study();
-    assert_snapshot("solve_table", &measures::table_of(&records[4]).expect("a table"));
+    assert_snapshot(
+        "solve_table",
+        &measures::table_of(&records[4], &RecordChecks::new(&records[4])).expect("a table"),
+    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
 pub mod contender;
+pub mod grouping;
 pub mod keys;
 pub mod label;
 pub mod limits;

@@ -10,6 +10,7 @@ use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
+use crate::judge::blocks::checks::RecordChecks;
 use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
@@ -91,7 +92,7 @@ fn print_one(record: &Record, format: SolveFormat) -> anyhow::Result<()> {
     match format {
         SolveFormat::Csv => print_data(&csv_of(ERROR_COLUMNS, csv_rows(record))?),
         SolveFormat::Json => print_data(&json_of(&SolveJson::of(record))?),
-        SolveFormat::Table => print_data(&measures::table_of(record)?),
+        SolveFormat::Table => print_data(&measures::table_of(record, &RecordChecks::new(record))?),
     }
 }
 

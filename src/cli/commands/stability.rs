@@ -6,6 +6,7 @@ use crate::cli::commands::run::{jobs_of, tell_warnings};
 use crate::cli::commands::solve::SolveFormat;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data};
+use crate::judge::blocks::stability::critical_steps;
 use crate::record::{Probe, Record};
 use crate::render::tables::runs;
 use crate::study::check::Purpose;
@@ -61,7 +62,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         return Err(error.into());
     }
     match arguments.format {
-        SolveFormat::Table => print_data(&(runs::critical_steps(&report.records).to_text()? + "\n"))?,
+        SolveFormat::Table => {
+            print_data(&(runs::critical_steps(&critical_steps(&report.records)).to_text()? + "\n"))?;
+        }
         SolveFormat::Csv => print_data(&csv_of(COLUMNS, report.records.iter().flat_map(rows_of))?)?,
         SolveFormat::Json => {
             let rows: Vec<_> = report.records.iter().map(StabilityJson::of).collect();

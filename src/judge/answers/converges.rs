@@ -3,7 +3,8 @@
 
 use crate::case::contender::PAPERS;
 use crate::case::{Case, Quantity, Sample};
-use crate::judge::answers::{CONVERGENCE, QUOTED_CELLS, is_settled, study_with_most};
+use crate::judge::answers::{CONVERGENCE, QUOTED_CELLS, study_with_most};
+use crate::judge::blocks::error_figure::ErrorFigure;
 use crate::judge::paths::{Path, first_measure, grouped, shown_time};
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::largest;
@@ -65,6 +66,9 @@ pub struct ColumnFinding {
     pub better: Option<BetterMethod>,
     /// The coarsest mesh on which each method's pressure is within 1 %, the cheapest first.
     pub within: Vec<CoarsestWithin>,
+    /// The error of the pressure over the mesh.
+    #[serde(default)]
+    pub figure: Option<ErrorFigure>,
 }
 
 /// A method's orders.
@@ -151,17 +155,17 @@ fn refined_column(results: &[StudyResults<'_>], fits: &dyn Fn(&Case) -> bool) ->
 }
 
 /// Methods with their runs on the meshes of one column.
-struct Refined<'a> {
-    study: &'a str,
+struct Refined<'b, 'a> {
+    results: &'b StudyResults<'a>,
     /// Methods with their runs from coarse to fine.
     methods: Vec<(String, Path<'a>)>,
     time_factor: f64,
     reference: &'static str,
 }
 
-impl<'a> Refined<'a> {
+impl<'b, 'a> Refined<'b, 'a> {
     /// The plain runs of a study in one dimension, on the column of the first of them.
-    fn new(results: &StudyResults<'a>, fits: impl Fn(&Case) -> bool) -> Option<Self> {
+    fn new(results: &'b StudyResults<'a>, fits: impl Fn(&Case) -> bool) -> Option<Self> {
         let mut paths = results.refined(Axis::Cells);
         paths.retain(|path| {
             let case = &path.records[0].case;
@@ -175,7 +179,7 @@ impl<'a> Refined<'a> {
                 && case.points_per_cell == first.case.points_per_cell
         });
         let (time_factor, reference) = (shown_time(&paths)?, results.study.references.first()?.name());
-        let mut refined = Self { study: &results.study.name, methods: Vec::new(), time_factor, reference };
+        let mut refined = Self { results, methods: Vec::new(), time_factor, reference };
         for (method, paths) in grouped(paths, |path| path.records[0].case.method.to_string()) {
             // Of several integrators the first with most orders that are settled.
             let worth = |path: &Path<'_>| refined.worth(path);
@@ -208,13 +212,14 @@ impl<'a> Refined<'a> {
             largest_error: self.largest_error(path),
         };
         ColumnFinding {
-            study: self.study.to_owned(),
+            study: self.results.study.name.clone(),
             final_strain: case.scene.is_large_strain().then(strain),
             reference: self.reference.to_owned(),
             time_factor: self.time_factor,
             method: method.clone(),
             is_papers: method == PAPERS,
             is_settled: orders.iter().all(|order| order.is_settled),
+            figure: ErrorFigure::over_the_mesh(self.results, MAIN[0], self.time_factor),
             orders,
             methods: self.methods.iter().map(of_method).collect(),
             better: self.better(),
@@ -229,7 +234,7 @@ impl<'a> Refined<'a> {
             sample: measured.1,
             class: found.class,
             order: found.order,
-            is_settled: is_settled(found.class),
+            is_settled: found.class.is_settled(),
             error: self.error(path, measured, QUOTED_CELLS),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::case::contender::PAPERS;
 use crate::judge::answers::study_with_most;
+use crate::judge::blocks::work::WallTimeFinding;
 use crate::judge::comparison::peers;
 use crate::judge::comparison::work_precision::{TimedRun, WorkPrecision};
 use crate::judge::study_results::StudyResults;
@@ -17,6 +18,9 @@ pub struct CostFinding {
     pub cheapest: Vec<CheapestRun>,
     /// Other programs, where they solve the same column.
     pub peers: Option<PeersOnEqualCells>,
+    /// Every timed run by error and wall time.
+    #[serde(default)]
+    pub wall_time: WallTimeFinding,
 }
 
 /// The cheapest run within a tolerance.
@@ -68,9 +72,7 @@ pub struct PeerAhead {
 }
 
 /// The study with most timed runs, and these.
-pub fn timed_study<'b, 'a>(
-    results: &'b [StudyResults<'a>],
-) -> Option<(&'b StudyResults<'a>, WorkPrecision<'a>)> {
+fn timed_study<'b, 'a>(results: &'b [StudyResults<'a>]) -> Option<(&'b StudyResults<'a>, WorkPrecision<'a>)> {
     study_with_most(results, |one| {
         let reference = one.study.references.first().filter(|_| one.study.timing_repeats > 1)?;
         let precision = WorkPrecision::of(one.records, reference.name())?;
@@ -89,6 +91,7 @@ impl CostFinding {
         Some(Self {
             study: one.study.name.clone(),
             cheapest: cheapest.collect(),
+            wall_time: WallTimeFinding::new(&precision),
             peers: if is_shared { PeersOnEqualCells::new(&precision) } else { None },
         })
     }

@@ -12,7 +12,6 @@ pub mod time_step;
 use crate::case::{Quantity, Sample};
 use crate::judge::race::RaceFindings;
 use crate::judge::study_results::StudyResults;
-use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,11 +26,6 @@ pub const CONVERGENCE: [(Quantity, Sample); 4] = [
     (Quantity::EffectiveStress, Sample::Points),
     (Quantity::Settlement, Sample::Surface),
 ];
-
-/// Whether a series has an order that no longer changes from mesh to mesh.
-pub fn is_settled(class: Class) -> bool {
-    matches!(class, Class::Asymptotic | Class::Superconvergent)
-}
 
 /// Everything that a report of several studies says: the race, where there was one, and the answer to each question that the
 /// records answer.

@@ -4,6 +4,7 @@
 use crate::case::contender::PAPERS;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::answers::QUOTED_CELLS;
+use crate::judge::blocks::profiles::{Consolidation, Isochrones};
 use crate::judge::paths::first_error;
 use crate::judge::published_equations::{LARGE_STRAIN_LOAD, PublishedEquations};
 use crate::judge::study_results::StudyResults;
@@ -20,8 +21,22 @@ use serde::{Deserialize, Serialize};
 pub struct PaperFinding {
     /// Figs 3 and 4, as far as there are runs of them.
     pub figures: Vec<PaperFigure>,
+    /// The curves of each, with theory's.
+    #[serde(default)]
+    pub curves: Vec<PaperCurves>,
     /// The printed equations against Xie & Leo's solution, with Fig. 4.
     pub printed: Option<PublishedEquations>,
+}
+
+/// The curves of one of the paper's columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PaperCurves {
+    /// Number of the figure.
+    pub number: u32,
+    /// Pressure over depth.
+    pub isochrones: Isochrones,
+    /// Degree of consolidation, beside other methods.
+    pub consolidation: Consolidation,
 }
 
 /// The pressure of one of the paper's columns.
@@ -44,19 +59,19 @@ pub struct PaperFigure {
 }
 
 /// The run of one of the paper's figures.
-pub struct PaperRun<'b, 'a> {
-    /// Number of the figure.
-    pub number: u32,
-    /// The study.
-    pub results: &'b StudyResults<'a>,
-    /// The run.
-    pub record: &'a Record,
+struct PaperRun<'b, 'a> {
+    number: u32,
+    results: &'b StudyResults<'a>,
+    record: &'a Record,
 }
 
 /// The runs of Fig. 3, at small strain, and of Fig. 4, at large strain.
-pub fn paper_runs<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<PaperRun<'b, 'a>> {
+fn paper_runs<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<PaperRun<'b, 'a>> {
     [3, LARGE_STRAIN_FIGURE].into_iter().filter_map(|number| PaperRun::new(number, results)).collect()
 }
+
+/// Methods of a figure of consolidation, the paper's first.
+const MOST_METHODS: usize = 3;
 
 /// Number of the figure at large strain.
 const LARGE_STRAIN_FIGURE: u32 = 4;
@@ -81,8 +96,32 @@ impl<'b, 'a> PaperRun<'b, 'a> {
         all.reduce(|best, next| if outputs(&next) > outputs(&best) { next } else { best })
     }
 
+    /// The run with those of other methods that differ in nothing else.
+    fn beside(&self) -> Vec<&'a Record> {
+        let mut shown = vec![self.record];
+        for record in self.results.records {
+            let mut same = record.case.clone();
+            same.method = self.record.case.method;
+            let is_new = shown.iter().all(|other| other.case.method != record.case.method);
+            let is_sound = record.status == Status::Ok;
+            if is_new && is_sound && same == self.record.case && shown.len() < MOST_METHODS {
+                shown.push(record);
+            }
+        }
+        shown
+    }
+
+    fn curves(&self) -> Result<PaperCurves, ExactError> {
+        let own = self.results.study.references[0];
+        Ok(PaperCurves {
+            number: self.number,
+            isochrones: Isochrones::new(self.record, own)?,
+            consolidation: Consolidation::new(&self.beside(), own)?,
+        })
+    }
+
     /// Name of the scene's own reference.
-    pub fn reference(&self) -> &'static str {
+    fn reference(&self) -> &'static str {
         self.results.study.references[0].name()
     }
 }
@@ -129,7 +168,8 @@ impl PaperFinding {
         };
         let is_large = runs.iter().any(|run| run.number == LARGE_STRAIN_FIGURE);
         let printed = if is_large { Some(PublishedEquations::new()?) } else { None };
-        Ok(Some(Self { figures: runs.iter().filter_map(figure).collect(), printed }))
+        let curves = runs.iter().map(PaperRun::curves).collect::<Result<_, _>>()?;
+        Ok(Some(Self { figures: runs.iter().filter_map(figure).collect(), curves, printed }))
     }
 }
 

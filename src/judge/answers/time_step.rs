@@ -1,7 +1,7 @@
 //! What does the time step change? The order in the step, what it leaves of the error, and from where on it is unstable.
 
 use crate::case::{Quantity, Sample, step_label};
-use crate::judge::answers::{is_settled, study_with_most};
+use crate::judge::answers::study_with_most;
 use crate::judge::path_labels::path_labels;
 use crate::judge::paths::{Path, first_measure, grouped, shown_time};
 use crate::judge::study_results::StudyResults;
@@ -102,7 +102,7 @@ impl TimeStepFinding {
         let orders = orders.into_iter().map(|((_, rounded), rows)| StepOrder {
             class: rows[0].class,
             order: rounded.map(|hundredths| f64::from_bits(hundredths) / 100.0),
-            is_settled: is_settled(rows[0].class),
+            is_settled: rows[0].class.is_settled(),
             runs: rows.iter().map(|row| row.label.clone()).collect(),
         });
         let unstable = rows.iter().filter_map(|row| {

@@ -2,7 +2,9 @@
 //! move, start checks, balances and dimensionless groups.
 
 use crate::case::quantity::{Quantity, Sample};
+use crate::judge::blocks::number::Number;
 use crate::judge::paths::first_measure;
+use crate::judge::soundness;
 use crate::judge::study_results::StudyResults;
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
@@ -20,12 +22,12 @@ pub struct MeasureFinding {
     pub name: String,
     /// Time factor; `None` for a measure of the whole run.
     pub time_factor: Option<f64>,
-    /// What was found; `None` where it is not finite.
-    pub found: Option<f64>,
+    /// What was found.
+    pub found: Number,
     /// What is exact.
     pub exact: f64,
     /// The error, relative where the exact value is not zero.
-    pub error: Option<f64>,
+    pub error: Number,
 }
 
 /// The worst of a check over the runs of a study.
@@ -33,8 +35,8 @@ pub struct MeasureFinding {
 pub struct WorstCheck {
     /// What is checked.
     pub what: String,
-    /// Value; `None` where it is not finite.
-    pub value: Option<f64>,
+    /// Value.
+    pub value: Number,
     /// Largest size that passes.
     pub bound: Option<f64>,
     /// Whether it is within its bound; a check without one holds.
@@ -71,16 +73,15 @@ pub struct EndFinding {
 
 /// One finding per case and measure.
 pub fn measures(records: &[Record]) -> Vec<MeasureFinding> {
-    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let of_record = |record: &Record| {
         let case = record.case.label();
         let finding = |row: &MeasureRow| MeasureFinding {
             case: case.clone(),
             name: row.name.clone(),
             time_factor: row.time_factor,
-            found: finite(row.found),
+            found: Number(row.found),
             exact: row.exact,
-            error: finite(row.error()),
+            error: Number(row.error()),
         };
         worst_of(record).into_iter().map(finding).collect::<Vec<_>>()
     };
@@ -104,7 +105,7 @@ impl WorstCheck {
     fn new(check: &RecordCheck) -> Self {
         Self {
             what: check.what.to_owned(),
-            value: Some(check.value).filter(|value| value.is_finite()),
+            value: Number(check.value),
             bound: check.bound,
             holds: check.holds(),
             unjudged: check.unjudged.to_owned(),
@@ -113,7 +114,7 @@ impl WorstCheck {
 }
 
 /// The worst of every check of some records, in the order of the checks.
-pub fn checks_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<WorstCheck> {
+fn checks_of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<WorstCheck> {
     record_checks::worst_of(records).iter().map(WorstCheck::new).collect()
 }
 
@@ -122,8 +123,29 @@ pub fn worst_checks(records: &[Record]) -> Vec<WorstCheck> {
     checks_of(records.iter().filter(|record| record.status == Status::Ok))
 }
 
+/// The checks and groups of one record, and what they object to.
+pub struct RecordChecks {
+    /// Every check, at its worst output.
+    pub checks: Vec<WorstCheck>,
+    /// Dimensionless groups.
+    pub groups: Vec<GroupFinding>,
+    /// What cannot be right, in sentences.
+    pub complaints: Vec<String>,
+}
+
+impl RecordChecks {
+    /// Those of a record.
+    pub fn new(record: &Record) -> Self {
+        Self {
+            checks: checks_of([record]),
+            groups: largest_groups(std::slice::from_ref(record)),
+            complaints: soundness::complaints_of_run(record),
+        }
+    }
+}
+
 /// The dimensionless groups of a record.
-pub fn groups_of(record: &Record) -> [(&'static str, f64); 3] {
+fn groups_of(record: &Record) -> [(&'static str, f64); 3] {
     let groups = &record.groups;
     [
         ("storage n E_oed/K_w", groups.storage),

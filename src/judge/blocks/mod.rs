@@ -1,27 +1,35 @@
 //! What the blocks of a study's page print, block by block: every number is computed here and `render` only writes it.
 
 pub mod checks;
+pub mod drawn;
+pub mod error_figure;
 pub mod fields;
-pub mod floors;
+pub mod number;
 pub mod outside_runs;
 pub mod profiles;
+pub mod race;
+pub mod refinement;
 pub mod setting;
 pub mod soil_map;
+pub mod stability;
 pub mod timing;
+pub mod work;
 
 use crate::judge::study_results::StudyResults;
-use crate::measure::statistics::larger;
 use checks::{EndFinding, GroupFinding, MeasureFinding, WorstCheck};
 use fields::{FieldsFinding, LoadCurves};
 use oedometer_exact::ExactError;
 use outside_runs::OutsideRunFinding;
 use profiles::ProfilesFinding;
+use race::RaceBlock;
+use refinement::RefinementFinding;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use setting::SettingFinding;
 use soil_map::MapFinding;
-use std::collections::BTreeMap;
+use stability::StabilityFinding;
 use timing::TimingFinding;
+use work::{WallTimeFinding, WorkFinding};
 
 /// A point of a line, `[x, y]`.
 pub type Point = (f64, f64);
@@ -38,6 +46,12 @@ pub struct StudyBlocks {
     pub fields: Option<FieldsFinding>,
     /// Load over settlement of a footing.
     pub loads: Option<LoadCurves>,
+    /// Errors along every axis that is refined.
+    pub refinements: Vec<RefinementFinding>,
+    /// A situation of the race.
+    pub race: Option<RaceBlock>,
+    /// Critical steps, predicted and observed.
+    pub stability: Option<StabilityFinding>,
     /// How each case ended, where the study expects how.
     pub ends: Vec<EndFinding>,
     /// Measures beside the errors, the worst output of each run.
@@ -48,6 +62,10 @@ pub struct StudyBlocks {
     pub groups: Vec<GroupFinding>,
     /// Wall times of runs that had the machine to themselves.
     pub timing: Vec<TimingFinding>,
+    /// Error over counted work.
+    pub work: Option<WorkFinding>,
+    /// Error over wall time, of a study of several integrators.
+    pub wall_time: Option<WallTimeFinding>,
     /// Methods over a map of soils.
     pub map: Option<MapFinding>,
     /// Runs of other programs.
@@ -67,40 +85,18 @@ impl StudyBlocks {
             profiles: if drawn { ProfilesFinding::new(results)? } else { None },
             fields: if drawn { FieldsFinding::new(results)? } else { None },
             loads: if drawn { LoadCurves::new(results) } else { None },
+            refinements: if drawn { RefinementFinding::along_all_axes(results) } else { Vec::new() },
+            race: RaceBlock::new(results),
+            stability: StabilityFinding::new(results.records),
             ends: checks::ends(results),
             measures: checks::measures(results.records),
             checks: checks::worst_checks(results.records),
             groups: checks::largest_groups(results.records),
             timing: timing::timed_runs(results),
+            work: WorkFinding::new(results).filter(|_| drawn),
+            wall_time: WallTimeFinding::of_study(results),
             map: MapFinding::new(&soil_map::soils_of(results)).filter(|_| drawn),
             outside_runs: outside_runs::outside_runs(results.records),
         })
     }
-}
-
-/// A reference over all studies of a report.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UsedReference {
-    /// Name.
-    pub name: String,
-    /// Most terms of its series.
-    pub terms: usize,
-    /// Largest bound of what its series leaves out, over the load.
-    pub tail_bound: f64,
-}
-
-/// The references of all records by name.
-pub fn used_references(results: &[StudyResults<'_>]) -> Vec<UsedReference> {
-    let mut used: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
-    for reference in results.iter().flat_map(|one| one.records).flat_map(|record| &record.references) {
-        let (terms, tail_bound) = used.entry(reference.name.as_str()).or_default();
-        *terms = (*terms).max(reference.terms);
-        *tail_bound = larger(*tail_bound, reference.tail_bound);
-    }
-    let used = used.into_iter().map(|(name, (terms, tail_bound))| UsedReference {
-        name: name.to_owned(),
-        terms,
-        tail_bound,
-    });
-    used.collect()
 }

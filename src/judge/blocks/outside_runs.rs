@@ -21,6 +21,9 @@ pub struct OutsideRunFinding {
     pub skipped: bool,
     /// Who made it.
     pub made_by: String,
+    /// Runs that were timed.
+    #[serde(default)]
+    pub timed: usize,
     /// Shortest wall time, s.
     pub least_wall: Option<f64>,
     /// Median of the wall times, s.
@@ -31,6 +34,9 @@ pub struct OutsideRunFinding {
     pub memory: Option<f64>,
     /// Median of the times that the program reports, s.
     pub reported: Option<f64>,
+    /// Largest load of the machine beside it.
+    #[serde(default)]
+    pub load: Option<f64>,
     /// Largest relative difference among its repeats.
     pub repeats_differ_by: Option<f64>,
     /// Whether it took so much longer than its processor time that the machine was busy or it waited.
@@ -43,7 +49,8 @@ pub fn outside_runs(records: &[Record]) -> Vec<OutsideRunFinding> {
 }
 
 impl OutsideRunFinding {
-    fn new(record: &Record) -> Option<Self> {
+    /// How the run of a record went; `None` for a run of this program.
+    pub fn new(record: &Record) -> Option<Self> {
         let about = record.outside_run()?;
         let wall = over(&record.wall, |sample| Some(sample.seconds));
         let median = |field| over(&record.wall, field).map(|spread| spread.median);
@@ -53,11 +60,13 @@ impl OutsideRunFinding {
             failed: record.status.failure().is_some(),
             skipped: record.status.is_skipped(),
             made_by: about.made_by().replace('`', ""),
+            timed: wall.map_or(0, |wall| wall.count),
             least_wall: wall.map(|wall| wall.minimum),
             median_wall: wall.map(|wall| wall.median),
             processor: median(|sample| sample.cpu_seconds),
             memory: over(&record.wall, megabytes).map(|memory| memory.maximum),
             reported: median(|sample| sample.own_seconds),
+            load: over(&record.wall, |sample| sample.load).map(|load| load.maximum),
             repeats_differ_by: about.repeats_differ_by,
             busy: is_busy(&record.wall),
         })
@@ -65,18 +74,35 @@ impl OutsideRunFinding {
 }
 
 /// The spread of a quantity over the samples that have it.
-pub fn over(samples: &[WallSample], field: fn(&WallSample) -> Option<f64>) -> Option<WallSpread> {
+fn over(samples: &[WallSample], field: fn(&WallSample) -> Option<f64>) -> Option<WallSpread> {
     spread(&samples.iter().filter_map(field).collect::<Vec<_>>())
 }
 
 /// Memory of a run, MB.
-pub fn megabytes(sample: &WallSample) -> Option<f64> {
+fn megabytes(sample: &WallSample) -> Option<f64> {
     sample.peak_memory.map(|bytes| 1e-6 * bytes as f64)
 }
 
 /// Whether the wall times of a run are far above its processor times.
-pub fn is_busy(samples: &[WallSample]) -> bool {
+fn is_busy(samples: &[WallSample]) -> bool {
     let wall = over(samples, |sample| Some(sample.seconds));
     wall.zip(over(samples, |sample| sample.cpu_seconds))
         .is_some_and(|(wall, cpu)| wall.median > BUSY * cpu.median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_is_busy_where_its_wall_time_is_far_above_the_processors() {
+        let sample = |seconds: f64, cpu: Option<f64>| WallSample {
+            seconds,
+            cpu_seconds: cpu,
+            ..WallSample::default()
+        };
+        assert!(is_busy(&[sample(2.1, Some(1.0))]));
+        assert!(!is_busy(&[sample(1.9, Some(1.0))]));
+        assert!(!is_busy(&[sample(9.0, None)]) && !is_busy(&[]));
+    }
 }

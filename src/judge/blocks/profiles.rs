@@ -44,6 +44,12 @@ pub struct Isochrones {
     pub sample: Option<Sample>,
     /// Reference.
     pub reference: String,
+    /// Whether strains are large, so that the degree of consolidation is the measure of progress.
+    #[serde(default)]
+    pub is_large_strain: bool,
+    /// Whether lines cross, because waves run.
+    #[serde(default)]
+    pub has_waves: bool,
     /// One per output, or a few from the first to the last.
     pub curves: Vec<Isochrone>,
 }
@@ -145,6 +151,8 @@ impl Isochrones {
             cells: record.case.cells,
             sample: (!record.case.has_integrator()).then(|| record.main_sample()),
             reference: own.name().to_owned(),
+            is_large_strain: record.case.scene.is_large_strain(),
+            has_waves: record.case.scene.has_waves(),
             curves: curves.collect(),
         })
     }

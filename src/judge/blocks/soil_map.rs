@@ -1,5 +1,6 @@
 //! Methods over a map of soils: where each was tried, comes within the tolerance, is cheapest and fails.
 
+use crate::judge::blocks::Point;
 use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE, Way, mapped_soils};
 use crate::judge::study_results::StudyResults;
 use crate::measure::statistics::median;
@@ -17,8 +18,24 @@ pub struct MapFinding {
     pub tolerance: f64,
     /// Soils of the map.
     pub soils: usize,
+    /// Where each soil lies, who is cheapest there and what breaks.
+    #[serde(default)]
+    pub places: Vec<SoilPlace>,
     /// Every method and integrator by its name.
     pub methods: Vec<MapMethod>,
+}
+
+/// A soil of the map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SoilPlace {
+    /// Hydraulic conductivity, m/s, and Young's modulus of the skeleton, Pa.
+    pub at: Point,
+    /// The cheapest method and integrator within the tolerance.
+    pub cheapest: Option<String>,
+    /// Integrators of which a run failed.
+    pub broken: BTreeSet<String>,
+    /// Integrators of the study that were not tried here.
+    pub untried: BTreeSet<String>,
 }
 
 /// A method with its integrator over all soils.
@@ -41,7 +58,7 @@ pub struct MapMethod {
 }
 
 /// The soils of a study that varies conductivity and stiffness; empty for others.
-pub fn soils_of(results: &StudyResults<'_>) -> Vec<MappedSoil> {
+pub(super) fn soils_of(results: &StudyResults<'_>) -> Vec<MappedSoil> {
     let Some(reference) = results.study.references.first() else { return Vec::new() };
     let soils = mapped_soils(results.records, reference.name());
     if soils.len() < LEAST_SOILS { Vec::new() } else { soils }
@@ -52,7 +69,27 @@ impl MapFinding {
     pub fn new(soils: &[MappedSoil]) -> Option<Self> {
         let names: BTreeSet<&str> = soils.iter().flat_map(|soil| &soil.tried).map(String::as_str).collect();
         let methods = names.into_iter().map(|name| MapMethod::new(name, soils)).collect();
-        (!soils.is_empty()).then_some(Self { tolerance: TOLERANCE, soils: soils.len(), methods })
+        let of_study: BTreeSet<String> = soils.iter().flat_map(|soil| integrators(&soil.tried)).collect();
+        let places = soils.iter().map(|soil| SoilPlace::new(soil, &of_study)).collect();
+        (!soils.is_empty()).then_some(Self { tolerance: TOLERANCE, soils: soils.len(), places, methods })
+    }
+}
+
+/// The integrators among methods and integrators.
+fn integrators(names: &[String]) -> BTreeSet<String> {
+    let integrator_of =
+        |name: &String| name.rsplit_once(' ').map_or(name.as_str(), |parts| parts.1).to_owned();
+    names.iter().map(integrator_of).collect()
+}
+
+impl SoilPlace {
+    fn new(soil: &MappedSoil, of_study: &BTreeSet<String>) -> Self {
+        Self {
+            at: (soil.conductivity, soil.stiffness),
+            cheapest: soil.cheapest().map(|way| way.name.clone()),
+            broken: integrators(&soil.broken),
+            untried: of_study.difference(&integrators(&soil.tried)).cloned().collect(),
+        }
     }
 }
 

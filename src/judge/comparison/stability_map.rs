@@ -4,9 +4,12 @@ use crate::case::Case;
 use crate::judge::paths::grouped;
 use crate::measure::statistics::largest;
 use crate::record::{CriticalStep, Record};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How the axis of a map is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum MapScale {
     /// Logarithmic.
     Log,
@@ -18,16 +21,14 @@ pub enum MapScale {
 
 /// What a map is drawn over.
 #[derive(Debug)]
-pub struct MapAxis {
-    /// Its label in a chart.
-    pub label: &'static str,
-    /// How it is drawn.
-    pub scale: MapScale,
+struct MapAxis {
+    label: &'static str,
+    scale: MapScale,
     of: fn(&Case) -> f64,
 }
 
 /// One case of a map; steps over `h/c`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapPoint {
     /// Place on the axis.
     pub at: f64,
@@ -38,7 +39,7 @@ pub struct MapPoint {
 }
 
 /// The cases of one method.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapCurve {
     /// Method.
     pub name: String,
@@ -47,10 +48,12 @@ pub struct MapCurve {
 }
 
 /// A map.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StabilityMap {
-    /// What it is drawn over.
-    pub axis: &'static MapAxis,
+    /// What it is drawn over, with its unit.
+    pub over: String,
+    /// How its axis is drawn.
+    pub scale: MapScale,
     /// What its cases have in common besides the method, in words.
     pub shared: String,
     /// One curve for each method.
@@ -102,7 +105,7 @@ pub fn maps_of(records: &[Record]) -> Vec<StabilityMap> {
             MapCurve { name, points }
         };
         let curves = grouped(cases, |(case, _)| case.method.to_string()).into_iter().map(curve).collect();
-        StabilityMap { axis, shared, curves, largest_deviation }
+        StabilityMap { over: axis.label.to_owned(), scale: axis.scale, shared, curves, largest_deviation }
     };
     grouped(searched, |(case, _)| settings_of(case)).into_iter().map(map).collect()
 }
@@ -212,7 +215,7 @@ mod tests {
             let not_searched = Record { stability: None, ..records[0].clone() };
             let maps = maps_of(&[&records[..], &[not_searched]].concat());
             let [map] = &maps[..] else { panic!("{maps:?}") };
-            assert_eq!((map.axis.label, map.axis.scale, &*map.shared), (label, scale, "explicit drag"));
+            assert_eq!((&*map.over, map.scale, &*map.shared), (label, scale, "explicit drag"));
             assert_eq!(map.largest_deviation, 0.5);
             let point = |observed: Option<f64>| move |at: f64| MapPoint { at, predicted: 0.5, observed };
             let curve = |name: &str, observed: Option<f64>| MapCurve {

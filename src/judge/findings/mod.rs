@@ -11,8 +11,10 @@ pub mod study_answers;
 pub mod within;
 
 use crate::case::Tier;
+use crate::judge::answers::locking::LockingFinding;
 use crate::judge::blocks::StudyBlocks;
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
+use crate::judge::findings::study_answers::StudyAnswers;
 use crate::judge::study_results::StudyResults;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::record::{ErrorRow, Record};
@@ -53,6 +55,9 @@ pub struct Findings {
     pub within: Vec<QuantityWithin>,
     /// Settlements at the outputs, of the runs that the answer for the settlement names.
     pub settlements: Vec<SettlementTable>,
+    /// Which methods lock, where the study sweeps Poisson's ratio in the plane.
+    #[serde(default)]
+    pub locking: Option<LockingFinding>,
     /// What the other blocks of the study's page print.
     #[serde(default)]
     pub blocks: StudyBlocks,
@@ -124,11 +129,22 @@ pub struct FailureFinding {
     pub time: f64,
 }
 
+/// What makes a soil hard to compress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+pub enum Swept {
+    /// `K_w/E` of the water.
+    #[serde(rename = "K_w/E")]
+    Water,
+    /// Poisson's ratio of the skeleton.
+    #[serde(rename = "nu")]
+    Skeleton,
+}
+
 /// A method over one stiffness at one time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StiffnessFinding {
-    /// `K_w/E` of the water or `nu` of the skeleton.
-    pub swept: String,
+    /// What varies.
+    pub swept: Swept,
     /// Method.
     pub method: String,
     /// Cells over the height.
@@ -158,29 +174,36 @@ pub struct StiffnessValue {
 }
 
 impl Findings {
-    /// Everything about a study, from its records and verdicts.
+    /// Everything about a study, from its records and verdicts and what it answers by itself.
     ///
     /// # Errors
     /// When a reference refuses a case.
-    pub fn new(results: &StudyResults<'_>, tier: Tier) -> Result<Self, ExactError> {
+    pub fn new(results: &StudyResults<'_>, answers: &StudyAnswers) -> Result<Self, ExactError> {
         let StudyResults { study, records, paths, judgements, .. } = results;
         let mut stiffness = Vec::new();
         for swept in SweptStiffness::ALL {
             stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
         }
-        let within = within::within(study, records);
+        // The page of a race has answers of its own in their place.
+        let within = if study.is_race { within::within(study, records) } else { answers.within.clone() };
+        let settlements = if study.is_race {
+            settlement::settlement_tables(study, records, &within)?
+        } else {
+            answers.settlements.clone()
+        };
         Ok(Self {
             schema: SCHEMA,
             study: study.name.clone(),
             scene: study.scene.name().to_owned(),
             references: study.references.iter().map(|kind| kind.name().to_owned()).collect(),
-            left_out: study.cases(tier).len().saturating_sub(records.len()),
+            left_out: study.cases(Tier::Full).len().saturating_sub(records.len()),
             expectations: judgements.iter().map(ExpectationFinding::new).collect(),
             runs: records.iter().map(RunFinding::new).collect(),
             series: series::all_series(study, paths),
             stiffness,
-            settlements: settlement::settlement_tables(study, records, &within)?,
+            settlements,
             within,
+            locking: answers.locking.clone(),
             blocks: StudyBlocks::new(results)?,
         })
     }
@@ -231,8 +254,8 @@ impl RunFinding {
 
 fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
     let swept = match sweep.stiffness {
-        SweptStiffness::Water => "K_w/E",
-        SweptStiffness::Skeleton => "nu",
+        SweptStiffness::Water => Swept::Water,
+        SweptStiffness::Skeleton => Swept::Skeleton,
     };
     let of_row = |row: &crate::judge::comparison::stiffness_sweep::SweepRow| {
         let value = |(place, value): (usize, &f64)| {
@@ -246,7 +269,7 @@ fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
             }
         };
         StiffnessFinding {
-            swept: swept.to_owned(),
+            swept,
             method: row.method.to_string(),
             cells: sweep.cells,
             time_factor: row.time_factor,
@@ -272,7 +295,7 @@ mod tests {
         let (study, mut records) = solved("s", text);
         records[0].status = failed_at(3);
         let results = StudyResults::new(&study, &records, Tier::Full);
-        let found = Findings::new(&results, Tier::Full).expect("sound cases");
+        let found = results.findings().expect("sound cases").plain;
         assert_eq!((found.runs.len(), found.left_out), (4, 0));
         let failure = found.runs[0].failure.as_ref().expect("it failed");
         assert_eq!((failure.kind.name(), failure.step), ("unstable", 3));
@@ -295,7 +318,9 @@ mod tests {
             found: vec![[Some(0.01), Some(0.02), Some(0.03)], [Some(0.04), Some(0.5), Some(0.06)], [None; 3]],
             failed: vec![None, None, Some("unstable at step 7".to_owned())],
         };
-        for (stiffness, swept) in [(SweptStiffness::Water, "K_w/E"), (SweptStiffness::Skeleton, "nu")] {
+        for (stiffness, swept) in
+            [(SweptStiffness::Water, Swept::Water), (SweptStiffness::Skeleton, Swept::Skeleton)]
+        {
             let (values, rows) = (vec![0.1, 0.2, 0.3], vec![row.clone()]);
             let found =
                 of_sweep(&StiffnessSweep { stiffness, cells: 8, values, time_factors: vec![0.25], rows });
@@ -311,7 +336,7 @@ mod tests {
                 value(0.2, Some(0.04), Some(0.5), Some(0.06), None),
                 value(0.3, None, None, None, Some("unstable at step 7")),
             ];
-            let (swept, method) = (swept.to_owned(), "VP".to_owned());
+            let method = "VP".to_owned();
             let right =
                 StiffnessFinding { swept, method, cells: 8, time_factor: 0.25, values, lost_from: Some(0.2) };
             assert_eq!(found, [right]);

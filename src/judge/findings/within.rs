@@ -2,7 +2,7 @@
 //! output, in every problem of the study.
 
 use crate::case::{Case, Quantity, Sample};
-use crate::judge::paths::{first_norm, grouped};
+use crate::judge::paths::grouped;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
 use crate::study::check::Study;
@@ -93,7 +93,7 @@ pub fn within(study: &Study, records: &[Record]) -> Vec<QuantityWithin> {
 fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> Option<QuantityWithin> {
     let rows = |record: &Record| {
         let is_of = |row: &&ErrorRow| {
-            row.quantity == quantity && row.norm == first_norm(quantity) && row.reference == reference
+            row.quantity == quantity && row.norm == quantity.first_norm() && row.reference == reference
         };
         record.errors.iter().filter(is_of).cloned().collect::<Vec<_>>()
     };

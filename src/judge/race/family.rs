@@ -1,6 +1,7 @@
 //! Work and precision of a family: the error below which a contender stays in most of the family's situations, for as much
 //! work in each.
 
+use crate::case::grouping::distinct;
 use crate::judge::race::finish::RaceQuantity;
 use crate::judge::race::situation::{Entry, Situation};
 use oedometer_soil::elementary;
@@ -55,12 +56,8 @@ impl Curve {
 
 /// The curves of all contenders over a family; one without a run in the family has none.
 pub fn family_curves(family: &str, situations: &[&Situation]) -> Vec<FamilyCurve> {
-    let mut contenders: Vec<&str> = Vec::new();
-    for entry in situations.iter().flat_map(|situation| &situation.entries) {
-        if !contenders.contains(&entry.contender.as_str()) {
-            contenders.push(&entry.contender);
-        }
-    }
+    let entries = situations.iter().flat_map(|situation| &situation.entries);
+    let contenders = distinct(entries.map(|entry| entry.contender.as_str()));
     let curve = |contender: &str| {
         let entries = situations.iter().flat_map(|situation| &situation.entries);
         let curves: Vec<Curve> =

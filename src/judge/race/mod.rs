@@ -10,12 +10,13 @@ pub mod situation;
 pub mod trade;
 
 use crate::case::contender::CONTENDERS;
+use crate::case::grouping::grouped;
 use crate::judge::race::correlation::{Correlation, correlations};
 use crate::judge::race::family::{FamilyCurve, family_curves};
 use crate::judge::race::finish::{RaceQuantity, Reason};
 use crate::judge::race::profile::{Choice, CostRow, CostTable, Profile};
 use crate::judge::race::sensitivity::{THRESHOLD, Variant, variants};
-use crate::judge::race::situation::{Entry, Situation};
+use crate::judge::race::situation::{Entry, OtherCosts, Situation};
 use crate::judge::race::trade::{Sample, Trade, trades};
 use crate::record::Record;
 use crate::study::check::Study;
@@ -195,6 +196,11 @@ impl RaceFindings {
         }
     }
 
+    /// What each contender costs to other ends, in the order of situations and entries.
+    pub fn other_costs(&self) -> Vec<Vec<OtherCosts>> {
+        self.situations.iter().map(|one| one.entries.iter().map(OtherCosts::new).collect()).collect()
+    }
+
     /// The answer to a question, where somebody arrives.
     pub fn answer(&self, question: Question) -> Option<&Answer> {
         self.answers.iter().find(|answer| answer.question == question)
@@ -219,14 +225,7 @@ impl RaceFindings {
 
 /// Situations by their families, both in the order of their first appearance.
 fn by_family(situations: &[Situation]) -> Vec<(&str, Vec<&Situation>)> {
-    let mut families: Vec<(&str, Vec<&Situation>)> = Vec::new();
-    for situation in situations {
-        match families.iter_mut().find(|(family, _)| *family == situation.family) {
-            Some((_, known)) => known.push(situation),
-            None => families.push((&situation.family, vec![situation])),
-        }
-    }
-    families
+    grouped(situations, |situation| situation.family.as_str())
 }
 
 /// Costs of all contenders to a threshold of a quantity.

@@ -8,7 +8,7 @@ use crate::judge::path_context;
 use crate::judge::paths::{Path, first_error, first_measure};
 use crate::judge::race::Question;
 use crate::judge::race::finish::{Level, RaceQuantity, Reason, cost_to, reason_of, seconds_to};
-use crate::judge::race::sensitivity::THRESHOLD;
+use crate::judge::race::sensitivity::{OTHER_THRESHOLDS, THRESHOLD};
 use crate::measure::statistics::median;
 use crate::record::calibration::cost_of;
 use crate::record::race_errors::{NEGLIGIBLE, ROUGH, RunErrors, errors_of, largest_error};
@@ -87,6 +87,26 @@ pub struct Entry {
     pub asymmetry: Option<[f64; 2]>,
     /// Largest velocity over the conductivity where nothing may move.
     pub spurious_velocity: Option<f64>,
+}
+
+/// What a contender costs to other ends than 10 %, 1 % and 0.1 % of all quantities, s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherCosts {
+    /// To 1 % of each quantity alone.
+    pub alone: [Option<f64>; 3],
+    /// To the other thresholds of all quantities.
+    pub thresholds: [Option<f64>; OTHER_THRESHOLDS.len()],
+}
+
+impl OtherCosts {
+    /// Those of an entry.
+    pub fn new(entry: &Entry) -> Self {
+        let alone = [RaceQuantity::Pressure, RaceQuantity::Stress, RaceQuantity::Settlement];
+        Self {
+            alone: alone.map(|quantity| entry.cost_to(quantity, THRESHOLD)),
+            thresholds: OTHER_THRESHOLDS.map(|threshold| entry.cost_to(RaceQuantity::All, threshold)),
+        }
+    }
 }
 
 impl Entry {

@@ -18,7 +18,6 @@ use crate::record::ErrorRow;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind, ShelfProblem};
 use oedometer_soil::wording::short;
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// Share of the height, and of the length, within which a sample counts as at the surface, and as
 /// under the crest.
@@ -97,14 +96,6 @@ pub struct Unresolved {
     pub reference: String,
     /// Root mean square of the difference over the load or the final settlement.
     pub absolute: f64,
-}
-
-/// What an error is of: time factor (its bits), quantity, sample, norm, reference.
-pub type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
-
-/// What an error is of.
-pub fn error_key(row: &ErrorRow) -> ErrorKey<'_> {
-    (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
 }
 
 /// Where the samples of a state are, in a column or layer of a height, m.
@@ -244,11 +235,6 @@ impl Score {
             }
         }
         Ok(())
-    }
-
-    /// Its errors by what they are of.
-    pub fn index(&self) -> HashMap<ErrorKey<'_>, &ErrorRow> {
-        self.errors.iter().map(|row| (error_key(row), row)).collect()
     }
 }
 

@@ -1,9 +1,8 @@
 //! Does the method converge, and to what? A row per method with its orders and errors at small and at large strain.
 
 use crate::case::contender::PAPERS;
+use crate::case::grouping::distinct;
 use crate::judge::answers::converges::{ColumnFinding, ConvergesFinding, MethodOrders, OrderFinding};
-use crate::judge::paths::distinct;
-use crate::judge::study_results::StudyResults;
 use crate::render::answers::{Question, short};
 use crate::render::page::{Block, Figure, Section};
 use crate::render::report::{labels, refinement};
@@ -20,10 +19,10 @@ const HEADINGS: [&str; 4] = ["p, points", "p, centres", "σ′, points", "settle
 const MOST_METHODS: usize = 5;
 
 /// Sentence, table, and the error of the pressure over the mesh.
-pub fn section(found: &ConvergesFinding, results: &[StudyResults<'_>]) -> Result<Section, RenderError> {
+pub fn section(found: &ConvergesFinding) -> Result<Section, RenderError> {
     let mut blocks = vec![Block::Table(short(table(found), "in the studies"))];
     let small = found.columns.iter().find(|column| column.final_strain.is_none());
-    blocks.extend(small.and_then(|column| figure(column, results)).map(Block::Figure));
+    blocks.extend(small.and_then(figure).map(Block::Figure));
     let studies = found.columns.iter().map(|column| column.study.as_str());
     Ok(QUESTION.answered(&templates::sentence("converges", found)?, studies, blocks))
 }
@@ -108,10 +107,8 @@ fn order_cell(order: &OrderFinding) -> Cell {
 }
 
 /// The error of the pressure over the mesh.
-fn figure(column: &ColumnFinding, results: &[StudyResults<'_>]) -> Option<Figure> {
-    let study = results.iter().find(|one| one.study.name == column.study)?;
-    let pressure = column.orders.first()?;
-    let mut figure = refinement::mesh_figure(study, pressure.quantity, pressure.sample, column.time_factor)?;
+fn figure(column: &ColumnFinding) -> Option<Figure> {
+    let mut figure = refinement::figure(&column.study, column.figure.as_ref()?);
     "readme-mesh".clone_into(&mut figure.name);
     Some(figure)
 }
@@ -153,6 +150,7 @@ mod tests {
             methods,
             better: None,
             within: Vec::new(),
+            figure: None,
         };
         let found = |columns: Vec<ColumnFinding>| ConvergesFinding { cells: 10, is_alone: false, columns };
         let small = column(

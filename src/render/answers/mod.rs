@@ -12,18 +12,16 @@ mod race;
 
 pub use race::matrix_page;
 
+use crate::case::grouping::distinct;
 use crate::history::comparison::StudyComparison;
-use crate::judge::answers::cost::{CostFinding, timed_study};
+use crate::judge::answers::cost::CostFinding;
 use crate::judge::answers::time_step::TimeStepFinding;
 use crate::judge::answers::{ReportFindings, VerdictFinding};
-use crate::judge::blocks::setting::SettingFinding;
-use crate::judge::findings::within::within as reached;
-use crate::judge::paths::distinct;
-use crate::judge::study_results::StudyResults;
-use crate::record::provenance::{Origins, Provenance};
+use crate::judge::study_findings::AllStudies;
+use crate::record::provenance::Provenance;
 use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Figure, Page, Section, slug};
-use crate::render::report::{cost, setting, within};
+use crate::render::report::{answers as study_answers, cost};
 use crate::render::table::{Mood, Table};
 use crate::render::{RenderError, templates};
 use oedometer_soil::wording::count_of;
@@ -31,8 +29,8 @@ use serde::Serialize;
 
 /// What the answer page is made of.
 pub struct Answers<'a> {
-    /// The studies with their records and judgements.
-    pub results: &'a [StudyResults<'a>],
+    /// The studies with what is found about each.
+    pub all: &'a AllStudies,
     /// The studies that differ from their golden values; `None` where none has any.
     pub changes: Option<&'a [StudyComparison]>,
     /// When, where and by which command.
@@ -60,19 +58,15 @@ pub struct Making {
 
 impl Making {
     /// The line of provenance: program, commit, day, processor, time, command.
-    fn words(&self, results: &[StudyResults<'_>]) -> String {
-        let mut origins = Origins::default();
-        let records: Vec<_> = results.iter().flat_map(|one| one.records).collect();
-        for record in &records {
-            origins.add(&record.provenance);
-        }
-        let program = origins.main().map_or_else(String::new, program_of);
-        let several = origins.several_programs().map_or_else(String::new, |programs| {
+    fn words(&self, all: &AllStudies) -> String {
+        let records = all.records;
+        let program = all.origins.main().map_or_else(String::new, program_of);
+        let several = all.origins.several_programs().map_or_else(String::new, |programs| {
             format!(" The records are of more than one program: {programs}.")
         });
         let run = match self.cases_run {
-            0 => format!("rendered in {:.1} s from {} records", self.seconds, records.len()),
-            run => format!("{:.1} s with {run} of {} cases run", self.seconds, records.len()),
+            0 => format!("rendered in {:.1} s from {records} records", self.seconds),
+            run => format!("{:.1} s with {run} of {records} cases run", self.seconds),
         };
         let left_out = match self.left_out {
             0 => String::new(),
@@ -149,28 +143,28 @@ fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
 /// # Errors
 /// When a reference refuses a case, or a template its findings.
 pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
-    let (results, findings) = (answers.results, answers.findings);
+    let (studies, findings) = (&answers.all.studies, answers.findings);
     let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
     let all = [
         race.map(race::section).transpose()?,
-        findings.cost.as_ref().map(|cost| cost_section(cost, results)).transpose()?,
-        findings.paper.as_ref().map(|paper| paper::section(paper, results)).transpose()?,
+        findings.cost.as_ref().map(cost_section).transpose()?,
+        findings.paper.as_ref().map(paper::section).transpose()?,
         answers.changes.map(changes_section).transpose()?,
         findings.locking.as_ref().map(locking::section).transpose()?,
-        findings.converges.as_ref().map(|converges| converges::section(converges, results)).transpose()?,
+        findings.converges.as_ref().map(converges::section).transpose()?,
         findings.time_step.as_ref().map(time_step_section).transpose()?,
         findings.audit.as_ref().map(audit::section).transpose()?,
         findings.double_point.as_ref().map(double_point::section).transpose()?,
     ];
     let mut sections: Vec<Section> = all.into_iter().flatten().collect();
     // A small report names its studies, as perhaps no answer links to them.
-    let few = match results.len() {
-        1..=FEW_STUDIES => format!(": {}", links_to(results.iter().map(|one| one.study.name.as_str()))),
+    let few = match studies.len() {
+        1..=FEW_STUDIES => format!(": {}", links_to(studies.iter().map(|study| study.name.as_str()))),
         _ => String::new(),
     };
     let made = format!(
         "**How was it made?** {}\n\n[All studies, with every table and figure](studies/index.html){few}",
-        answers.making.words(results)
+        answers.making.words(answers.all)
     );
     let verdict = verdict(&findings.verdict)?;
     let mut page = Page { title: "Convergence report".to_owned(), is_wide: true, ..Page::default() };
@@ -184,18 +178,14 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
             blocks: vec![Block::Paragraph(verdict.1)],
         });
     } else {
-        (page.lead, page.callout) = (format!("{}{made}", setting_of(results)?), Some(verdict));
+        (page.lead, page.callout) = (made, Some(verdict));
+        // What a report of one study is about.
+        if let [study] = studies.as_slice() {
+            page.lead = study_answers::lead(study)? + &page.lead;
+        }
     }
     page.sections = sections;
     Ok(page)
-}
-
-/// The setting of a report of one study, and what it takes to come within bounds.
-fn setting_of(results: &[StudyResults<'_>]) -> Result<String, RenderError> {
-    let [one] = results else { return Ok(String::new()) };
-    let setting = setting::sentence(SettingFinding::new(one.records).as_ref())?;
-    let setting = if setting.is_empty() { setting } else { setting + "\n\n" };
-    Ok(setting + &within::sentences(&reached(one.study, one.records))? + "\n\n")
 }
 
 /// Studies up to which the head of the page names each.
@@ -209,14 +199,11 @@ fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
 }
 
 /// The cheapest run within each tolerance, all timed runs in a figure, and other programs.
-fn cost_section(cost: &CostFinding, results: &[StudyResults<'_>]) -> Result<Section, RenderError> {
+fn cost_section(cost: &CostFinding) -> Result<Section, RenderError> {
     let question = Question { heading: "What does accuracy cost?", id: "cost" };
     let sentence = templates::sentence("cost", cost)?;
-    let figure = timed_study(results).map(|(_, precision)| {
-        let (chart, caption) = (cost::chart_of(&precision), cost::caption(&precision));
-        Block::Figure(Figure::new("readme-cost", chart, caption))
-    });
-    let mut blocks: Vec<Block> = figure.into_iter().collect();
+    let (chart, caption) = (cost::chart_of(&cost.wall_time), cost::caption(&cost.wall_time)?);
+    let mut blocks = vec![Block::Figure(Figure::new("readme-cost", chart, caption))];
     if let Some(peers) = &cost.peers {
         blocks.push(Block::Paragraph(templates::sentence("peers", peers)?));
     }
@@ -254,16 +241,18 @@ mod tests {
     use crate::case::planned::Tier;
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
+    use crate::judge::study_results::StudyResults;
     use crate::record::Record;
     use crate::render::table::{Cell, columns};
     use crate::study::check::Study;
 
     #[test]
     fn a_report_from_records_alone_says_so() {
+        let none = AllStudies::new(&[]).expect("no case");
         let making = Making { seconds: 1.25, command: "oedometer report".to_owned(), ..Making::default() };
-        assert!(making.words(&[]).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&[]));
+        assert!(making.words(&none).contains("rendered in 1.2 s from 0 records"), "{}", making.words(&none));
         let run = Making { cases_run: 3, ..making };
-        assert!(run.words(&[]).contains("with 3 of 0 cases run"));
+        assert!(run.words(&none).contains("with 3 of 0 cases run"));
     }
 
     #[test]
@@ -338,7 +327,8 @@ mod tests {
                 .collect();
             let making = Making::default();
             let findings = ReportFindings::new(&results).expect("sound cases");
-            let answers = Answers { results: &results, changes: None, making: &making, findings: &findings };
+            let all = AllStudies::new(&results).expect("sound cases");
+            let answers = Answers { all: &all, changes: None, making: &making, findings: &findings };
             let page = answer_page(&answers);
             let lead = page.expect("a page").lead;
             let (head, listed) = lead.split_once("(studies/index.html)").expect("a link to all");
@@ -371,7 +361,8 @@ mod tests {
             ..Making::default()
         };
         let told = |records: &[Record], making: &Making| {
-            making.words(&[StudyResults::new(&study, records, Tier::Full)])
+            let results = [StudyResults::new(&study, records, Tier::Full)];
+            making.words(&AllStudies::new(&results).expect("sound cases"))
         };
         let end = "· rustc, release profile · DAY · CPU · rendered in 0.0 s from 1 records · `it`";
         assert_eq!(told(&[with("1", "", true)], &making), format!("oedometer 1 · sources `abc` {end}"));

@@ -1,9 +1,6 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
-use crate::judge::answers::paper::{PaperFinding, PaperRun, paper_runs};
-use crate::judge::blocks::profiles::{Consolidation, Isochrones};
-use crate::judge::study_results::StudyResults;
-use crate::record::{Record, Status};
+use crate::judge::answers::paper::{PaperCurves, PaperFinding};
 use crate::render::answers::Question;
 use crate::render::chart::{Size, Style};
 use crate::render::page::{Block, Figure, Section};
@@ -12,25 +9,22 @@ use crate::render::{RenderError, templates};
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
 
-/// Methods of a figure of consolidation, the paper's first.
-const MOST_METHODS: usize = 3;
-
 /// The size of one figure of four in a row.
 const QUARTER: Size = Size { width: 400.0, plot_height: 300.0, equal_units: false };
 
 /// How far the runs are from theory, the figures with the theory's lines, and how far the printed equations are from it.
-pub fn section(paper: &PaperFinding, results: &[StudyResults<'_>]) -> Result<Section, RenderError> {
+pub fn section(paper: &PaperFinding) -> Result<Section, RenderError> {
     let mut figures = Vec::new();
-    for run in paper_runs(results) {
-        let (number, theory) = (run.number, run.reference());
-        let own = run.results.study.references[0];
+    for curves in &paper.curves {
+        let PaperCurves { number, isochrones, consolidation } = curves;
         // The second pair reads as the first.
         let is_first = figures.is_empty();
-        let isochrones = theory_lines::isochrones(run.results, &Isochrones::new(run.record, own)?);
-        let consolidation =
-            theory_lines::consolidation(run.results, &Consolidation::new(&beside(&run), own)?);
-        for (figure, letter) in [(isochrones, 'a'), (consolidation, 'b')] {
-            let mut figure = quarter(figure, &format!("{number}{letter}"), theory);
+        let pair = [
+            (theory_lines::isochrones("paper", isochrones), 'a'),
+            (theory_lines::consolidation("paper", consolidation), 'b'),
+        ];
+        for (figure, letter) in pair {
+            let mut figure = quarter(figure, &format!("{number}{letter}"), &isochrones.reference);
             if !is_first {
                 figure.caption.clear();
             }
@@ -43,20 +37,6 @@ pub fn section(paper: &PaperFinding, results: &[StudyResults<'_>]) -> Result<Sec
     }
     let studies = paper.figures.iter().map(|figure| figure.study.as_str());
     Ok(QUESTION.answered(&templates::sentence("paper", paper)?, studies, blocks))
-}
-
-/// The paper's run with those of other methods that differ in nothing else.
-fn beside<'a>(run: &PaperRun<'_, 'a>) -> Vec<&'a Record> {
-    let mut shown = vec![run.record];
-    for record in run.results.records {
-        let mut same = record.case.clone();
-        same.method = run.record.case.method;
-        let is_new = shown.iter().all(|other| other.case.method != record.case.method);
-        if is_new && same == run.record.case && record.status == Status::Ok && shown.len() < MOST_METHODS {
-            shown.push(record);
-        }
-    }
-    shown
 }
 
 /// A figure of the report as one of the four.
@@ -78,6 +58,8 @@ mod tests {
     use crate::case::contender::PAPERS;
     use crate::case::planned::Tier;
     use crate::case::{Quantity, Sample};
+    use crate::judge::study_results::StudyResults;
+    use crate::record::Record;
     use crate::study::check::Study;
 
     /// A study with the pressure errors of the paper's method on ten cells, by time; all others are larger.
@@ -117,7 +99,7 @@ mod tests {
             let results: Vec<_> =
                 all.iter().map(|(study, records)| StudyResults::new(study, records, Tier::Full)).collect();
             let paper = PaperFinding::new(&results).expect("sound")?;
-            Some(section(&paper, &results).expect("a section"))
+            Some(section(&paper).expect("a section"))
         };
         let section = answered(&all).expect("answered");
         let [Block::Paragraph(sentence), Block::Figures(figures), Block::Paragraph(printed)] =

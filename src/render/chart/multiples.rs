@@ -1,7 +1,7 @@
 //! Small multiples: a figure with more series than colours becomes panels with one scale. Each panel has a few series in
 //! colour, over the others in grey.
 
-use crate::judge::paths::grouped;
+use crate::case::grouping::grouped;
 use crate::render::chart::draw::ends;
 use crate::render::chart::svg::Px;
 use crate::render::chart::{Chart, Series, Style};

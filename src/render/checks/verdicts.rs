@@ -8,7 +8,7 @@ use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::render::answers::locking;
 use crate::render::checks::{TITLES, failures_of};
 use crate::render::marked_text::paragraphs;
-use crate::render::report::within::sentences;
+use crate::render::report::answers::within;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::convergence;
 use crate::render::tables::golden_changes::{self, judgement_of, summary};
@@ -43,7 +43,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
     }
-    text += &text_of_proposals(check, file);
+    text += &text_of_proposals(check, file)?;
     for warning in &check.warnings {
         text += &wrapped(&format!("warning: {warning}"), "  ", "    ");
     }
@@ -64,7 +64,7 @@ pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
         let classes = wrapped(&convergence::classes(table), "", "  ");
         let _ = write!(text, "\n{heading}\n{}\n{classes}", convergence::table_of(table).to_text()?);
     }
-    text += &plain_paragraphs(&sentences(&answers.within)?);
+    text += &plain_paragraphs(&within(&answers.within)?);
     for table in &answers.settlements {
         let heading = wrapped(&settlement::heading(table), "", "  ");
         let _ = write!(text, "\n{heading}\n{}", settlement::table_of(table).to_text()?);
@@ -121,7 +121,8 @@ pub fn markdown_of(
             let _ = write!(text, "\n{}\n", table.to_markdown()?);
         }
         if !check.proposals.is_empty() {
-            let _ = write!(text, "\n{PROPOSED}\n\n```toml\n{}```\n", check.proposals.join("\n"));
+            let proposed = templates::sentence("proposed", &())?;
+            let _ = write!(text, "\n{proposed}\n\n```toml\n{}```\n", check.proposals.join("\n"));
         }
         for warning in &check.warnings {
             let _ = write!(text, "\nWarning: {warning}\n");
@@ -358,16 +359,12 @@ fn text_of_inputs(check: &StudyCheck) -> String {
     section("inputs that changed since the golden values were taken", inputs)
 }
 
-/// What stands above proposed expectations.
-pub(crate) const PROPOSED: &str = "The study has no expectations yet. These results meet the lines below, which allow errors \
-                                   half as large again and orders lower by 0.25: paste those that should hold from now on.";
-
 /// Expectations to paste into the file of a study; the report has those that are only counted.
-fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> String {
+fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> Result<String, RenderError> {
     if check.proposals.is_empty() {
-        return String::new();
+        return Ok(String::new());
     }
-    let mut text = format!("\n{}\n", wrapped(PROPOSED, "", ""));
+    let mut text = format!("\n{}\n", wrapped(&templates::sentence("proposed", &())?, "", ""));
     text += &check.proposals.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join("\n");
     let rest = check.proposals.len().saturating_sub(MOST);
     if rest > 0 {
@@ -375,7 +372,7 @@ fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> String {
             .map_or(String::new(), |file| format!(": `oedometer check {file} --format markdown` has all"));
         let _ = writeln!(text, "\nand {rest} more{whole}");
     }
-    text
+    Ok(text)
 }
 
 /// Golden values that differ: kinds, the worst values, and cases.
@@ -539,7 +536,7 @@ mod tests {
     fn ten_proposals_are_shown_and_the_file_leads_to_the_others() {
         let told = |count: usize, file: Option<&str>| {
             let proposals = (0..count).map(|number| format!("line {number}")).collect();
-            text_of_proposals(&StudyCheck { proposals, ..check(0) }, file)
+            text_of_proposals(&StudyCheck { proposals, ..check(0) }, file).expect("filled")
         };
         assert_eq!(told(0, Some("s.toml")), "");
         assert!(told(10, Some("s.toml")).ends_with("line 8\nline 9"));

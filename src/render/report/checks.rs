@@ -1,16 +1,42 @@
-//! How every case of a hard study ended, and what a study measures beside errors of fields: peaks, quantities that must not
-//! move, start checks and balances.
+//! The runs of a study: how each ended, what is measured beside errors of fields, critical steps, and runs of other programs.
 
+use crate::case::grouping::distinct;
 use crate::judge::blocks::checks::{EndFinding, GroupFinding, MeasureFinding, WorstCheck};
-use crate::judge::paths::distinct;
-use crate::render::number;
+use crate::judge::study_findings::StudyFindings;
 use crate::render::page::Block;
+use crate::render::report::maps;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::tables::measures::bound_cell;
+use crate::render::tables::{runs, uncertainties};
+use crate::render::{RenderError, number, templates};
 use std::collections::HashMap;
 
+/// Tables of all runs under their heading.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let found = &study.plain.blocks;
+    let mut blocks = vec![Block::Heading("Runs".to_owned())];
+    blocks.extend(survival(&found.ends).map(|table| Block::Details {
+        summary: "How each case ended".to_owned(),
+        blocks: vec![Block::Table(table)],
+    }));
+    blocks.extend(uncertainties::table_of(&study.judgements).map(Block::Table));
+    blocks.extend(measures(&found.measures));
+    if let Some(found) = &found.stability {
+        blocks.extend(maps::critical_steps(&study.name, found)?);
+    }
+    if let Some(table) = runs::attached_table(&found.outside_runs) {
+        blocks.push(Block::Heading("Attached solvers".to_owned()));
+        blocks.extend(study.taken_over.iter().map(|sentence| Block::Paragraph(format!("{sentence}."))));
+        blocks.push(Block::Table(table.notes(study.diagnoses.clone())));
+    }
+    Ok(blocks)
+}
+
 /// One row per case and measure, of its worst output; empty where nothing is measured so.
-pub fn measures(found: &[MeasureFinding]) -> Vec<Block> {
+fn measures(found: &[MeasureFinding]) -> Vec<Block> {
     let rows: Vec<Vec<Cell>> = found.iter().map(cells_of).collect();
     if rows.is_empty() {
         return Vec::new();
@@ -26,26 +52,32 @@ pub fn measures(found: &[MeasureFinding]) -> Vec<Block> {
     vec![Block::Heading("Measures".to_owned()), Block::Table(table)]
 }
 
-/// The worst of every check over the runs of a study, and the largest of every dimensionless group.
-pub fn worst_checks(checks: &[WorstCheck], groups: &[GroupFinding]) -> Block {
+/// The worst of every check over the runs of a study, and the largest of every dimensionless group; empty where no run went
+/// on beyond its critical step.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn balances(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let found = &study.plain.blocks;
+    if study.is_stability_alone {
+        return Ok(Vec::new());
+    }
+    let note = templates::sentence("balances", &())?;
+    let table = worst_checks(&found.checks, &found.groups).note(note);
+    Ok(vec![Block::Details {
+        summary: "Start checks, balances and dimensionless groups".to_owned(),
+        blocks: vec![Block::Table(table)],
+    }])
+}
+
+fn worst_checks(checks: &[WorstCheck], groups: &[GroupFinding]) -> Table {
     let of_check = |check: &WorstCheck| {
-        let size = check.value.map_or(f64::NAN, f64::abs);
-        vec![check.what.as_str().into(), Cell::Error(size), bound_cell(check)]
+        vec![check.what.as_str().into(), Cell::Error(check.value.0.abs()), bound_cell(check)]
     };
     let of_group =
         |group: &GroupFinding| vec![group.what.as_str().into(), Cell::Error(group.value), "".into()];
     let rows: Vec<Vec<Cell>> = checks.iter().map(of_check).chain(groups.iter().map(of_group)).collect();
-    let table =
-        Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
-            .note(
-                "Pressures recovered over a patch of cells (`-patch`) do not conserve the stored water exactly: the imbalance \
-                 falls with the mesh. An equilibrium residual of zero proves nothing: with one value per cell both stresses \
-                 can be wrong by the same amount.",
-            );
-    Block::Details {
-        summary: "Start checks, balances and dimensionless groups".to_owned(),
-        blocks: vec![Block::Table(table)],
-    }
+    Table::of("Start checks, balances and groups", columns("what | > worst of all runs | bound"), rows)
 }
 
 /// A measure as a row: found, exact, and the error.
@@ -56,9 +88,9 @@ fn cells_of(row: &MeasureFinding) -> Vec<Cell> {
         row.case.as_str().into(),
         Cell::Code(row.name.clone()),
         row.time_factor.map_or(String::new(), |factor| factor.to_string()).into(),
-        number(row.found.unwrap_or(f64::NAN)),
+        number(row.found.0),
         number(row.exact),
-        Cell::Error(row.error.unwrap_or(f64::NAN)),
+        Cell::Error(row.error.0),
     ]
 }
 
@@ -69,7 +101,7 @@ const NOT_TRIED: &str = "not tried";
 const MEANINGLESS: f64 = 1.0;
 
 /// The ends of all cases of a study that expects how its cases end; `None` for others.
-pub fn survival(ends: &[EndFinding]) -> Option<Table> {
+fn survival(ends: &[EndFinding]) -> Option<Table> {
     if ends.is_empty() {
         return None;
     }
@@ -123,6 +155,7 @@ mod tests {
     use crate::campaign::runner::{records_of, solved};
     use crate::case::planned::Tier;
     use crate::judge::blocks::checks::{self, end_of};
+    use crate::judge::findings::Findings;
     use crate::judge::study_results::StudyResults;
     use crate::record::{MeasureRow, Record};
 
@@ -166,11 +199,33 @@ mod tests {
             let groups = &mut record.groups;
             (groups.storage, groups.finite_strain, groups.inertia) = (storage, strain, inertia);
         }
-        let block = worst_checks(&checks::worst_checks(&records), &checks::largest_groups(&records));
-        let Block::Details { blocks, .. } = block else { panic!("what the reader opens") };
-        let [Block::Table(table)] = &blocks[..] else { panic!("one table") };
+        let table = worst_checks(&checks::worst_checks(&records), &checks::largest_groups(&records));
         let last: Vec<&Cell> = table.rows.iter().rev().take(3).map(|row| &row[1]).collect();
         assert_eq!(last, [&Cell::Error(0.007), &Cell::Error(0.05), &Cell::Error(0.3)]);
+    }
+
+    #[test]
+    fn a_value_that_is_infinite_is_shown_as_that_and_stands_in_the_findings_as_a_word() {
+        let text = "title = \"t\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.2] }\n[[sweep]]\n\
+                    method = [\"GIMP\"]\nintegrator = [\"implicit\"]\ncells = [2]\n";
+        let (study, mut records) = solved("s", text);
+        for (value, shown, word) in [(f64::NEG_INFINITY, "inf", "-inf"), (f64::NAN, "NaN", "nan")] {
+            records[0].balance[0].water_imbalance = value;
+            let name = "spurious_velocity".to_owned();
+            let reference = "at-rest".to_owned();
+            records[0].measures =
+                vec![MeasureRow { name, time_factor: None, reference, found: value, exact: 0.0 }];
+            let results = StudyResults::new(&study, &records, Tier::Full);
+            let found = results.findings().expect("sound cases").plain;
+            let table = worst_checks(&found.blocks.checks, &found.blocks.groups);
+            assert_eq!(table.rows.iter().filter(|row| row[1].show() == shown).count(), 1, "{table:?}");
+            let blocks = measures(&found.blocks.measures);
+            let Some(Block::Table(table)) = blocks.last() else { panic!("{blocks:?}") };
+            assert_eq!(table.rows[0][3].show().trim_start_matches('-'), shown);
+            let json = serde_json::to_string(&found).expect("plain data");
+            assert!(json.matches(&format!("\"{word}\"")).count() >= 2, "{json}");
+            assert_eq!(serde_json::from_str::<Findings>(&json).expect("what was written"), found);
+        }
     }
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\n\

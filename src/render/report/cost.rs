@@ -2,64 +2,76 @@
 //! other programs.
 
 use crate::case::IntegratorKind;
-use crate::judge::blocks::timing::{TimingFinding, error_of, timed_measure};
-use crate::judge::comparison::peers::{self, Comparison, Peer};
-use crate::judge::comparison::work_precision::WorkPrecision;
-use crate::judge::path_labels::path_labels;
-use crate::judge::paths::distinct;
-use crate::judge::study_results::StudyResults;
-use crate::record::Record;
+use crate::case::grouping::distinct;
+use crate::judge::blocks::timing::TimingFinding;
+use crate::judge::blocks::work::{NamedLine, PeerRow, PeersFinding, WallTimeFinding, WorkFinding};
+use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size};
-use crate::render::number;
 use crate::render::page::Block;
-use crate::render::report::figure_of;
-use crate::render::report::labels;
-use crate::render::report::labels::{DrawnPaths, drawn};
+use crate::render::report::{figure_of, labels};
 use crate::render::table::{Cell, Table, columns};
-use crate::study::expectation::{Axis, Measure};
+use crate::render::{RenderError, number, templates};
+
+/// Error over point updates and over wall time, with the runs that had the machine to themselves.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let found = &study.plain.blocks;
+    let mut blocks = Vec::new();
+    if study.is_stability_alone {
+        return Ok(blocks);
+    }
+    if let Some(work) = &found.work {
+        blocks.extend(work_blocks(&study.name, work, &found.timing)?);
+    }
+    if let Some(wall_time) = &found.wall_time {
+        blocks.extend(wall_time_blocks(&study.name, wall_time)?);
+    }
+    Ok(blocks)
+}
 
 /// Error over point updates, and the wall times of runs that had the machine to themselves.
-pub fn work_blocks(results: &StudyResults<'_>, timing: &[TimingFinding]) -> Vec<Block> {
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn work_blocks(
+    study: &str,
+    found: &WorkFinding,
+    timing: &[TimingFinding],
+) -> Result<Vec<Block>, RenderError> {
     let mut blocks = Vec::new();
-    let Some(measure) = timed_measure(results) else { return blocks };
-    let mut along_mesh = results.paths.along(Axis::Cells).to_vec();
-    along_mesh.retain(|path| path.records.iter().all(|record| record.case.counts_work()));
-    if along_mesh.len() > 1 {
+    if !found.lines.is_empty() {
         let mut chart = Chart::new(
             "Error against work",
             ChartAxis::log10("point updates (points × steps)"),
-            ChartAxis::log10(labels::error_axis(&measure)),
+            ChartAxis::log10(labels::error_axis(found.quantity)),
         );
-        let DrawnPaths { paths, note } = drawn(&along_mesh);
-        let labels = path_labels(&paths);
-        let (words, end) = (labels::measure(&measure), labels.subtitle_end());
-        chart.subtitle = Some(format!("{words}, T_v = {}{end}", number::time_factor(measure.time_factor)));
-        for (path, label) in paths.iter().zip(labels.each) {
-            let point =
-                |record: &&Record| Some((record.counters.point_updates as f64, error_of(record, &measure)?));
-            chart.series.push(Series::new(label, path.records.iter().filter_map(point).collect()));
-        }
-        let caption = "Work up to the last output, counted and not timed: every step visits every point once, or does the \
-                       same by one banded map of the grid. Order p in h gives e ~ W^(−p/2), because a mesh twice as fine \
-                       has twice the points and twice the steps.";
+        let words = labels::measured(found.quantity, found.sample);
+        let (time, end) = (number::time_factor(found.time_factor), labels::subtitle_end(&found.shared));
+        chart.subtitle = Some(format!("{words}, T_v = {time}{end}"));
+        let line = |line: &NamedLine| Series::new(line.name.clone(), line.points.clone());
+        chart.series.extend(found.lines.iter().map(line));
+        let caption = templates::sentence("work", found)?;
         blocks.push(Block::Heading("Error against work".to_owned()));
-        blocks.push(Block::Figure(figure_of(results, "work", chart, caption)));
-        blocks.extend(note.map(Block::Paragraph));
+        blocks.push(Block::Figure(figure_of(study, "work", chart, caption)));
+        if let Some(series) = &found.drawn {
+            blocks.push(Block::Paragraph(labels::drawn(series)?));
+        }
     }
     if !timing.is_empty() {
-        blocks.push(Block::Table(timing_table(timing, &measure)));
+        blocks.push(Block::Table(timing_table(timing, found)));
     }
-    blocks
+    Ok(blocks)
 }
 
-fn timing_table(timing: &[TimingFinding], measure: &Measure) -> Table {
-    let counted = |work: Option<u64>| work.map_or(Cell::missing(labels::NOT_COUNTED), Cell::Count);
+fn timing_table(timing: &[TimingFinding], measured: &WorkFinding) -> Table {
     let rows = timing.iter().map(|run| {
         vec![
             Cell::Code(run.case.clone()),
             Cell::of(run.error, Cell::Error, "no error was measured"),
-            counted(run.steps),
-            counted(run.point_updates),
+            labels::counted(run.steps),
+            labels::counted(run.point_updates),
             Cell::Seconds(run.median),
             format!("{:.3} … {:.3} s, {} runs", run.least, run.most, run.runs).into(),
             Cell::of(run.nanoseconds_per_update, Cell::Number, labels::NOT_COUNTED),
@@ -67,8 +79,8 @@ fn timing_table(timing: &[TimingFinding], measure: &Measure) -> Table {
     });
     let title = format!(
         "Cost, with the error of the {} at T_v = {}",
-        labels::measure(measure),
-        number::time_factor(measure.time_factor)
+        labels::measured(measured.quantity, measured.sample),
+        number::time_factor(measured.time_factor)
     );
     let header =
         "case | > error | > steps | > point updates | > wall, median | spread | > a point and step [ns]";
@@ -77,23 +89,18 @@ fn timing_table(timing: &[TimingFinding], measure: &Measure) -> Table {
 }
 
 /// Error against wall time, for a study with timed runs of several integrators.
-pub fn wall_time_blocks(results: &StudyResults<'_>) -> Vec<Block> {
-    let reference = results.study.references.first();
-    let precision = reference.and_then(|reference| WorkPrecision::of(results.records, reference.name()));
-    let Some(precision) = precision else { return Vec::new() };
-    if distinct(precision.runs.iter().map(|run| run.record.case.integrator)).len() < 2 {
-        return Vec::new();
-    }
+fn wall_time_blocks(study: &str, found: &WallTimeFinding) -> Result<Vec<Block>, RenderError> {
+    let figure = figure_of(study, "wall-time", chart_of(found), caption(found)?);
     let mut blocks = vec![
         Block::Heading("Error against wall time".to_owned()),
-        Block::Figure(figure_of(results, "wall-time", chart_of(&precision), caption(&precision))),
-        Block::Table(cheapest_table(&precision)),
+        Block::Figure(figure),
+        Block::Table(cheapest_table(found)),
     ];
-    if peers::solve_their_column(&precision.runs) {
-        blocks.push(Block::Table(peers_table(&precision)));
-        blocks.push(Block::Table(peer_series_table()));
+    if let Some(peers) = &found.peers {
+        blocks.push(Block::Table(peers_table(peers)));
+        blocks.push(Block::Table(peer_series_table(peers)));
     }
-    blocks
+    Ok(blocks)
 }
 
 /// Factor on the longest time up to which the axis goes.
@@ -103,7 +110,7 @@ const PEERS_SLOT: usize = 6;
 
 /// A line per method and integrator over its best runs, and a grey one per other program on the same column; names stand at
 /// the ends of the lines.
-pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
+pub fn chart_of(found: &WallTimeFinding) -> Chart {
     let mut chart = Chart::new(
         "Error against wall time",
         ChartAxis::log10("wall time (s)"),
@@ -111,20 +118,16 @@ pub fn chart_of(precision: &WorkPrecision<'_>) -> Chart {
     );
     chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
     chart.naming = Naming::Hover;
-    let fronts = precision.fronts();
-    let methods = distinct(fronts.iter().map(|front| front.method));
-    for front in &fronts {
+    let methods = distinct(found.fronts.iter().map(|front| front.method.as_str()));
+    for front in &found.fronts {
         let slot = methods.iter().position(|method| *method == front.method).unwrap_or_default();
         let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
-        let points = front.runs.iter().map(|run| (run.wall.median, run.error)).collect();
-        let series = Series::new(format!("{}, {}", front.method, front.integrator.name()), points);
+        let name = format!("{}, {}", front.method, front.integrator.name());
+        let series = Series::new(name, front.points.clone());
         add_named(&mut chart, series.slot(slot).marker(marker.unwrap_or_default()));
     }
-    if peers::solve_their_column(&precision.runs) {
-        for (program, peers) in peers::by_program_and_scheme() {
-            let points = peers.iter().map(|peer| (peer.seconds, peer.worst_error())).collect();
-            add_named(&mut chart, Series::new(program, points).slot(PEERS_SLOT));
-        }
+    for line in found.peers.iter().flat_map(|peers| &peers.lines) {
+        add_named(&mut chart, Series::new(line.name.clone(), line.points.clone()).slot(PEERS_SLOT));
     }
     // Room for the names right of the last points.
     let times = || chart.series.iter().flat_map(|series| &series.points).map(|(seconds, _)| *seconds);
@@ -143,32 +146,24 @@ fn add_named(chart: &mut Chart, series: Series) {
 }
 
 /// The caption of the chart of wall times.
-pub fn caption(precision: &WorkPrecision<'_>) -> String {
-    let noise = precision.noise_floor.map_or(String::new(), |noise| {
-        format!(" Timed twice in this session, the same run differs by {:.0} %.", 100.0 * noise)
-    });
-    let others = if peers::solve_their_column(&precision.runs) {
-        " Grey: other programs, timed on another day."
-    } else {
-        ""
-    };
-    format!(
-        "Colour: method; marker: integrator. Each line joins the runs that no other run of the same two beats in both time and \
-         error. Wall time: median over repeats.{noise}{others}"
-    )
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn caption(found: &WallTimeFinding) -> Result<String, RenderError> {
+    templates::sentence("wall-time", found)
 }
 
-fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
-    let rows = precision.cheapest.iter().map(|cheapest| {
+fn cheapest_table(found: &WallTimeFinding) -> Table {
+    let rows = found.cheapest.iter().map(|cheapest| {
         let mut row = vec![Cell::Percent(cheapest.tolerance)];
         row.extend(cheapest.run.iter().flat_map(|run| {
             [
-                Cell::Code(run.record.case.label()),
+                Cell::Code(run.case.clone()),
                 Cell::Error(run.error),
-                Cell::Number(1e3 * run.wall.median),
-                Cell::Number(1e3 * run.wall.deviation),
-                labels::counted(run.record, run.record.counters.steps),
-                labels::counted(run.record, run.record.counters.point_updates),
+                Cell::Number(1e3 * run.seconds),
+                Cell::Number(1e3 * run.deviation),
+                labels::counted(run.steps),
+                labels::counted(run.point_updates),
             ]
         }));
         row.resize(7, Cell::missing("no timed run is within the tolerance"));
@@ -183,19 +178,17 @@ fn cheapest_table(precision: &WorkPrecision<'_>) -> Table {
 }
 
 /// The errors that other programs pin in convergence tests of their own, judged as series of this program are.
-fn peer_series_table() -> Table {
-    let rows = peers::PEER_SERIES.iter().map(|one| {
-        let errors =
-            one.levels.iter().map(|(_, error)| number::error(*error)).collect::<Vec<_>>().join(" → ");
-        let orders = one.orders().into_iter().map(|order| order.map_or("–".to_owned(), number::order));
-        let found = one.classified();
+fn peer_series_table(found: &PeersFinding) -> Table {
+    let rows = found.series.iter().map(|one| {
+        let errors = one.errors.iter().map(|error| number::error(*error)).collect::<Vec<_>>().join(" → ");
+        let orders = one.orders.iter().map(|order| order.map_or("–".to_owned(), number::order));
         vec![
             one.name.as_str().into(),
             one.quantity.as_str().into(),
             errors.into(),
             orders.collect::<Vec<_>>().join(", ").into(),
-            found.class.name().into(),
-            found.reason.into(),
+            one.class.name().into(),
+            one.reason.as_str().into(),
         ]
     });
     let heads = columns(
@@ -207,24 +200,24 @@ fn peer_series_table() -> Table {
 }
 
 /// Each other program beside the cheapest run here that is nowhere worse.
-pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
-    let rows = peers::compare(&precision.runs).into_iter().map(|Comparison { peer, ahead }| {
-        let Peer { name, kind, cells, time_scheme, samples, .. } = peer;
+fn peers_table(found: &PeersFinding) -> Table {
+    let rows = found.rows.iter().map(|peer| {
+        let PeerRow { program, kind, cells, time_scheme, samples, .. } = peer;
         let mut row: Vec<Cell> = vec![
-            format!("{name}: {kind}, {cells} cells, {time_scheme}, at {samples}").into(),
+            format!("{program}: {kind}, {cells} cells, {time_scheme}, at {samples}").into(),
             peer.day.as_str().into(),
         ];
-        row.extend(peer.errors().map(Cell::Error));
+        row.extend(peer.errors.map(Cell::Error));
         row.push(Cell::Number(peer.seconds));
-        if let Some((run, errors)) = ahead {
-            row.push(Cell::Code(run.record.case.label()));
-            row.extend(errors.map(|error| Cell::of(error, Cell::Error, "not measured")));
-            row.push(Cell::Number(run.wall.median));
+        if let Some(ahead) = &peer.ahead {
+            row.push(Cell::Code(ahead.case.clone()));
+            row.extend(ahead.errors.map(|error| Cell::of(error, Cell::Error, "not measured")));
+            row.push(Cell::Number(ahead.seconds));
         }
         row.resize(11, Cell::missing("every run here has a larger error at some of the times"));
         row
     });
-    let times = peers::TIME_FACTORS.map(|factor| format!("> T_v = {factor}")).join(" | ");
+    let times = found.time_factors.map(|factor| format!("> T_v = {factor}")).join(" | ");
     Table::of(
         "Other programs on this column, and the cheapest run here whose errors are no larger at any of the times",
         columns(&format!("program | measured on | {times} | > time [s] | run here | {times} | > wall [s]")),
@@ -241,7 +234,8 @@ pub fn peers_table(precision: &WorkPrecision<'_>) -> Table {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use crate::judge::comparison::work_precision::{Cheapest, TimedRun};
+    use crate::judge::comparison::peers;
+    use crate::judge::comparison::work_precision::{Cheapest, TimedRun, WorkPrecision};
     use crate::measure::statistics::WallSpread;
 
     #[test]
@@ -264,7 +258,8 @@ mod tests {
             runs: vec![best, other],
             noise_floor: Some(0.07),
         };
-        let table = cheapest_table(&precision);
+        let found = WallTimeFinding::new(&precision);
+        let table = cheapest_table(&found);
         let (label, counters) = (records[0].case.label(), &records[0].counters);
         let expected = [
             Cell::Percent(1e-2),
@@ -277,15 +272,16 @@ mod tests {
         ];
         assert_eq!(table.rows[0], expected);
         assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
-        let chart = chart_of(&precision);
+        let chart = chart_of(&found);
         let series =
             |place: usize| (chart.series[place].name.as_str(), chart.series[place].points.as_slice());
         assert_eq!(series(0), ("GIMP, implicit", &[(0.011, 0.0071)][..]));
         assert_eq!(series(1), ("MPM, implicit", &[(0.023, 0.0092)][..]));
         assert_ne!(chart.series[0].slot, chart.series[1].slot, "a colour per method");
         assert_eq!(chart.series[0].marker, chart.series[1].marker, "a marker per integrator");
-        assert!(caption(&precision).contains("differs by 7 %"));
-        assert!(caption(&precision).ends_with(" Grey: other programs, timed on another day."));
+        let told = caption(&found).expect("filled");
+        assert!(told.contains("differs by 7 %"), "{told}");
+        assert!(told.ends_with(" Grey: other programs, timed on another day."), "{told}");
         let first = &peers::PEERS[0];
         assert_eq!(
             (series(2).0, series(2).1[0]),
@@ -294,7 +290,8 @@ mod tests {
         let ends: Vec<_> = chart.series.iter().map(|series| (series.points.last(), &series.name)).collect();
         let names: Vec<_> = chart.names.iter().map(|named| (Some(&named.at), &named.name)).collect();
         assert_eq!(names, ends, "a name at the end of each line");
-        let alone = WorkPrecision { noise_floor: None, ..precision };
-        assert!(!caption(&alone).contains("Timed twice"), "{}", caption(&alone));
+        let alone = WallTimeFinding { noise: None, peers: None, ..found };
+        let told = caption(&alone).expect("filled");
+        assert!(!told.contains("Timed twice") && !told.contains("Grey"), "{told}");
     }
 }

@@ -1,17 +1,11 @@
 //! Words for quantities, samples, axes and orders, shared by all figures and tables.
 
 use crate::case::quantity::{Quantity, Sample};
-use crate::case::step_label;
-use crate::judge::answers::is_settled;
-use crate::judge::path_labels::PathLabels;
-pub use crate::judge::paths::first_measure;
-use crate::judge::paths::{Path, SeriesSummary};
-use crate::record::Record;
-use crate::render::number;
+use crate::judge::blocks::drawn::DrawnSeries;
 use crate::render::table::Cell;
-use crate::study::expectation::{Axis, Measure, NEXT_FINER};
+use crate::render::{RenderError, number, templates};
+use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
-use oedometer_mpm::run::TimeStepRule;
 
 /// The words beside an order that is not settled, or instead of one, with their meanings.
 const CLASSES: [(&str, &str); 8] = [
@@ -32,18 +26,6 @@ pub fn class_meanings(rows: &[Vec<Cell>]) -> String {
     met.map(|(class, meaning)| format!("{class}: {meaning}")).collect::<Vec<_>>().join("; ")
 }
 
-/// Items by their keys, both in the order of their first appearance.
-pub fn grouped<K: PartialEq, V>(items: impl IntoIterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
-    let mut groups: Vec<(K, Vec<V>)> = Vec::new();
-    for (key, item) in items {
-        match groups.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, own)) => own.push(item),
-            None => groups.push((key, vec![item])),
-        }
-    }
-    groups
-}
-
 /// The words with a capital first letter.
 pub fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
@@ -53,7 +35,7 @@ pub fn capitalised(words: &str) -> String {
 /// The order, with its class unless it is asymptotic; the class alone without an order.
 pub fn order_or_class(class: Class, order: Option<f64>) -> String {
     match order {
-        Some(order) if is_settled(class) => number::order(order),
+        Some(order) if class.is_settled() => number::order(order),
         Some(order) => format!("{} ({class})", number::order(order)),
         None => class.name().to_owned(),
     }
@@ -129,22 +111,19 @@ pub fn sample(sample: Sample) -> &'static str {
 /// Why the work of a case is not known.
 pub const NOT_COUNTED: &str = "of an attached solver";
 
-/// Work of a case, where it is counted.
-pub fn counted(record: &Record, work: u64) -> Cell {
-    if record.case.counts_work() { Cell::Count(work) } else { Cell::missing(NOT_COUNTED) }
+/// Work, where it is counted.
+pub fn counted(work: Option<u64>) -> Cell {
+    work.map_or(Cell::missing(NOT_COUNTED), Cell::Count)
 }
 
-/// A measure in words, without its time.
-pub fn measure(measure: &Measure) -> String {
-    format!("{} {}", quantity(measure.quantity), sample(measure.sample))
+/// A quantity at its places, in words.
+pub fn measured(measured: Quantity, at: Sample) -> String {
+    format!("{} {}", quantity(measured), sample(at))
 }
 
-/// The step of a run in words: seconds with their unit, else its rule.
-pub fn step(record: &Record) -> String {
-    match record.case.time_step {
-        TimeStepRule::Seconds(seconds) => format!("Δt = {} s", number::number(seconds)),
-        rule => step_label(&rule),
-    }
+/// What all series of a figure share, as the end of its subtitle.
+pub fn subtitle_end(shared: &str) -> String {
+    if shared.is_empty() { String::new() } else { format!("; {shared}") }
 }
 
 /// Label of an axis of refinement.
@@ -158,110 +137,30 @@ pub fn axis(axis: Axis) -> &'static str {
 }
 
 /// Label of an error's axis.
-pub fn error_axis(measure: &Measure) -> String {
-    match measure.quantity {
+pub fn error_axis(of: Quantity) -> String {
+    match of {
         one if one.is_of_surface() => format!("relative error of {} (–)", quantity(one)),
         other => format!("relative L_2 error, {} (–)", quantity(other)),
     }
 }
 
-impl PathLabels {
-    /// The labels with the places of a path's errors, where they are not those of the figure.
-    #[must_use]
-    pub fn with_places(mut self, summaries: &[SeriesSummary<'_>], asked: Sample) -> Self {
-        for (label, summary) in self.each.iter_mut().zip(summaries) {
-            if summary.measure.sample != asked {
-                *label = format!("{label}, {}", sample(summary.measure.sample));
-            }
-        }
-        self
-    }
-}
-
-/// Most series of a figure with several soils.
-const MOST_SERIES: usize = 14;
-/// Most series of a figure with one soil.
-const MOST_OF_A_SOIL: usize = 60;
-
-/// The paths of a figure.
-pub struct DrawnPaths<'a> {
-    /// The paths that are shown.
-    pub paths: Vec<Path<'a>>,
-    /// Which of all they are, as a sentence; `None` if they are all.
-    pub note: Option<String>,
-}
-
-/// All paths; if they are too many, those of the undisturbed soil, or else of the first soil.
-pub fn drawn<'a>(all: &[Path<'a>]) -> DrawnPaths<'a> {
-    if all.len() <= MOST_SERIES {
-        return DrawnPaths { paths: all.to_vec(), note: None };
-    }
-    let variant = |path: &Path<'_>| path.records[0].case.variant();
-    let of_variant = |wanted: &str| -> Vec<Path<'a>> {
-        all.iter().filter(|path| variant(path) == wanted).cloned().collect()
-    };
-    let plain = of_variant("");
-    let (mut paths, what) = if plain.is_empty() {
-        let first = variant(&all[0]);
-        (of_variant(&first), format!("those with {first}"))
-    } else {
-        (plain, "the plain soil only".to_owned())
-    };
-    let first = if paths.len() > MOST_OF_A_SOIL { "the first of " } else { "" };
-    paths.truncate(MOST_OF_A_SOIL);
-    let note = (paths.len() < all.len()).then(|| {
-        format!(
-            "The figures show {} of {} series, {first}{what}; the tables have every one.",
-            paths.len(),
-            all.len()
-        )
-    });
-    DrawnPaths { paths, note }
+/// Which of all series the figures show.
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn drawn(series: &DrawnSeries) -> Result<String, RenderError> {
+    templates::sentence("drawn", series)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::records_of;
-    use crate::judge::paths::paths;
-    use crate::study::expectation::Axis;
     use oedometer_exact::reference::ReferenceKind;
 
     #[test]
     fn every_size_has_one_tick_in_rising_order() {
         let sizes = [0.2, 0.05, 0.1, 0.2, 0.05];
         assert_eq!(ticks(sizes.into_iter()), [0.05, 0.1, 0.2]);
-    }
-
-    fn series_of(sweep: &str) -> (usize, usize, Option<String>) {
-        let records = records_of(&format!(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05]\n[[sweep]]\ncells = [2, 4]\n\
-             integrator = ['implicit']\ntime_step = [{{ growth = 0.5 }}]\n{sweep}"
-        ));
-        let all = paths(&records, Axis::Cells);
-        let shown = drawn(&all);
-        (shown.paths.len(), all.len(), shown.note)
-    }
-
-    #[test]
-    fn a_figure_shows_all_paths_or_those_of_one_soil_and_says_so() {
-        let (shown, all, note) = series_of("method = ['MPM', 'GIMP']\nporosity = [0.3, 0.4]\n");
-        assert_eq!((shown, all, note), (4, 4, None));
-        let soils = "porosity = [0.3, 0.32, 0.34, 0.36, 0.38, 0.4, 0.42, 0.44]\n";
-        let (shown, all, note) = series_of(&format!("method = ['MPM', 'GIMP']\n{soils}"));
-        assert_eq!((shown, all), (2, 16));
-        let note = note.expect("not all are shown");
-        assert!(note.contains("show 2 of 16 series, those with porosity=0.3"), "{note}");
-    }
-
-    #[test]
-    fn the_plain_soil_is_drawn_where_there_is_one_and_fourteen_series_are_not_too_many() {
-        let soils = |count: usize| (0..count).map(|one| format!("0.{one:02}")).collect::<Vec<_>>().join(", ");
-        let of =
-            |count: usize| series_of(&format!("method = ['MPM', 'GIMP']\njitter = [{}]\n", soils(count)));
-        assert_eq!(of(7), (14, 14, None));
-        let note = "The figures show 2 of 16 series, the plain soil only; the tables have every one.";
-        assert_eq!(of(8), (2, 16, Some(note.to_owned())));
     }
 
     #[test]
@@ -305,8 +204,7 @@ mod tests {
             (LoadFactor, Sample::Surface, "load factor of the surface", "relative error of load factor (–)"),
         ];
         for (quantity, sample, words, of_axis) in all {
-            let measured = first_measure(quantity, sample, "terzaghi", 0.1);
-            assert_eq!((measure(&measured).as_str(), error_axis(&measured).as_str()), (words, of_axis));
+            assert_eq!((&*measured(quantity, sample), &*error_axis(quantity)), (words, of_axis));
         }
         assert_eq!(
             Axis::ALL.map(axis),

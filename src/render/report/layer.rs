@@ -1,40 +1,38 @@
 //! A plane layer: pressure fields beside the exact one, and errors and oscillation against the stiffness of the water and
 //! of the skeleton; of a footing the load-settlement curves of all methods.
 
-use crate::judge::blocks::fields::{FieldFinding, FieldsFinding, LoadCurves, SHOWN_CELLS};
-use crate::judge::comparison::stiffness_sweep::{Showing, StiffnessSweep, SweptStiffness};
-use crate::judge::study_results::StudyResults;
+use crate::case::grouping::grouped;
+use crate::judge::blocks::fields::{FieldFinding, LoadCurves, SHOWN_CELLS};
+use crate::judge::findings::{StiffnessFinding, StiffnessValue, Swept};
+use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, Style};
-use crate::render::number;
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, TableColumn, columns};
-use oedometer_exact::exact_error::ExactError;
-use oedometer_mpm::scene::SceneKind;
+use crate::render::{RenderError, number, templates};
 
-/// Fields and sweeps of a study of a layer; empty for a column.
+/// Loads, fields and sweeps of a study in the plane; empty for a column.
 ///
 /// # Errors
-/// When a reference refuses a case.
-pub fn blocks(results: &StudyResults<'_>, fields: Option<&FieldsFinding>) -> Result<Vec<Block>, ExactError> {
-    let scene = results.study.scene;
-    if !scene.has_plane_fields() || scene == SceneKind::Footing {
-        return Ok(Vec::new());
-    }
-    let mut blocks = Vec::new();
-    if let Some(found) = fields {
+/// If a template cannot be filled.
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let found = &study.plain.blocks;
+    let mut blocks = load_settlement(&study.name, found.loads.as_ref());
+    if let Some(found) = &found.fields {
         let ratio = found.poissons_ratio;
         blocks.push(Block::Heading(format!(
             "Pressure at the points, {SHOWN_CELLS} cells over the height, ν = {ratio}"
         )));
-        let drawn = found.fields.iter().map(|field| figure(results, field, found.time_factor));
+        let drawn = found.fields.iter().map(|field| figure(&study.name, field, found.time_factor));
         blocks.push(Block::Figures(drawn.collect()));
     }
-    blocks.extend(sweep_blocks(results)?);
+    if study.shows_sweeps {
+        blocks.extend(sweep_blocks(&study.name, &study.plain.stiffness)?);
+    }
     Ok(blocks)
 }
 
-fn figure(results: &StudyResults<'_>, found: &FieldFinding, time_factor: f64) -> Figure {
+fn figure(study: &str, found: &FieldFinding, time_factor: f64) -> Figure {
     let name = found.method.as_deref().unwrap_or("Exact");
     let mut chart = Chart::new(
         name.to_owned(),
@@ -62,31 +60,27 @@ fn figure(results: &StudyResults<'_>, found: &FieldFinding, time_factor: f64) ->
             format!("{name} at T_v = {time}: oscillation index {}.{beyond}", number::fixed(index, 2))
         }
     };
-    figure_of(results, &format!("field-{name}"), chart, caption)
+    figure_of(study, &format!("field-{name}"), chart, caption)
 }
 
 /// Figures of the last output and, behind a click, every number.
-fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
+fn sweep_blocks(study: &str, found: &[StiffnessFinding]) -> Result<Vec<Block>, RenderError> {
     let mut blocks = Vec::new();
-    for stiffness in SweptStiffness::ALL {
-        let Some(sweep) = StiffnessSweep::of(results.study, results.records, stiffness)? else { continue };
-        let Some(last) = sweep.time_factors.last().copied() else { continue };
+    for (swept, rows) in grouped(found, |row| row.swept) {
+        let times = grouped(rows, |row| row.time_factor.to_bits());
+        let times: Vec<Vec<&StiffnessFinding>> = times.into_iter().map(|(_, rows)| rows).collect();
+        let Some(last) = times.last() else { continue };
         // Two values are no line, and the start has a section of its own.
-        if sweep.values.len() < 3 || last <= 0.0 {
+        if last[0].values.len() < 3 || last[0].time_factor <= 0.0 {
             continue;
         }
-        blocks.push(Block::Heading(words_of(stiffness).0.to_owned()));
-        blocks.push(Block::Paragraph(format!(
-            "{} cells over the height, T_v = {last}. The line of a method that the stiffness does not affect is level. Methods \
-             that agree hide each other; the tables have them all.",
-            sweep.cells
-        )));
-        let figures =
-            Showing::ALL.iter().map(|showing| sweep_figure(results, &sweep, last, *showing)).collect();
-        blocks.push(Block::Figures(figures));
-        let tables = sweep.time_factors.iter().flat_map(|time_factor| {
-            Showing::ALL.iter().map(|showing| Block::Table(sweep_table(&sweep, *time_factor, *showing)))
-        });
+        blocks.push(Block::Heading(words_of(swept).0.to_owned()));
+        blocks.push(Block::Paragraph(templates::sentence("sweep", last[0])?));
+        let figures = Showing::ALL.map(|showing| sweep_figure(study, last, showing));
+        blocks.push(Block::Figures(figures.into()));
+        let tables = times
+            .iter()
+            .flat_map(|rows| Showing::ALL.map(|showing| Block::Table(sweep_table(rows, showing))));
         blocks.push(Block::Details {
             summary: "All numbers at all times".to_owned(),
             blocks: tables.collect(),
@@ -96,10 +90,30 @@ fn sweep_blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, ExactError> {
 }
 
 /// The heading of the figures of a stiffness, and one word for the names of their files.
-fn words_of(stiffness: SweptStiffness) -> (&'static str, &'static str) {
-    match stiffness {
-        SweptStiffness::Water => ("Stiff water, through consolidation", "water"),
-        SweptStiffness::Skeleton => ("Nearly incompressible skeleton, through consolidation", "skeleton"),
+fn words_of(swept: Swept) -> (&'static str, &'static str) {
+    match swept {
+        Swept::Water => ("Stiff water, through consolidation", "water"),
+        Swept::Skeleton => ("Nearly incompressible skeleton, through consolidation", "skeleton"),
+    }
+}
+
+/// What a figure shows of each run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Showing {
+    Displacement,
+    Pressure,
+    Oscillation,
+}
+
+impl Showing {
+    const ALL: [Self; 3] = [Self::Displacement, Self::Pressure, Self::Oscillation];
+
+    fn shown_in(self, value: &StiffnessValue) -> Option<f64> {
+        match self {
+            Self::Displacement => value.displacement,
+            Self::Pressure => value.pressure,
+            Self::Oscillation => value.oscillation,
+        }
     }
 }
 
@@ -112,70 +126,69 @@ fn subject(showing: Showing) -> (&'static str, &'static str) {
     }
 }
 
-fn sweep_figure(
-    results: &StudyResults<'_>,
-    sweep: &StiffnessSweep,
-    time_factor: f64,
-    showing: Showing,
-) -> Figure {
-    let x = match sweep.stiffness {
-        SweptStiffness::Water => ChartAxis::log10("K_w/E (–)"),
-        SweptStiffness::Skeleton => ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν")
-            .inverted()
-            .with_labelled_ticks(sweep.values.iter().map(|ratio| (1.0 - 2.0 * ratio, ratio.to_string()))),
+/// One number of all methods at a time.
+fn sweep_figure(study: &str, rows: &[&StiffnessFinding], showing: Showing) -> Figure {
+    let swept = rows[0].swept;
+    let x = match swept {
+        Swept::Water => ChartAxis::log10("K_w/E (–)"),
+        Swept::Skeleton => {
+            let ratios = rows[0].values.iter().map(|one| one.value);
+            ChartAxis::log10("Poisson's ratio ν (–), spaced as 1 − 2ν")
+                .inverted()
+                .with_labelled_ticks(ratios.map(|ratio| (1.0 - 2.0 * ratio, ratio.to_string())))
+        }
     };
     let (subject, word) = subject(showing);
-    let title = format!("{subject}, T_v = {}", number::time_factor(time_factor));
+    let title = format!("{subject}, T_v = {}", number::time_factor(rows[0].time_factor));
     let label = match showing {
         Showing::Displacement | Showing::Pressure => "relative L_2 error (–)",
         Showing::Oscillation => "total variation over the exact one's (–)",
     };
     let mut chart = Chart::new(title.clone(), x, ChartAxis::log10(label));
     chart.size = Size::PANEL;
-    for row in sweep.at(time_factor) {
-        let points = sweep.values.iter().zip(&row.found).filter_map(|(value, found)| {
-            let found = found[showing as usize]?;
+    for row in rows {
+        let points = row.values.iter().filter_map(|one| {
+            let found = showing.shown_in(one)?;
             // An oscillation shows as a ratio of variations above one.
             let found = if showing == Showing::Oscillation { 1.0 + found } else { found };
-            let is_skeleton = sweep.stiffness == SweptStiffness::Skeleton;
-            Some((if is_skeleton { 1.0 - 2.0 * value } else { *value }, found))
+            Some((if swept == Swept::Skeleton { 1.0 - 2.0 * one.value } else { one.value }, found))
         });
-        chart.series.push(Series::new(row.method.to_string(), points.collect()));
+        chart.series.push(Series::new(row.method.clone(), points.collect()));
     }
     if showing == Showing::Oscillation {
         chart.rules.push(Rule { at: 1.0, label: "theory".to_owned() });
     }
-    let name = format!("{word}-{}", words_of(sweep.stiffness).1);
-    figure_of(results, &name, chart, format!("{title}."))
+    let name = format!("{word}-{}", words_of(swept).1);
+    figure_of(study, &name, chart, format!("{title}."))
 }
 
-fn sweep_table(sweep: &StiffnessSweep, time_factor: f64, showing: Showing) -> Table {
-    let header = |value: &f64| match sweep.stiffness {
-        SweptStiffness::Water => format!("K_w/E = {value}"),
-        SweptStiffness::Skeleton => format!("ν = {value}"),
+fn sweep_table(rows: &[&StiffnessFinding], showing: Showing) -> Table {
+    let header = |one: &StiffnessValue| match rows[0].swept {
+        Swept::Water => format!("K_w/E = {}", one.value),
+        Swept::Skeleton => format!("ν = {}", one.value),
     };
     let mut columns = columns("method");
-    columns.extend(sweep.values.iter().map(|value| TableColumn::number(header(value))));
+    columns.extend(rows[0].values.iter().map(|one| TableColumn::number(header(one))));
     let cell = |value: Option<f64>| match (value, showing) {
         (None, _) => Cell::missing("not run"),
         (Some(value), Showing::Oscillation) => Cell::Number(value),
         (Some(value), _) => Cell::Error(value),
     };
-    let rows = sweep.at(time_factor).map(|row| {
-        let cells = row.found.iter().map(|found| cell(found[showing as usize]));
-        std::iter::once(Cell::Code(row.method.to_string())).chain(cells).collect()
-    });
     let note = (showing == Showing::Oscillation)
         .then(|| "Total variation over the exact one's, minus one.".to_owned());
-    Table::of(format!("{}, T_v = {}", subject(showing).0, number::time_factor(time_factor)), columns, rows)
-        .notes(note)
+    let title = format!("{}, T_v = {}", subject(showing).0, number::time_factor(rows[0].time_factor));
+    let rows = rows.iter().map(|row| {
+        let cells = row.values.iter().map(|one| cell(showing.shown_in(one)));
+        std::iter::once(Cell::Code(row.method.clone())).chain(cells).collect()
+    });
+    Table::of(title, columns, rows).notes(note)
 }
 
 /// Top of the figure of loads, over the exact collapse load.
 const HIGHEST: f64 = 2.5;
 
 /// Load over settlement of a footing; empty for other scenes.
-pub fn load_settlement(results: &StudyResults<'_>, loads: Option<&LoadCurves>) -> Vec<Block> {
+fn load_settlement(study: &str, loads: Option<&LoadCurves>) -> Vec<Block> {
     let Some(found) = loads else { return Vec::new() };
     let mut chart = Chart::new(
         "Load and settlement of the plate",
@@ -195,7 +208,7 @@ pub fn load_settlement(results: &StudyResults<'_>, loads: Option<&LoadCurves>) -
     );
     vec![
         Block::Heading("Load and settlement".to_owned()),
-        Block::Figures(vec![figure_of(results, "load-settlement", chart, caption)]),
+        Block::Figures(vec![figure_of(study, "load-settlement", chart, caption)]),
     ]
 }
 
@@ -203,10 +216,9 @@ pub fn load_settlement(results: &StudyResults<'_>, loads: Option<&LoadCurves>) -
 mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, records_of, solved, study_of};
-    use crate::case::SolverName;
     use crate::case::planned::Tier;
     use crate::judge::blocks::fields::shown_records;
-    use crate::judge::comparison::stiffness_sweep::SweepRow;
+    use crate::judge::study_results::StudyResults;
     use crate::measure::fields::PlaneField;
     use crate::record::HistoryRow;
     use crate::record::Record;
@@ -215,7 +227,7 @@ mod tests {
 
     fn curves_of(study: &crate::study::check::Study, records: &[Record]) -> Vec<Block> {
         let results = StudyResults::new(study, records, Tier::Full);
-        load_settlement(&results, LoadCurves::new(&results).as_ref())
+        load_settlement("s", LoadCurves::new(&results).as_ref())
     }
 
     #[test]
@@ -235,8 +247,7 @@ mod tests {
             [("GIMP-SRI".to_owned(), 8, 2), ("GIMP".to_owned(), 8, 2)],
             "the first run of each"
         );
-        let fields = FieldsFinding::new(&results).expect("theory");
-        let found = blocks(&results, fields.as_ref()).expect("theory");
+        let found = blocks(&results.findings().expect("theory")).expect("filled");
         assert_eq!(
             found[0],
             Block::Heading("Pressure at the points, 8 cells over the height, ν = 0.25".to_owned())
@@ -255,7 +266,7 @@ mod tests {
         };
         let drawn = |values: &[f64], index: Option<f64>| {
             let run = index.map(|index| ("GIMP".to_owned(), index));
-            figure(&results, &FieldFinding::new(&field, values, run), 0.2)
+            figure("s", &FieldFinding::new(&field, values, run), 0.2)
         };
         let beyond = drawn(&field.computed, Some(0.456));
         let caption = "GIMP at T_v = 0.2: oscillation index 0.46. Values reach 2.6, beyond the common scale.";
@@ -271,34 +282,31 @@ mod tests {
 
     #[test]
     fn each_figure_and_table_of_a_sweep_shows_its_own_quantity_over_the_stiffness() {
-        let text = "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
-                    integrator = ['implicit']\ncells = [2]\n";
-        let study = study_of("s", text);
-        let results = StudyResults::new(&study, &[], Tier::Full);
-        let row = |time_factor: f64, off: f64| SweepRow {
-            method: SolverName::Own(Method::named("GIMP").expect("a method")),
-            time_factor,
-            found: vec![[Some(0.1 + off), Some(0.2 + off), Some(0.3 + off)], [None; 3]],
-            failed: vec![None; 2],
+        let value = |value: f64, found: Option<f64>| StiffnessValue {
+            value,
+            displacement: found,
+            pressure: found.map(|found| found + 0.1),
+            oscillation: found.map(|found| found + 0.2),
+            failed: None,
         };
-        let sweep = |stiffness: SweptStiffness| StiffnessSweep {
-            stiffness,
+        let sweep = |swept: Swept| StiffnessFinding {
+            swept,
+            method: "GIMP".to_owned(),
             cells: 2,
-            values: vec![0.25, 0.49],
-            time_factors: vec![0.1, 0.2],
-            rows: vec![row(0.1, 5.0), row(0.2, 0.0)],
+            time_factor: 0.2,
+            values: vec![value(0.25, Some(0.1)), value(0.49, None)],
+            lost_from: None,
         };
-        for (stiffness, word, at, header) in [
-            (SweptStiffness::Skeleton, "skeleton", 0.5, "ν = 0.49"),
-            (SweptStiffness::Water, "water", 0.25, "K_w/E = 0.49"),
-        ] {
+        for (stiffness, word, at, header) in
+            [(Swept::Skeleton, "skeleton", 0.5, "ν = 0.49"), (Swept::Water, "water", 0.25, "K_w/E = 0.49")]
+        {
             for (showing, subject, kind, value) in [
                 (Showing::Displacement, "Displacement at the nodes", "displacement", 0.1),
-                (Showing::Pressure, "Pressure at the points", "pressure", 0.2),
-                (Showing::Oscillation, "Oscillation of the pressure", "oscillation", 0.3),
+                (Showing::Pressure, "Pressure at the points", "pressure", 0.1 + 0.1),
+                (Showing::Oscillation, "Oscillation of the pressure", "oscillation", 0.1 + 0.2),
             ] {
                 let is_ratio = showing == Showing::Oscillation;
-                let drawn = sweep_figure(&results, &sweep(stiffness), 0.2, showing);
+                let drawn = sweep_figure("s", &[&sweep(stiffness)], showing);
                 assert_eq!(
                     (drawn.name, drawn.caption),
                     (format!("s-{kind}-{word}"), format!("{subject}, T_v = 0.2."))
@@ -308,8 +316,8 @@ mod tests {
                 let points: Vec<_> = drawn.chart.series.iter().map(|one| one.points.clone()).collect();
                 assert_eq!(points, [vec![(at, up)]], "nothing is drawn where nothing was found");
                 assert_eq!(drawn.chart.rules.len(), usize::from(is_ratio));
-                assert_eq!(drawn.chart.x.inverted, stiffness == SweptStiffness::Skeleton);
-                let table = sweep_table(&sweep(stiffness), 0.2, showing);
+                assert_eq!(drawn.chart.x.inverted, stiffness == Swept::Skeleton);
+                let table = sweep_table(&[&sweep(stiffness)], showing);
                 let cell = if is_ratio { Cell::Number(value) } else { Cell::Error(value) };
                 let name = Cell::Code("GIMP".to_owned());
                 assert_eq!(table.rows, [vec![name, cell, Cell::missing("not run")]]);

@@ -1,40 +1,38 @@
 //! Maps over inputs: the cheapest method for one percent on each soil, and critical steps, predicted and observed.
 
-use crate::judge::blocks::soil_map::{MapFinding, soils_of};
-use crate::judge::comparison::stability_map::{MapAxis, MapScale, maps_of};
-use crate::judge::comparison::work_precision::{MappedSoil, TOLERANCE};
-use crate::judge::study_results::StudyResults;
+use crate::judge::blocks::soil_map::MapFinding;
+use crate::judge::blocks::stability::StabilityFinding;
+use crate::judge::comparison::stability_map::{MapScale, StabilityMap};
+use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
-use crate::render::page::Block;
+use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
 use crate::render::tables::runs;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::render::{RenderError, templates};
+use std::collections::BTreeMap;
 
 /// Map and table of a study that varies conductivity and stiffness; empty for others.
-pub fn cheapest_methods(results: &StudyResults<'_>, map: Option<&MapFinding>) -> Vec<Block> {
-    let soils = soils_of(results);
-    let Some(map) = map.filter(|_| !soils.is_empty()) else { return Vec::new() };
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn cheapest_methods(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let Some(map) = &study.plain.blocks.map else { return Ok(Vec::new()) };
     let mut blocks = vec![Block::Heading("Which method is cheapest where".to_owned())];
-    let cheapest = winners(&soils);
+    let cheapest = winners(map);
     let mut figures = Vec::new();
     match cheapest.series.as_slice() {
         // A map of one colour is a sentence.
-        [only] => blocks.push(Block::Paragraph(format!(
-            "Cheapest to {} % on each of {} soils: `{}`.",
-            100.0 * TOLERANCE,
-            soils.len(),
-            only.name
-        ))),
-        _ => figures.push(figure_of(results, "cheapest method", cheapest, CAPTION)),
+        [_] => blocks.push(Block::Paragraph(templates::sentence("cheapest", map)?)),
+        _ => figures.push(figure_of(&study.name, "cheapest method", cheapest, CAPTION)),
     }
-    figures
-        .extend(broken(&soils).map(|chart| figure_of(results, "where runs break", chart, CAPTION_OF_BROKEN)));
+    let broken = broken(map);
+    figures.extend(broken.map(|chart| figure_of(&study.name, "where runs break", chart, CAPTION_OF_BROKEN)));
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
     blocks.push(Block::Table(methods_table(map)));
-    blocks
+    Ok(blocks)
 }
 
 const CAPTION: &str = "Error of the pore pressure at the points; time from the number of steps and the cost of one, which is \
@@ -49,10 +47,6 @@ const UNTRIED: (usize, usize) = (6, 7);
 /// Name of the soils on which every run reached its end.
 const NONE_FAILED: &str = "no run failed";
 
-fn place(soil: &MappedSoil) -> (f64, f64) {
-    (soil.conductivity, soil.stiffness)
-}
-
 /// Soils by name, one colour per name.
 fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
     let x = ChartAxis::log10("hydraulic conductivity k (m/s)");
@@ -65,41 +59,30 @@ fn map_of(title: String, names: BTreeMap<&str, Vec<(f64, f64)>>) -> Chart {
 }
 
 /// The cheapest way on every soil.
-fn winners(soils: &[MappedSoil]) -> Chart {
+fn winners(map: &MapFinding) -> Chart {
     let mut names: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    for soil in soils {
-        let name = soil.cheapest().map_or("none reaches it", |way| way.name.as_str());
-        names.entry(name).or_default().push(place(soil));
+    for soil in &map.places {
+        names.entry(soil.cheapest.as_deref().unwrap_or("none reaches it")).or_default().push(soil.at);
     }
-    map_of(format!("The cheapest way to {} %", 100.0 * TOLERANCE), names)
-}
-
-/// The integrator of a method and integrator.
-fn integrator_of(name: &str) -> &str {
-    name.rsplit_once(' ').map_or(name, |(_, integrator)| integrator)
+    map_of(format!("The cheapest way to {} %", 100.0 * map.tolerance), names)
 }
 
 /// Soils where runs of an integrator failed, beside those where one was not tried and those where none failed; `None` if no
 /// run failed at all.
-fn broken(soils: &[MappedSoil]) -> Option<Chart> {
-    if soils.iter().all(|soil| soil.broken.is_empty()) {
+fn broken(map: &MapFinding) -> Option<Chart> {
+    if map.places.iter().all(|soil| soil.broken.is_empty()) {
         return None;
     }
-    let integrators = |names: &[String]| -> BTreeSet<String> {
-        names.iter().map(|name| integrator_of(name).to_owned()).collect()
-    };
-    let of_study: BTreeSet<String> = soils.iter().flat_map(|soil| integrators(&soil.tried)).collect();
     let mut names: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
-    for soil in soils {
-        let (tried, broken) = (integrators(&soil.tried), integrators(&soil.broken));
-        let untried = of_study.difference(&tried).map(|integrator| format!("{integrator}{NOT_TRIED}"));
-        let broken = broken.into_iter().map(|integrator| format!("{integrator}: a run failed"));
+    for soil in &map.places {
+        let untried = soil.untried.iter().map(|integrator| format!("{integrator}{NOT_TRIED}"));
+        let broken = soil.broken.iter().map(|integrator| format!("{integrator}: a run failed"));
         let mut states: Vec<String> = broken.chain(untried).collect();
         if states.is_empty() {
             states.push(NONE_FAILED.to_owned());
         }
         for state in states {
-            names.entry(state).or_default().push(place(soil));
+            names.entry(state).or_default().push(soil.at);
         }
     }
     let names = names.iter().map(|(name, places)| (name.as_str(), places.clone())).collect();
@@ -138,73 +121,52 @@ fn methods_table(map: &MapFinding) -> Table {
 /// Ratio of the largest to the smallest step from which a map has a logarithmic axis.
 const WIDE: f64 = 20.0;
 
-/// Maps and table of a study whose task is stability; empty for others.
-pub fn critical_steps(results: &StudyResults<'_>) -> Vec<Block> {
-    if results.records.iter().all(|record| record.stability.is_none()) {
-        return Vec::new();
-    }
-    let mut figures = Vec::new();
-    for map in maps_of(results.records) {
-        let steps = || map.curves.iter().flat_map(|curve| &curve.points).map(|point| point.predicted);
-        let most = steps().fold(0.0, f64::max);
-        let least = steps().fold(f64::INFINITY, f64::min);
-        let label = "critical step over h/c (–)";
-        let x = axis_of(map.axis);
-        let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
-        let mut chart = Chart::new(format!("Critical step, {}", map.shared), x, y);
-        chart.size = Size::PANEL;
-        for (slot, curve) in map.curves.iter().enumerate() {
-            let predicted = curve.points.iter().map(|point| (point.at, point.predicted)).collect();
-            let observed =
-                curve.points.iter().filter_map(|point| Some((point.at, point.observed?))).collect();
-            chart.series.push(
-                Series::new(format!("{}, predicted", curve.name), predicted).style(Style::Line).slot(slot),
-            );
-            chart.series.push(
-                Series::new(format!("{}, observed", curve.name), observed).style(Style::Markers).slot(slot),
-            );
-        }
-        let caption = format!(
-            "Lines: spectral radius of the step operator. Marks: bisection of runs. Largest difference {:.2} %.",
-            100.0 * map.largest_deviation
-        );
-        figures.push(figure_of(results, &map.shared, chart, caption));
-    }
-    vec![
+/// Maps and table of a study whose task is stability.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn critical_steps(study: &str, found: &StabilityFinding) -> Result<Vec<Block>, RenderError> {
+    let figures = found.maps.iter().map(|map| stability_figure(study, map)).collect::<Result<_, _>>()?;
+    Ok(vec![
         Block::Heading("Critical step, predicted and observed".to_owned()),
         Block::Figures(figures),
         Block::Details {
             summary: "Every case with the runs just below and above its limit".to_owned(),
-            blocks: vec![Block::Table(runs::critical_steps(results.records))],
+            blocks: vec![Block::Table(runs::critical_steps(&found.steps))],
         },
-    ]
+    ])
 }
 
-fn axis_of(axis: &MapAxis) -> ChartAxis {
-    match axis.scale {
-        MapScale::Counts => ChartAxis::linear(axis.label).with_ticks((1..=5).map(f64::from).collect()),
-        MapScale::Linear => ChartAxis::linear(axis.label),
-        MapScale::Log => ChartAxis::log10(axis.label),
+fn stability_figure(study: &str, map: &StabilityMap) -> Result<Figure, RenderError> {
+    let steps = || map.curves.iter().flat_map(|curve| &curve.points).map(|point| point.predicted);
+    let (least, most) = (steps().fold(f64::INFINITY, f64::min), steps().fold(0.0, f64::max));
+    let label = "critical step over h/c (–)";
+    let y = if most > WIDE * least { ChartAxis::log10(label) } else { ChartAxis::linear(label) };
+    let mut chart = Chart::new(format!("Critical step, {}", map.shared), axis_of(map), y);
+    chart.size = Size::PANEL;
+    for (slot, curve) in map.curves.iter().enumerate() {
+        let predicted = curve.points.iter().map(|point| (point.at, point.predicted)).collect();
+        let observed = curve.points.iter().filter_map(|point| Some((point.at, point.observed?))).collect();
+        let lines = [("predicted", predicted, Style::Line), ("observed", observed, Style::Markers)];
+        chart.series.extend(lines.map(|(what, points, style)| {
+            Series::new(format!("{}, {what}", curve.name), points).style(style).slot(slot)
+        }));
+    }
+    Ok(figure_of(study, &map.shared, chart, templates::sentence("critical-steps", map)?))
+}
+
+fn axis_of(map: &StabilityMap) -> ChartAxis {
+    match map.scale {
+        MapScale::Counts => ChartAxis::linear(map.over.as_str()).with_ticks((1..=5).map(f64::from).collect()),
+        MapScale::Linear => ChartAxis::linear(map.over.as_str()),
+        MapScale::Log => ChartAxis::log10(map.over.as_str()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::comparison::work_precision::Way;
-
-    #[test]
-    fn a_soil_lies_at_its_conductivity_along_and_its_stiffness_up() {
-        let none = Vec::new;
-        let soil = MappedSoil {
-            conductivity: 2e-5,
-            stiffness: 3e6,
-            tried: none(),
-            ways: Vec::new(),
-            broken: none(),
-        };
-        assert_eq!(place(&soil), (2e-5, 3e6));
-    }
+    use crate::judge::comparison::work_precision::{MappedSoil, Way};
 
     #[test]
     fn every_soil_has_its_winner_every_method_its_counts_and_every_integrator_that_broke_its_places() {
@@ -241,8 +203,9 @@ mod tests {
             (name.to_owned(), at.iter().map(|place| places[*place]).collect::<Vec<_>>())
         };
         let won = [at("A implicit", &[0, 2]), at("B explicit", &[1]), at("none reaches it", &[3])];
-        assert_eq!(series(&winners(&soils)), won);
-        let chart = broken(&soils).expect("some broke");
+        let map = MapFinding::new(&soils).expect("soils");
+        assert_eq!(series(&winners(&map)), won);
+        let chart = broken(&map).expect("some broke");
         assert_eq!(
             series(&chart),
             [
@@ -252,8 +215,8 @@ mod tests {
                 at("no run failed", &[0])
             ]
         );
-        assert_eq!(broken(&soils[..1]), None);
-        let table = methods_table(&MapFinding::new(&soils).expect("soils"));
+        assert_eq!(broken(&MapFinding::new(&soils[..1]).expect("a soil")), None);
+        let table = methods_table(&map);
         let shown: Vec<Vec<String>> =
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         // Medians of 1, 3, 1 and of 4, 1, 7 times the cheapest; of 8, 10, 8 and of 16, 4, 20 cells.

@@ -1,11 +1,12 @@
 //! The page of a situation of the race: errors of every contender against its cost, and all its measures; and the tables of
 //! all situations for programs.
 
+use crate::judge::blocks::race::RaceBlock;
 use crate::judge::race::finish::RaceQuantity;
-use crate::judge::race::sensitivity::{OTHER_THRESHOLDS, THRESHOLD};
-use crate::judge::race::situation::{Entry, Situation};
+use crate::judge::race::sensitivity::THRESHOLD;
+use crate::judge::race::situation::{Entry, OtherCosts, Situation};
 use crate::judge::race::{Question, RaceFindings};
-use crate::judge::study_results::StudyResults;
+use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
@@ -20,13 +21,12 @@ const ARRIVES: &str = "arrives";
 /// Answer, figures and table of a situation; empty for any other study.
 ///
 /// # Errors
-/// If the template cannot be filled.
-pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, RenderError> {
-    let Some(situation) = Situation::from_records(results.study, results.records) else {
+/// If a template cannot be filled.
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let Some(RaceBlock { situation, is_plane, arrivals }) = &study.plain.blocks.race else {
         return Ok(Vec::new());
     };
-    let ranked = ranked(&situation.entries);
-    let last = if results.study.scene.has_plane_fields() { "displacement" } else { "settlement" };
+    let last = if *is_plane { "displacement" } else { "settlement" };
     let quantities = [
         (RaceQuantity::All, "largest error"),
         (RaceQuantity::Pressure, "pressure"),
@@ -34,40 +34,24 @@ pub fn blocks(results: &StudyResults<'_>) -> Result<Vec<Block>, RenderError> {
         (RaceQuantity::Settlement, last),
     ];
     let mut blocks = vec![Block::Heading("Every contender".to_owned())];
-    if !situation.is_property {
-        blocks.push(Block::Paragraph(templates::sentence("race-situation", &situation.arrivals())?));
+    if let Some(arrivals) = arrivals {
+        blocks.push(Block::Paragraph(templates::sentence("race-situation", arrivals)?));
     }
     let views = quantities.into_iter().filter_map(|(quantity, words)| {
-        Some((words.to_owned(), vec![Block::Figure(figure(results, &ranked, quantity, words)?)]))
+        let figure = figure(&study.name, &situation.entries, quantity, words)?;
+        Some((words.to_owned(), vec![Block::Figure(figure)]))
     });
     let views: Vec<(String, Vec<Block>)> = views.collect();
     if !views.is_empty() {
         blocks.push(Block::Switch(views));
     }
-    blocks.push(Block::Table(table_of(&situation, &ranked)));
+    let note = templates::sentence("race-table", situation)?;
+    blocks.push(Block::Table(table_of(situation).note(note)));
     Ok(blocks)
 }
 
-/// Those that arrive first by their cost, then those with an error, then the others.
-fn ranked(entries: &[Entry]) -> Vec<&Entry> {
-    let mut ranked: Vec<&Entry> = entries.iter().collect();
-    let worth =
-        |entry: &Entry| [entry.costs[1], entry.largest_error()].map(|value| value.unwrap_or(f64::INFINITY));
-    ranked.sort_by(|a, b| {
-        let [cost, error] = worth(a);
-        let [other_cost, other_error] = worth(b);
-        cost.total_cmp(&other_cost).then(error.total_cmp(&other_error))
-    });
-    ranked
-}
-
 /// One error of all contenders against their cost.
-fn figure(
-    results: &StudyResults<'_>,
-    ranked: &[&Entry],
-    quantity: RaceQuantity,
-    words: &str,
-) -> Option<Figure> {
+fn figure(study: &str, ranked: &[Entry], quantity: RaceQuantity, words: &str) -> Option<Figure> {
     let points = |entry: &Entry| -> Vec<(f64, f64)> {
         let point =
             |level: &crate::judge::race::finish::Level| Some((level.cost, quantity.error_in(&level.errors)?));
@@ -100,13 +84,13 @@ fn figure(
     chart.rules.push(Rule { at: THRESHOLD, label: "1 %".to_owned() });
     let caption = "In colour: the six cheapest to 1 %; grey: the others. Each marker is a mesh, twice as fine as the one before. \
                    Counted work is in seconds of the calibration.";
-    is_drawn.then(|| figure_of(results, &format!("race-{}", quantity.name()), chart, caption))
+    is_drawn.then(|| figure_of(study, &format!("race-{}", quantity.name()), chart, caption))
 }
 
 /// Every contender with its measures, the best first.
-fn table_of(situation: &Situation, ranked: &[&Entry]) -> Table {
+fn table_of(situation: &Situation) -> Table {
     let number = |value: Option<f64>, kind: fn(f64) -> Cell| Cell::of(value, kind, "");
-    let rows = ranked.iter().map(|entry| {
+    let rows = situation.entries.iter().map(|entry| {
         let reason = entry.reason.as_ref().map_or(ARRIVES, |reason| reason.words());
         let reason =
             if entry.detail.is_empty() { reason.to_owned() } else { format!("{reason}: {}", entry.detail) };
@@ -124,12 +108,7 @@ fn table_of(situation: &Situation, ranked: &[&Entry]) -> Table {
     });
     let heads = "contender | > 10 % | > 1 % | > 0.1 % | > 1 % measured | > pressure | > effective stress | \
                  > settlement or displacement | > order | > half the step | > oscillation | > locking | > critical step | arrives";
-    Table::of("Cost to an error, and what each is on equal cells", columns(heads), rows).note(format!(
-        "10 %, 1 %, 0.1 %: counted work to that largest error; measured: processor time of this run; errors, oscillation and locking on {} cells; \
-         order of the pressure; half the step: change of the largest error by it; oscillation: variation of the pressure beyond the exact one's; \
-         locking: computed over exact settlement, in the plane one minus the error of the displacement; critical step over the formula's",
-        situation.common_cells
-    ))
+    Table::of("Cost to an error, and what each is on equal cells", columns(heads), rows)
 }
 
 /// The columns of the race's table, for everybody who reads it by name.
@@ -138,16 +117,15 @@ const HEADER: &str = "family|situation|contender|moves|cost_10_percent|cost_1_pe
                       cost_pressure|cost_stress|cost_settlement|integrator|cost_half_percent|cost_2_percent|cost_3_percent|\
                       cost_equal_cells";
 
-/// Every contender in every situation.
-pub fn whole_table(findings: &RaceFindings) -> Table {
-    let rows = findings
-        .situations
-        .iter()
-        .flat_map(|situation| situation.entries.iter().map(move |entry| row(situation, entry)));
+/// Every contender in every situation, with what it costs to other ends.
+pub fn whole_table(findings: &RaceFindings, costs: &[Vec<OtherCosts>]) -> Table {
+    let rows = findings.situations.iter().zip(costs).flat_map(|(situation, costs)| {
+        situation.entries.iter().zip(costs).map(move |(entry, costs)| row(situation, entry, costs))
+    });
     Table::of("", columns(HEADER), rows)
 }
 
-fn row(situation: &Situation, entry: &Entry) -> Vec<Cell> {
+fn row(situation: &Situation, entry: &Entry, other: &OtherCosts) -> Vec<Cell> {
     let number = |value: Option<f64>| Cell::of(value, Cell::Number, "");
     let reason = entry.reason.as_ref().map_or(ARRIVES, |reason| reason.words());
     let mut row: Vec<Cell> = vec![
@@ -163,10 +141,9 @@ fn row(situation: &Situation, entry: &Entry) -> Vec<Cell> {
     row.push(number(entry.order));
     row.push(entry.class.as_deref().unwrap_or_default().into());
     row.extend([entry.scatter, entry.oscillation, entry.locking, entry.seconds].map(number));
-    let alone = [RaceQuantity::Pressure, RaceQuantity::Stress, RaceQuantity::Settlement];
-    row.extend(alone.map(|quantity| number(entry.cost_to(quantity, THRESHOLD))));
+    row.extend(other.alone.map(number));
     row.push(situation.integrator.as_str().into());
-    row.extend(OTHER_THRESHOLDS.map(|threshold| number(entry.cost_to(RaceQuantity::All, threshold))));
+    row.extend(other.thresholds.map(number));
     row.push(number(entry.cost));
     row
 }
@@ -204,7 +181,7 @@ mod tests {
     fn the_tables_have_the_columns_of_the_contract_and_a_row_for_every_contender() {
         let (study, records) = solved("race-layer-small", SMALL);
         let findings = RaceFindings::from_studies([(&study, records.as_slice())]).expect("a race");
-        let csv = whole_table(&findings).to_plain_csv().expect("a table");
+        let csv = whole_table(&findings, &findings.other_costs()).to_plain_csv().expect("a table");
         let lines: Vec<&str> = csv.lines().collect();
         assert!(
             lines[0].starts_with(

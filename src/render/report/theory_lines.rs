@@ -2,8 +2,8 @@
 
 use crate::case::quantity::Sample;
 use crate::judge::answers::QUOTED_CELLS;
-use crate::judge::blocks::profiles::{Consolidation, Isochrone, Isochrones, ProfilesFinding};
-use crate::judge::study_results::StudyResults;
+use crate::judge::blocks::profiles::{Consolidation, Isochrone, Isochrones};
+use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::report::{figure_of, labels};
@@ -13,17 +13,15 @@ use crate::render::{RenderError, number, templates};
 ///
 /// # Errors
 /// If a template cannot be filled.
-pub fn blocks(
-    results: &StudyResults<'_>,
-    profiles: Option<&ProfilesFinding>,
-) -> Result<Vec<Block>, RenderError> {
-    let Some(profiles) = profiles else { return Ok(Vec::new()) };
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let Some(profiles) = &study.plain.blocks.profiles else { return Ok(Vec::new()) };
     let heading = match profiles.cells {
         QUOTED_CELLS => "Profiles on ten cells".to_owned(),
         cells => format!("Profiles on {cells} cells"),
     };
-    let mut figures: Vec<Figure> = profiles.isochrones.iter().map(|one| isochrones(results, one)).collect();
-    figures.extend(profiles.consolidation.as_ref().map(|curves| consolidation(results, curves)));
+    let mut figures: Vec<Figure> =
+        profiles.isochrones.iter().map(|one| isochrones(&study.name, one)).collect();
+    figures.extend(profiles.consolidation.as_ref().map(|curves| consolidation(&study.name, curves)));
     let mut blocks = vec![Block::Heading(heading), Block::Figures(figures)];
     if let Some(sampling) = &profiles.sampling {
         blocks.push(Block::Paragraph(templates::sentence("sampling", sampling)?));
@@ -33,8 +31,8 @@ pub fn blocks(
 
 /// Time factor of an isochrone, with the degree of consolidation where large strains make that the
 /// measure of progress.
-fn isochrone_name(results: &StudyResults<'_>, curve: &Isochrone) -> String {
-    if results.study.scene.is_large_strain() {
+fn isochrone_name(is_large_strain: bool, curve: &Isochrone) -> String {
+    if is_large_strain {
         format!("T_v = {:.3}, U = {}", curve.time_factor, number::rounded_percent(curve.degree))
     } else {
         format!("T_v = {}", number::time_factor(curve.time_factor))
@@ -51,8 +49,8 @@ fn depth_name(reference: &str) -> &'static str {
 }
 
 /// The paper's Figs 3a and 4a: `p/q` against depth.
-pub fn isochrones(results: &StudyResults<'_>, found: &Isochrones) -> Figure {
-    let has_waves = results.study.scene.has_waves();
+pub fn isochrones(study: &str, found: &Isochrones) -> Figure {
+    let has_waves = found.has_waves;
     let pressure = ChartAxis::linear("excess pore pressure p/q (–)");
     let mut chart = Chart::new(
         format!("Isochrones, {}", found.method),
@@ -70,7 +68,7 @@ pub fn isochrones(results: &StudyResults<'_>, found: &Isochrones) -> Figure {
         } else {
             Series::theory(reference.as_str(), theory).slot(0)
         });
-        let name = isochrone_name(results, curve);
+        let name = isochrone_name(found.is_large_strain, curve);
         chart.series.push(Series::new(name, curve.computed.clone()).style(Style::Markers).slot(slot));
     }
     let caption = format!(
@@ -80,7 +78,7 @@ pub fn isochrones(results: &StudyResults<'_>, found: &Isochrones) -> Figure {
         found.cells,
         if has_waves { ", in the colour of its time" } else { "" }
     );
-    figure_of(results, &format!("isochrones-{}", found.method), chart, caption)
+    figure_of(study, &format!("isochrones-{}", found.method), chart, caption)
 }
 
 /// The end of an axis of degrees of consolidation: all of it, or the tenth beyond all that is drawn, so that an early part fills
@@ -92,7 +90,7 @@ fn end_of_axis(found: &Consolidation) -> f64 {
 }
 
 /// The paper's Figs 3b and 4b: degree of consolidation against the time factor.
-pub fn consolidation(results: &StudyResults<'_>, found: &Consolidation) -> Figure {
+pub fn consolidation(study: &str, found: &Consolidation) -> Figure {
     let mut chart = Chart::new(
         "Degree of consolidation",
         ChartAxis::log10("time factor T_v (–)"),
@@ -107,7 +105,7 @@ pub fn consolidation(results: &StudyResults<'_>, found: &Consolidation) -> Figur
         chart.series.push(series.style(Style::Markers).slot(slot));
     }
     let caption = "Settlement over its final value.";
-    figure_of(results, "consolidation", chart, caption)
+    figure_of(study, "consolidation", chart, caption)
 }
 
 #[cfg(test)]
@@ -116,9 +114,10 @@ mod tests {
     use crate::campaign::runner::solved;
     use crate::case::planned::Tier;
     use crate::case::quantity::Quantity;
+    use crate::judge::study_results::StudyResults;
 
     fn found_blocks(results: &StudyResults<'_>) -> Vec<Block> {
-        blocks(results, ProfilesFinding::new(results).expect("theory").as_ref()).expect("filled")
+        blocks(&results.findings().expect("theory")).expect("filled")
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub fn tables_of(record: &Record, explanation: &Explanation) -> Vec<Table> {
         let rows = explanation.inputs.iter().map(|input| input_cells(input).into_iter().take(3).collect());
         tables.push(Table::of("inputs that differ from those of the golden values", header, rows));
     }
-    tables.push(carriers_table(record, &explanation.carriers));
+    tables.push(carriers_table(record, explanation));
     if let Some(first) = explanation.carriers.first() {
         tables.extend(explanation.levels.iter().map(|series| levels_table(first, series)));
     }
@@ -39,9 +39,9 @@ pub fn golden_sentence(explanation: &Explanation) -> String {
     }
 }
 
-fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
+fn carriers_table(record: &Record, explanation: &Explanation) -> Table {
     let optional = |value: Option<f64>| Cell::of(value, Cell::Error, "");
-    let rows = carriers.iter().map(|carrier| {
+    let rows = explanation.carriers.iter().map(|carrier| {
         let row = &carrier.row;
         let main = match row.quantity {
             Quantity::Settlement | Quantity::LoadFactor => Cell::Percent(row.value),
@@ -81,7 +81,7 @@ fn carriers_table(record: &Record, carriers: &[Carrier]) -> Table {
         "relative errors against {reference}, the largest first; settlement as s/s_exact − 1; share of the \
              squared L2 error; values in Pa and m"
     ));
-    table.notes(attached_notes(record))
+    table.notes(attached_notes(record, explanation.outside_run.as_ref()))
 }
 
 fn levels_table(first: &Carrier, series: &LevelSeries) -> Table {
@@ -126,7 +126,8 @@ mod tests {
         let row = ErrorRow { time_factor: 0.7, value: 0.02, absolute: 0.11, ..record.errors[0].clone() };
         let place = ErrorPlace { zeta: 0.3, share: 0.4, computed: 5.0, exact: 6.0 };
         let carrier = Carrier { row, l1: Some(0.01), linf: Some(0.03), place: Some(place) };
-        let table = carriers_table(&record, &[carrier]);
+        let table =
+            carriers_table(&record, &Explanation { carriers: vec![carrier], ..Explanation::default() });
         let under = |header: &str| {
             let column = table.columns.iter().position(|column| column.header == header).expect("a column");
             format!("{:?}", table.rows[0][column])
@@ -156,12 +157,10 @@ mod tests {
                 tolerance: 1e-9,
             };
             golden_sentence(&Explanation {
-                carriers: Vec::new(),
-                levels: Vec::new(),
-                inputs: Vec::new(),
                 differences: vec![one; differing],
                 agreeing,
                 has_golden,
+                ..Explanation::default()
             })
         };
         assert_eq!(of(false, 0, 0), "there are no golden values to compare the case with");
@@ -185,8 +184,8 @@ mod tests {
         )
         .remove(0);
         record.status = failed_at(7);
-        let all = [Quantity::Settlement, Quantity::LoadFactor, Quantity::Pressure].map(carrier);
-        let table = carriers_table(&record, &all);
+        let carriers = [Quantity::Settlement, Quantity::LoadFactor, Quantity::Pressure].map(carrier).into();
+        let table = carriers_table(&record, &Explanation { carriers, ..Explanation::default() });
         let main: Vec<&Cell> = table.rows.iter().map(|row| &row[4]).collect();
         assert_eq!(main, [&Cell::Percent(0.02), &Cell::Percent(0.02), &Cell::Error(0.02)]);
         assert!(table.title.ends_with(" (unstable at step 7)"), "{}", table.title);

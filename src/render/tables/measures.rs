@@ -1,8 +1,7 @@
 //! Tables of one record.
 
 use crate::case::quantity::{Norm, Quantity, Sample};
-use crate::judge::blocks::checks::{WorstCheck, checks_of, groups_of};
-use crate::judge::soundness;
+use crate::judge::blocks::checks::{RecordChecks, WorstCheck};
 use crate::record::Record;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
@@ -14,9 +13,9 @@ use std::fmt::Write;
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn table_of(record: &Record) -> Result<String, RenderError> {
+pub fn table_of(record: &Record, found: &RecordChecks) -> Result<String, RenderError> {
     let mut text = errors_table(record).to_text()?;
-    let _ = write!(text, "\n{}", checks_table(record).to_text()?);
+    let _ = write!(text, "\n{}", checks_table(record, found).to_text()?);
     Ok(text)
 }
 
@@ -91,23 +90,23 @@ fn work_note(record: &Record) -> String {
 }
 
 /// Start checks, worst balances over all outputs, and dimensionless groups of a record; checks with their bounds.
-pub fn checks_table(record: &Record) -> Table {
+pub fn checks_table(record: &Record, found: &RecordChecks) -> Table {
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut add = |name: &str, value: Cell, bound: Cell| rows.push(vec![name.into(), value, bound]);
     if let Some(start) = &record.start {
         add("points at the start", Cell::Count(start.points as u64), "".into());
     }
-    for check in &checks_of([record]) {
-        add(&check.what, Cell::Error(check.value.unwrap_or(f64::NAN)), bound_cell(check));
+    for check in &found.checks {
+        add(&check.what, Cell::Error(check.value.0), bound_cell(check));
     }
     for row in record.measures.iter().filter(|row| row.time_factor.is_none()) {
         add(&row.name, format!("{:.7}", row.found).into(), format!("exactly {:.7}", row.exact).into());
     }
-    for (name, value) in groups_of(record) {
-        add(name, Cell::Error(value), "".into());
+    for group in &found.groups {
+        add(&group.what, Cell::Error(group.value), "".into());
     }
     Table::of("checks and groups", columns("what | > value | bound"), rows)
-        .notes(soundness::complaints_of_run(record).iter().map(|one| format!("✗ {one}")))
+        .notes(found.complaints.iter().map(|one| format!("✗ {one}")))
 }
 
 /// The bound of a check with the mark of its judgement.

@@ -1,7 +1,8 @@
 //! Tables over several runs: those of attached solvers, and critical time steps.
 
-use crate::judge::blocks::outside_runs::{BUSY, OutsideRunFinding, is_busy, megabytes, over};
-use crate::record::{Probe, Record, WallSample};
+use crate::judge::blocks::outside_runs::{BUSY, OutsideRunFinding};
+use crate::judge::blocks::stability::CriticalStepFinding;
+use crate::record::{Probe, Record};
 use crate::render::table::{Cell, Mood, Table, columns};
 use oedometer_soil::wording::{count_of, short};
 
@@ -51,8 +52,8 @@ fn attached_row(run: &OutsideRunFinding) -> Vec<Cell> {
 }
 
 /// Sentences on the run of an attached solver: how it failed, what it is, what it took; none for other cases.
-pub fn attached_notes(record: &Record) -> Vec<String> {
-    let Some(about) = record.outside_run() else { return Vec::new() };
+pub fn attached_notes(record: &Record, found: Option<&OutsideRunFinding>) -> Vec<String> {
+    let (Some(about), Some(found)) = (record.outside_run(), found) else { return Vec::new() };
     let mut notes: Vec<String> = record.status.failure().map(ToString::to_string).into_iter().collect();
     let version = about.version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
     notes.push(if about.command.is_empty() {
@@ -60,7 +61,7 @@ pub fn attached_notes(record: &Record) -> Vec<String> {
     } else {
         format!("run by `{}`{version}", about.command.join(" "))
     });
-    notes.extend(times(&record.wall));
+    notes.extend(times(found));
     let most = about.repeats_differ_by;
     notes.extend(most.map(|most| format!("results of its repeats differ by at most {}", short(most))));
     notes.extend(about.notes.iter().cloned());
@@ -69,39 +70,33 @@ pub fn attached_notes(record: &Record) -> Vec<String> {
 }
 
 /// Wall times with processor time, memory and load.
-fn times(samples: &[WallSample]) -> Option<String> {
-    let wall = over(samples, |sample| Some(sample.seconds))?;
-    let processor = over(samples, |sample| sample.cpu_seconds);
-    let memory = over(samples, megabytes);
+fn times(found: &OutsideRunFinding) -> Option<String> {
+    let (least, median) = found.least_wall.zip(found.median_wall)?;
     let mut parts = vec![
         format!(
             "wall time at least {} s, median {} s of {}",
-            short(wall.minimum),
-            short(wall.median),
-            count_of(wall.count, "run", "runs")
+            short(least),
+            short(median),
+            count_of(found.timed, "run", "runs")
         ),
-        processor.map_or("the system does not report processor time".to_owned(), |processor| {
-            format!("processor {} s", short(processor.median))
+        found.processor.map_or("the system does not report processor time".to_owned(), |seconds| {
+            format!("processor {} s", short(seconds))
         }),
-        memory.map_or("the system does not report memory".to_owned(), |memory| {
-            format!("memory at most {} MB", short(memory.maximum))
+        found.memory.map_or("the system does not report memory".to_owned(), |megabytes| {
+            format!("memory at most {} MB", short(megabytes))
         }),
     ];
-    let own = over(samples, |sample| sample.own_seconds);
-    parts.extend(own.map(|own| format!("{} s by its own account", short(own.median))));
-    let load = over(samples, |sample| sample.load);
-    parts.extend(load.map(|load| format!("load of the machine {}", short(load.maximum))));
-    parts.extend(
-        is_busy(samples).then(|| "the machine was busy or it waited: compare processor times".to_owned()),
-    );
+    parts.extend(found.reported.map(|seconds| format!("{} s by its own account", short(seconds))));
+    parts.extend(found.load.map(|load| format!("load of the machine {}", short(load))));
+    parts.extend(found.busy.then(|| "the machine was busy or it waited: compare processor times".to_owned()));
     Some(parts.join(", "))
 }
 
 /// One row per case: predicted and observed critical step, and what the runs beside the limit did.
-pub fn critical_steps(records: &[Record]) -> Table {
+pub fn critical_steps(found: &[CriticalStepFinding]) -> Table {
     let header = "case | > predicted [s] | > observed [s] | > difference | > over h/c | > slow growth from [s] | at 0.97 \
                   | at 1.03";
-    let rows = records.iter().filter_map(critical_step_row);
+    let rows = found.iter().map(critical_step_row);
     Table::of("Critical time step, predicted and observed", columns(header), rows).note(
         "predicted: spectral radius of the step operator on the case's own grid; observed: bisection of runs without the \
          prediction, and in a plane of up to 8 × 8 cells of the eigenvalues of its own step, which show a doubling in \
@@ -109,22 +104,21 @@ pub fn critical_steps(records: &[Record]) -> Table {
     )
 }
 
-fn critical_step_row(record: &Record) -> Option<Vec<Cell>> {
-    let found = record.stability.as_ref()?;
+fn critical_step_row(found: &CriticalStepFinding) -> Vec<Cell> {
     let (no_limit, not_stable) = ("no limit is known: something grows under any step", "no step was stable");
-    let why = if found.known().is_none() { no_limit } else { not_stable };
+    let why = if found.predicted.is_none() { no_limit } else { not_stable };
     let mut row = vec![
-        Cell::Code(record.case.label_without_step()),
-        Cell::of(found.known(), Cell::Error, no_limit),
+        Cell::Code(found.case.clone()),
+        Cell::of(found.predicted, Cell::Error, no_limit),
         Cell::of(found.observed, Cell::Error, not_stable),
-        Cell::of(found.known().and(found.deviation()), Cell::Percent, why),
-        Cell::Number(found.predicted / found.wave_limit),
+        Cell::of(found.deviation, Cell::Percent, why),
+        Cell::Number(found.over_wave_limit),
         found.creeping_from.map_or(Cell::Text("–".to_owned()), Cell::Error),
     ];
     row.extend(
         found.probes.iter().map(|probe| Cell::Verdict(Mood::of(probe.is_as_predicted()), probe_words(probe))),
     );
-    Some(row)
+    row
 }
 
 fn probe_words(probe: &Probe) -> String {
@@ -143,23 +137,16 @@ fn probe_words(probe: &Probe) -> String {
 mod tests {
     use super::*;
     use crate::judge::blocks::outside_runs::outside_runs;
-    use crate::record::{AttachedRun, CriticalStep, Status};
+    use crate::judge::blocks::stability::critical_steps;
+    use crate::record::{AttachedRun, CriticalStep, Status, WallSample};
     use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+
+    fn notes_of(record: &Record) -> Vec<String> {
+        attached_notes(record, OutsideRunFinding::new(record).as_ref())
+    }
 
     fn table_of(records: &[Record]) -> Option<Table> {
         attached_table(&outside_runs(records))
-    }
-
-    #[test]
-    fn a_run_is_busy_where_its_wall_time_is_far_above_the_processors() {
-        let sample = |seconds: f64, cpu: Option<f64>| WallSample {
-            seconds,
-            cpu_seconds: cpu,
-            ..WallSample::default()
-        };
-        assert!(is_busy(&[sample(2.1, Some(1.0))]));
-        assert!(!is_busy(&[sample(1.9, Some(1.0))]));
-        assert!(!is_busy(&[sample(9.0, None)]) && !is_busy(&[]));
     }
 
     fn record() -> Record {
@@ -209,7 +196,7 @@ mod tests {
                 probes: probes[..2].to_vec(),
                 asymmetry: None,
             });
-            critical_step_row(&record).expect("a row")
+            critical_step_row(&critical_steps(&[record])[0])
         };
         assert_eq!(shown(&found(Some(0.75), None))[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2", "–"]);
         let none = Cell::missing("no step was stable");
@@ -229,7 +216,7 @@ mod tests {
             ..WallSample::default()
         };
         let mut all = [record(), record(), record(), record()];
-        assert!(table_of(&all).is_none() && attached_notes(&all[0]).is_empty());
+        assert!(table_of(&all).is_none() && notes_of(&all[0]).is_empty());
         for record in &mut all[1..] {
             record.attached = Some(AttachedRun::default());
         }
@@ -257,7 +244,7 @@ mod tests {
         (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
         about.taken = vec!["p from pressure".to_owned()];
         assert_eq!(
-            attached_notes(&all[1]),
+            notes_of(&all[1]),
             [
                 "run by `sh {case}`, version 2.1",
                 "wall time at least 5 s, median 5.5 s of 2 runs, processor 2.25 s, the system does not report memory, load of \
@@ -267,7 +254,7 @@ mod tests {
                 "taken: p from pressure"
             ]
         );
-        let notes = attached_notes(&all[3]);
+        let notes = notes_of(&all[3]);
         assert!(
             notes[0].contains("why") && notes[1] == "read from existing files; nothing was run",
             "{notes:?}"

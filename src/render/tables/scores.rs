@@ -1,10 +1,9 @@
 //! Tables of a foreign result compared with references.
 
-use crate::case::quantity::{Norm, Quantity};
-use crate::judge::paths::distinct;
-use crate::judge::paths::first_norm;
+use crate::case::grouping::distinct;
+use crate::case::quantity::{Norm, Quantity, Sample};
 use crate::judge::score::score_series::ScoredSeries;
-use crate::judge::score::{Score, WorstPlace, error_key};
+use crate::judge::score::{Score, WorstPlace};
 use crate::record::ErrorRow;
 use crate::render::table;
 use crate::render::table::{Cell, Table, TableColumn, columns};
@@ -26,7 +25,8 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
     columns.extend(is_plane.then(|| TableColumn::number("and x/L")));
     columns.extend(table::columns("> its share | > result there | > exact there"));
     let is_main = |row: &&ErrorRow| matches!(row.norm, Norm::L2 | Norm::Relative);
-    let index = score.index();
+    let index: HashMap<ErrorKey<'_>, &ErrorRow> =
+        score.errors.iter().map(|row| (error_key(row), row)).collect();
     let worst_of: HashMap<(u64, Quantity), &WorstPlace> =
         score.worst.iter().map(|worst| ((worst.time_factor.to_bits(), worst.quantity), worst)).collect();
     let first = references.first().copied().unwrap_or_default();
@@ -45,7 +45,7 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
         let mut cells =
             vec![Cell::Number(one.time_factor), one.quantity.name().into(), one.sample.name().into()];
         // Against another reference there may be one.
-        let norm = first_norm(one.quantity);
+        let norm = one.quantity.first_norm();
         cells.extend(references.iter().map(|name| {
             error_cell(
                 index.get(&(one.time_factor.to_bits(), one.quantity, one.sample, norm, *name)).copied(),
@@ -59,6 +59,14 @@ pub fn errors_table(score: &Score, title: &str) -> Table {
         "relative L2 error over the samples; settlement as s/s_exact − 1; ζ is the initial depth \
              over the height",
     )
+}
+
+/// What an error is of: time factor (its bits), quantity, sample, norm, reference.
+type ErrorKey<'a> = (u64, Quantity, Sample, Norm, &'a str);
+
+/// What an error is of.
+fn error_key(row: &ErrorRow) -> ErrorKey<'_> {
+    (row.time_factor.to_bits(), row.quantity, row.sample, row.norm, &row.reference)
 }
 
 fn error_cell(row: Option<&ErrorRow>) -> Cell {

@@ -92,6 +92,13 @@ pub struct Classification {
     pub floor: Option<Floor>,
 }
 
+impl Class {
+    /// Whether a series of this class has an order that no longer changes from mesh to mesh.
+    pub const fn is_settled(self) -> bool {
+        matches!(self, Self::Asymptotic | Self::Superconvergent)
+    }
+}
+
 impl Classification {
     /// A classification without order, floor and advice.
     pub fn new(class: Class, reason: impl Into<String>) -> Self {

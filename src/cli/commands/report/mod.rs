@@ -15,7 +15,7 @@ use crate::golden::GoldenFile;
 use crate::history::comparison::StudyComparison;
 use crate::history::state::StudyState;
 use crate::judge::answers::ReportFindings;
-use crate::judge::findings::study_answers::StudyAnswers;
+use crate::judge::study_findings::{AllStudies, StudyFindings};
 use crate::record::Record;
 use crate::record::calibration::{calibrate, calibration_csv};
 use crate::record::provenance::Machine;
@@ -25,7 +25,8 @@ use crate::render::answers::{Answers, Making, answer_page, matrix_page};
 use crate::render::checks::verdicts::text_of_answers;
 use crate::render::escape::document;
 use crate::render::page::{Page, all_figures, render_html, render_markdown, slug, tables};
-use crate::render::report::pages::{index_page, study_page};
+use crate::render::report::index_page::index_page;
+use crate::render::report::study_page::study_page;
 
 use crate::judge::study_results::StudyResults;
 use crate::render::report::race;
@@ -103,10 +104,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let changes =
         changes(&studies, &reports, |study| golden_of(arguments.golden.as_deref(), study, &chosen).ok());
-    let written = write_files(&arguments.out, &results, changes.as_deref(), making, start)?;
-    if let [one] = results.as_slice() {
-        let answers = StudyAnswers::new(one.study, one.records, &one.paths)?;
-        print_data(text_of_answers(&answers)?.trim_start_matches('\n'))?;
+    let all = AllStudies::new(&results)?;
+    let written = write_files(&arguments.out, (&results, &all), changes.as_deref(), making, start)?;
+    if let [study] = all.studies.as_slice() {
+        print_data(text_of_answers(&study.answers)?.trim_start_matches('\n'))?;
     }
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());
@@ -235,29 +236,29 @@ fn command() -> String {
 /// Writes all files below a folder; the path of the answer page.
 fn write_files(
     out: &Path,
-    results: &[StudyResults<'_>],
+    (results, all): (&[StudyResults<'_>], &AllStudies),
     changes: Option<&[StudyComparison]>,
     mut making: Making,
     start: Instant,
 ) -> anyhow::Result<PathBuf> {
     let studies = out.join("studies");
     // Collected before the first error is taken: the same error every time.
-    results
+    all.studies
         .par_iter()
         .map(|one| write_study(&studies, one))
         .collect::<Vec<_>>()
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
-    write_both(&studies, "index", "README", &index_page(results))?;
+    write_both(&studies, "index", "README", &index_page(all))?;
     let findings = ReportFindings::new(results)?;
     write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(&findings)? + "\n"))?;
     if let Some(race) = &findings.race {
         let tables = out.join("tables");
-        write_page(&tables.join("race.csv"), &race::whole_table(race).to_plain_csv()?)?;
+        write_page(&tables.join("race.csv"), &race::whole_table(race, &race.other_costs()).to_plain_csv()?)?;
         write_page(&tables.join("profile.csv"), &race::profile_table(race).to_plain_csv()?)?;
     }
     making.seconds = start.elapsed().as_secs_f64();
-    let answers = Answers { results, changes, making: &making, findings: &findings };
+    let answers = Answers { all, changes, making: &making, findings: &findings };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
     write_both(out, "index", "README", &front)?;
     write_page(&out.join("README.md"), &linked_to_files(&render_markdown(&front)?, out, results))?;
@@ -280,10 +281,10 @@ fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> Stri
 }
 
 /// The pages of a study with their figures and tables.
-fn write_study(studies: &Path, one: &StudyResults<'_>) -> anyhow::Result<()> {
-    let name = slug(&one.study.name);
+fn write_study(studies: &Path, one: &StudyFindings) -> anyhow::Result<()> {
+    let name = slug(&one.name);
     write_both(studies, &name, &name, &study_page(one)?)?;
-    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&one.findings()?)?)
+    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&one.plain)?)
 }
 
 /// A page as HTML and Markdown, with its figures and tables as files.

@@ -146,7 +146,7 @@ fn the_findings_of_a_study_keep_to_their_schema() {
     );
     records[0].status = crate::campaign::runner::failed_at(1);
     let results = crate::judge::study_results::StudyResults::new(&study, &records, Tier::Full);
-    let found = serde_json::to_value(results.findings().expect("sound cases")).expect("plain data");
+    let found = serde_json::to_value(results.findings().expect("sound cases").plain).expect("plain data");
     assert_eq!(breach(&schema_of(Document::StudyFindings), &found, "findings"), None);
 }
 
