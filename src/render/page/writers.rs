@@ -202,16 +202,22 @@ fn html_figure(figure: &Figure, out: &mut String, written: &mut Written<'_>) -> 
         format!(" <span class=\"files\">{svg} <a href=\"figures/{name}.csv\">data</a></span>")
     });
     // No screen makes a figure larger than it was meant to be.
-    let own = natural_width(svg).map_or(String::new(), |width| format!(" style=\"--own: {width}px\""));
+    let width = natural_width(svg);
+    let own = width.map_or(String::new(), |width| format!(" style=\"--own: {width}px\""));
+    // A figure of several panels beside another would have letters that nobody reads.
+    let whole = if width.is_some_and(|width| width > WIDEST_BESIDE) { " class=\"whole\"" } else { "" };
     let caption =
         paragraphs(&figure.caption).iter().map(|text| to_html(text)).collect::<Vec<_>>().join("<br>");
     let _ = write!(
         out,
-        "<figure id=\"figure-{name}\">\n<div class=\"card\"{own}>{svg}</div>\n\
+        "<figure{whole} id=\"figure-{name}\">\n<div class=\"card\"{own}>{svg}</div>\n\
          <figcaption><b>Figure {number}.</b> {caption}{files}</figcaption>\n</figure>\n",
     );
     Ok(())
 }
+
+/// The widest figure that stands beside another, px.
+const WIDEST_BESIDE: f64 = 600.0;
 
 /// The width that an SVG document gives itself, in pixels.
 fn natural_width(svg: &str) -> Option<f64> {

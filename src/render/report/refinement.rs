@@ -102,17 +102,37 @@ fn floor_rule(floor: &FloorLine, names: &[String]) -> Rule {
     Rule { at: floor.value, label: format!("floor of {whose}{cause}") }
 }
 
-/// The series of a figure by their class.
+/// Most series of a class that a caption names; the table has all.
+const MOST_NAMED: usize = 3;
+
+/// The series of a figure by their class: a few by their names and orders, many by their number.
 fn classes<'a>(lines: impl Iterator<Item = (&'a ErrorLine, &'a String)>) -> String {
-    let named = |(line, name): (&ErrorLine, &String)| {
+    let named = |(line, name): &(&ErrorLine, &String)| {
         let order = line.order.map_or(String::new(), |order| format!(" (order {})", number::order(order)));
         format!("{name}{order}")
     };
     let groups = grouped(lines, |(line, _)| line.class.name()).into_iter();
     let parts = groups.map(|(class, lines)| {
-        format!("*{class}*: {}", lines.into_iter().map(named).collect::<Vec<_>>().join("; "))
+        let told = if lines.len() <= MOST_NAMED {
+            lines.iter().map(named).collect::<Vec<_>>().join("; ")
+        } else {
+            format!("{} series{}", lines.len(), orders_of(lines.iter().filter_map(|(line, _)| line.order)))
+        };
+        format!("*{class}*: {told}")
     });
     parts.collect::<Vec<_>>().join(". ") + "."
+}
+
+/// The least and the largest of some orders, in brackets; nothing where there is none.
+fn orders_of(orders: impl Iterator<Item = f64>) -> String {
+    let ends = orders.fold(None, |ends: Option<(f64, f64)>, order| {
+        let (least, most) = ends.unwrap_or((order, order));
+        Some((least.min(order), most.max(order)))
+    });
+    let told = ends.map(|(least, most)| [least, most].map(number::order));
+    told.map_or(String::new(), |[least, most]| {
+        if least == most { format!(" (order {least})") } else { format!(" (orders {least} to {most})") }
+    })
 }
 
 /// Errors at every level with pairwise orders, fit, finest window and class.
@@ -194,6 +214,32 @@ fn level_name(level: &LevelKey) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::quantity::Sample;
+    use oedometer_convergence::Class;
+
+    #[test]
+    fn a_caption_names_few_series_of_a_class_and_counts_many() {
+        let line = |class: Class, order: Option<f64>| ErrorLine {
+            label: String::new(),
+            sample: Sample::Points,
+            points: Vec::new(),
+            class,
+            order,
+        };
+        let told = |lines: &[ErrorLine]| {
+            let names: Vec<String> = (0..lines.len()).map(|place| format!("s{place}")).collect();
+            classes(lines.iter().zip(&names))
+        };
+        let settled = |order| line(Class::Asymptotic, Some(order));
+        let floor = || line(Class::FloorLimited, None);
+        assert_eq!(
+            told(&[settled(2.0), floor(), settled(1.5)]),
+            "*asymptotic*: s0 (order 2.00); s2 (order 1.50). *floor-limited*: s1."
+        );
+        assert_eq!(told(&[2.0, 1.0, 1.5, 1.7].map(settled)), "*asymptotic*: 4 series (orders 1.00 to 2.00).");
+        assert_eq!(told(&[2.0; 4].map(settled)), "*asymptotic*: 4 series (order 2.00).");
+        assert_eq!(told(&[floor(), floor(), floor(), floor()]), "*floor-limited*: 4 series.");
+    }
 
     #[test]
     fn levels_have_the_names_of_their_axis() {
