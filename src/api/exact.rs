@@ -92,7 +92,7 @@ pub fn exact(
     Ok(values)
 }
 
-/// Tail, over the load, above which a half-space is no column.
+/// Tail, over the load, above which a half-space does not stand for a column.
 pub(crate) const MOST_TAIL: f64 = 1e-2;
 
 /// Tail, over the load, above which a value says nothing.
@@ -101,7 +101,7 @@ const WORTHLESS: f64 = 0.1;
 /// How far a solution can be trusted at a time.
 ///
 /// # Errors
-/// When the time is impossible, the solution is that of a half-space and the base is felt, or the bound is no bound.
+/// When the time is impossible, a half-space is asked for times at which the base matters, or the bound is not finite.
 pub(crate) fn accuracy_of(reference: &Reference, time_factor: f64) -> Result<Accuracy, ExactError> {
     let accuracy = reference.accuracy(time_factor)?;
     let (bound, is_near) = (accuracy.tail_bound, |most: f64| accuracy.tail_bound <= most);

@@ -70,13 +70,13 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, ApiError> {
 /// What the columns or arrays of files mean.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meaning {
-    /// The program that wrote them; for tables and where nothing is named the convention.
+    /// The program that wrote them; for tables and by default the convention.
     pub preset: Option<String>,
     /// A mapping file, which overrides the preset key by key.
     pub mapping: Option<PathBuf>,
     /// The text of a mapping in place of a file.
     pub mapping_text: Option<String>,
-    /// Cells over the height of each result, in the order of the files; each table is then a result of its own.
+    /// Cells over the height of each result, in the order of the files; each table is then a separate result.
     pub cells: Vec<usize>,
     /// Seconds from one numbered step to the next, where file names have the number of the step.
     pub time_step: Option<f64>,

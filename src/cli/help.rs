@@ -1,4 +1,4 @@
-//! Help texts: commands in groups, two examples per command, options for experts in a section of their own.
+//! Help texts: commands in groups, two examples per command, expert options in a separate section.
 
 use clap::builder::StyledStr;
 use std::fmt::Write;

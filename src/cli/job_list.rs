@@ -26,7 +26,7 @@ pub struct JobList {
     pub tier: Tier,
     /// How many shares there are.
     pub tasks: u64,
-    /// By what they are parted.
+    /// How they are divided.
     pub parting: Parting,
     /// Whether the studies may start their solvers.
     pub allow_solvers: bool,

@@ -67,10 +67,8 @@ fn not_there(path: &Path) -> String {
         known.extend(files.map(|file| file.display().to_string()));
         match nearest(&told, known.iter().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => {
-                "`oedometer list` prints the shipped ones, and `oedometer new NAME` writes one of your own"
-                    .to_owned()
-            }
+            None => "`oedometer list` prints the shipped ones, and `oedometer new NAME` writes a new one"
+                .to_owned(),
         }
     };
     format!("cannot read the study {told}: no such file, and no shipped study: {help}")

@@ -34,15 +34,14 @@ pub struct TrustArguments {
 }
 
 impl TrustArguments {
-    /// Marks the studies that may start programs, asks where somebody is there to answer, and says of the others that
-    /// they do not.
+    /// Marks the studies that may start programs, asks at a terminal, and reports the studies that may not.
     pub fn mark(&self, studies: &mut [Study], named: &[PathBuf]) {
         for study in studies {
             study.may_start_solvers = self.may_start(study, named);
             if !study.may_start_solvers {
                 say!(
-                    "{}: this study runs {} on your account, which you have not allowed yet: its cases are not run. \
-                     Read it, then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
+                    "{}: this study runs {} under your account, which you have not allowed yet: its cases \
+                     are not run. Read it, then add --allow-solvers (in a CI: OEDOMETER_ALLOW_SOLVERS=1)",
                     study.name,
                     told(&starting(study))
                 );
@@ -70,7 +69,7 @@ impl TrustArguments {
         }
         Err(Ended::with(
             Exit::IncompleteMerge,
-            "nothing was run, because some cases may not start their programs",
+            "nothing was run: some cases start programs that are not allowed",
         ))
     }
 }
@@ -146,20 +145,20 @@ fn remember(folder: &Path, digest: &str, study: &str) -> std::io::Result<()> {
     file.write_all(format!("{digest} {study}\n").as_bytes())
 }
 
-/// Whether somebody at a terminal says yes; that is remembered.
+/// Whether the answer at a terminal is yes; that is remembered.
 fn is_answered(study: &Study, starting: &[&ExternalSolver]) -> bool {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return false;
     }
-    say!("{}: this study runs {} on your account.", study.name, told(starting));
-    say!("Start it, now and as long as its commands and files stay as they are? Type `yes`:");
+    say!("{}: this study runs {} under your account.", study.name, told(starting));
+    say!("Start it, now and as long as its commands and files are unchanged? Type `yes`:");
     let mut answer = String::new();
     let mut input = std::io::Read::take(std::io::stdin().lock(), LONGEST_ANSWER);
     let is_yes = input.read_line(&mut answer).is_ok() && ["y", "yes"].contains(&answer.trim());
     if let Some(folder) = folder().filter(|_| is_yes)
         && let Err(error) = remember(&folder, &digest_of(study, starting), &study.name)
     {
-        say!("that cannot be remembered in {}: {error}", folder.display());
+        say!("the answer cannot be stored in {}: {error}", folder.display());
     }
     is_yes
 }

@@ -246,7 +246,7 @@ pub struct DifferenceGroup {
     pub shared_by_measures: Vec<String>,
     /// The worst.
     pub worst: Difference,
-    /// Where most of its error is, as a sentence: of somebody else's result.
+    /// Where most of its error is, as a sentence: for a result of another program.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
 }

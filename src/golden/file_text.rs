@@ -298,7 +298,7 @@ mod tests {
         let told = refused("# study = ", "# steady = ");
         assert!(told.starts_with("line ") && told.contains("steady"), "{told}");
         let told = refused("# schema = 3", "# schema = 9");
-        assert_eq!(told, "it is of layout 9, and this program reads 2 and 3");
+        assert_eq!(told, "it has layout 9; this program reads layouts 2 and 3");
         assert!(refused("case,T_v", "cases,T_v").contains("`case`, `T_v`"));
         let cut = GoldenFile::from_text(&text[..text.len() - 2]).expect_err("refused").to_string();
         assert_eq!(cut, format!("line {}: the file ends within it", text.lines().count()));

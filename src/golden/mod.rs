@@ -1,4 +1,4 @@
-//! Golden values: what a study gave when somebody last looked and said why it is right.
+//! Golden values: results of a study that were reviewed and accepted with a reason.
 //!
 //! A comparison reports what moved, what is missing and what is new; better than the golden beyond
 //! the tolerance is stale, not wrong.
@@ -247,15 +247,15 @@ impl GoldenFile {
     }
 }
 
-/// Why a text is no golden file, and what to do.
+/// Why a text is not a golden file, and what to do.
 fn remedy(text: &str, path: &Path, error: &text_error::GoldenTextError) -> String {
     let marks = ["<<<<<<<", "=======", ">>>>>>>", "|||||||"];
     let mark = text.lines().position(|line| marks.iter().any(|mark| line.starts_with(mark)));
     if text.starts_with("version https://git-lfs") {
-        "it is a pointer of Git LFS and not the file: `git lfs pull` brings that".to_owned()
+        "it is a Git LFS pointer, not the file: fetch the file with `git lfs pull`".to_owned()
     } else if let Some(line) = mark {
         format!(
-            "git left conflict marks in it (line {}): take one side by `git checkout --ours {path}` or `--theirs`, and check \
+            "it has conflict markers of git (line {}): take one side with `git checkout --ours {path}` or `--theirs`, and check \
              again",
             line + 1,
             path = path.display()

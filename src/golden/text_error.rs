@@ -1,9 +1,9 @@
-//! Why a text is no golden file.
+//! Why a text is not a golden file.
 
 use crate::golden::file_text::LABELS;
 use crate::golden::{SCHEMA, WITHOUT_INPUTS};
 
-/// Why a text is no golden file, or a golden file no text.
+/// Why a text is not a golden file, or a golden file is not text.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GoldenTextError {
@@ -22,7 +22,7 @@ pub enum GoldenTextError {
         source: toml::de::Error,
     },
     /// The layout is another one.
-    #[error("it is of layout {0}, and this program reads {WITHOUT_INPUTS} and {SCHEMA}")]
+    #[error("it has layout {0}; this program reads layouts {WITHOUT_INPUTS} and {SCHEMA}")]
     Layout(u32),
     /// The table has other columns.
     #[error("its table does not begin with the columns `{}`", LABELS.join("`, `"))]

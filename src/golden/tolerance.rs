@@ -72,7 +72,7 @@ impl GoldenFile {
         (absolute + relative * size).max(ROOM * seen)
     }
 
-    /// Widens the tolerances by measured spreads and narrows none: what somebody has widened by hand stays wide. Spreads
+    /// Widens the tolerances to measured spreads and narrows none: tolerances widened by hand stay. Spreads
     /// within the absolute tolerance are left out, for they widen nothing.
     #[must_use]
     pub fn widened_by(mut self, spread: BTreeMap<String, f64>) -> Self {

@@ -234,7 +234,7 @@ fn arrows(before: &BTreeMap<String, f64>, after: &BTreeMap<String, f64>) -> Vec<
 const ROUND_OFF: f64 = 1e-12;
 /// Errors up to this may be what iterations leave.
 const ITERATIONS: f64 = 1e-8;
-/// Change of an order that is told.
+/// Change of an order that is reported.
 const TOLD: f64 = 0.05;
 /// Fall of an order from which on it is lost.
 const LOST: f64 = 0.15;

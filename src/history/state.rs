@@ -133,7 +133,7 @@ impl State {
 }
 
 impl StudyState {
-    /// The state of golden values, which nobody timed.
+    /// The state of golden values, which have no times.
     pub fn of_golden(golden: GoldenFile) -> Self {
         let made_by = vec![golden.provenance.made_by()];
         Self { golden, seconds: BTreeMap::new(), made_by }
@@ -188,7 +188,7 @@ pub(crate) fn with_command(study: &Study, command: &str) -> Result<Study, String
     let [solver] = study.solvers.as_mut_slice() else {
         let count = study.solvers.len();
         return Err(format!(
-            "{} attaches {count} solvers: a command stands for the one `[[solver]]` of a study",
+            "{} attaches {count} solvers: `--commands` needs a study with one `[[solver]]`",
             study.name
         ));
     };
@@ -317,7 +317,7 @@ mod tests {
         let empty =
             "the command is empty: give a program with its arguments, like `python3 new.py {case} {out}`";
         let several = |count: usize| {
-            format!("s attaches {count} solvers: a command stands for the one `[[solver]]` of a study")
+            format!("s attaches {count} solvers: `--commands` needs a study with one `[[solver]]`")
         };
         for (solvers, command, told) in [
             (&["toy"][..], " ", empty.to_owned()),

@@ -62,7 +62,7 @@ const LEAST_WATER_IN_PORES: f64 = 1e-3;
 /// A value of a record, and its bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
-    /// What it is, as in a row of a table.
+    /// Its name in a row of a table.
     pub what: &'static str,
     /// Value.
     pub value: f64,

@@ -1,6 +1,6 @@
 //! Packs: the records of a study, many to a file.
 //!
-//! A pack is a file of gzip members (RFC 1952), one behind the other, one member a record, and in it two lines of JSON:
+//! A pack is a file of gzip members (RFC 1952), in sequence, one member per record with two lines of JSON:
 //! the record, and its wall times. `zcat STUDY/records/*.jsonl.gz` shows them all. The extra field of a member's header
 //! says which case it is of and how long it is, so that a reader goes from header to header and unpacks only what it is
 //! asked for.

@@ -54,7 +54,7 @@ impl Provenance {
         tag(&[&self.version, &self.sources])
     }
 
-    /// A number for everything else that is told of a build.
+    /// A number for all other properties of a build.
     pub fn build_tag(&self) -> u64 {
         let tree = if self.dirty { "changed" } else { "committed" };
         tag(&[&self.commit, tree, &self.compiler, &self.target, &self.profile])

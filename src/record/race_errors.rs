@@ -9,7 +9,7 @@ pub const ERRORS: usize = 3;
 pub const ROUGH: f64 = 1e-1;
 /// The finishing line.
 pub const ARRIVED: f64 = 1e-2;
-/// An error below this is as good as any smaller one: nobody refines further.
+/// An error below this is as good as any smaller one: refinement ends.
 pub const NEGLIGIBLE: f64 = 1e-3;
 
 /// The largest errors over the outputs, `None` where something is not measured.
@@ -38,7 +38,7 @@ pub fn errors_of(record: &Record) -> RunErrors {
     ]
 }
 
-/// The largest error of a run; `None` where it failed or one is no number.
+/// The largest error of a run; `None` if it failed or an error is not a number.
 pub fn largest_error(record: &Record) -> Option<f64> {
     errors_of(record).into_iter().flatten().max_by(f64::total_cmp).filter(|error| error.is_finite())
 }

@@ -66,7 +66,7 @@ impl RecordStore {
         self.folder.join(CASES).join(hash)
     }
 
-    /// What lies in the store and is no record of it, a sentence each: damaged bytes of the packs, and a folder of an older
+    /// What lies in the store and is not a record of it, a sentence each: damaged bytes of the packs, and a folder of an older
     /// layout.
     pub fn passed_over(&self) -> Vec<String> {
         let damages = self.packs.damages();
@@ -182,8 +182,8 @@ impl RecordStore {
         (record.schema == SCHEMA).then_some(record)
     }
 
-    /// The text of the record of a case, where it is whole, and its wall times. Without readable ones the case is done
-    /// all the same, only not timed.
+    /// The text of the record of a case, where it is whole, and its wall times. Without readable wall times the
+    /// case is done, but not timed.
     fn texts(&self, hash: &str) -> Option<(String, Vec<WallSample>)> {
         let (text, wall) = self.packs.texts(number_of(hash))?;
         let wall = serde_json::from_str::<WallLine>(&wall).map(|line| line.wall).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What a study expects of its own results: of series of cases, and of single cases. Hard cases are judged by how they
+//! What a study expects of its results: of series of cases, and of single cases. Hard cases are judged by how they
 //! end, where their critical step lies, how large an error or a drift is.
 
 use crate::case::{Case, Key, Norm, Quantity, Sample, SolverName, Tier, Value};
@@ -108,7 +108,7 @@ impl fmt::Display for Measure {
     }
 }
 
-/// Which cases an expectation is about, by the values of their inputs; what is not named fits every case.
+/// Which cases an expectation is about, by the values of their inputs; an input that is not named fits every case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection(pub Vec<(&'static Key, Value)>);
 

@@ -54,7 +54,7 @@ pub struct StudyFile {
     #[serde(default)]
     #[schemars(transform = |schema: &mut Schema| add_inputs(schema, "integrator", false))]
     pub integrator: InputTable,
-    /// When results are kept, and what they are compared with.
+    /// Output times, and the exact solutions to compare with.
     #[serde(default)]
     pub output: OutputTable,
     /// External solvers, whose names then stand among the methods of a sweep.
@@ -137,7 +137,7 @@ pub struct ColumnTable {
     pub soils: Vec<Placed<SoilLayer>>,
 }
 
-/// When results are kept, and what they are compared with.
+/// Output times, and the exact solutions to compare with.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputTable {
@@ -399,7 +399,7 @@ pub struct SolverTable {
     pub time_step: Typed<f64>,
 }
 
-/// Files that an external solver has left, on one mesh or on several; nothing is run for them.
+/// Existing files of an external solver, on one mesh or on several; nothing runs.
 ///
 /// Its name then stands where expectations name a method. The scene, its column and soil are those of the study.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -420,7 +420,7 @@ pub struct ResultTable {
     /// Seconds from one numbered step to the next, where file names have the number of the step.
     #[schemars(extend("type" = ["number", "string"], "unit" = "s"))]
     pub time_step: Typed<f64>,
-    /// Smallest tier that has it.
+    /// Smallest tier that includes it.
     #[serde(default)]
     pub tier: Tier,
 }

@@ -37,7 +37,7 @@ pub type One = Placed<TypedInput>;
 pub struct Inputs(pub Vec<(&'static Key, One)>);
 
 impl Inputs {
-    /// Takes the inputs out of a table that takes those `of` a name; what is left are keys of its own.
+    /// Takes the inputs out of a table that takes those `of` a name; the remaining keys belong to the table.
     fn take(table: &mut DeTable<'_>, of: &str, are_lists: bool) -> Result<Self, Error> {
         let taken = Key::of(of).filter_map(|key| Some((key, table.remove(key.name)?)));
         let inputs = taken.map(|(key, value)| Ok((key, typed(key.kind, value, are_lists)?)));

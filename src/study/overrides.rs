@@ -64,8 +64,8 @@ impl Assignments {
         Ok((others, set))
     }
 
-    /// Refuses what a solution does not read: nothing that is typed is ignored. What is no key at all is left to the checker
-    /// of studies.
+    /// Refuses inputs that a solution does not read, so that no input is ignored. Unknown keys are left to the
+    /// checker of studies.
     fn refuse_ignored(&self, kind: ReferenceKind, has_weight: bool) -> Result<(), OverrideError> {
         let inputs = kind.inputs(has_weight);
         for typed in &self.assignments {
@@ -123,7 +123,7 @@ fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
             "its water is incompressible"
         }
         ("material.porosity", kind) if kind.inputs(false).contains(&"hydraulic_conductivity") => {
-            "its water is incompressible, so that the porosity has no part in it"
+            "its water is incompressible, so the porosity has no effect"
         }
         ("material.continuity", _) => "at small strain both forms are the same",
         ("column.loading_time", ReferenceKind::Shelf(_)) => "its load acts at once, or in waves",
@@ -131,7 +131,7 @@ fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
         ("column.self_weight", _) => "it has no weight",
         ("material.grain_density", _) => "it has no inertia, and no weight without `column.self_weight=true`",
         ("output.time_factors", _) => "`--time-factor` has the times",
-        _ => "what it prints does not depend on it",
+        _ => "the printed values do not depend on it",
     }
 }
 
@@ -665,8 +665,8 @@ mod tests {
             ("cosine-layer-incompressible", "material.porosity=0.4", "its water is incompressible"),
             ("terzaghi", "material.grain_density=2700", "no weight without `column.self_weight=true`"),
             ("terzaghi", "material.biot_coefficient=0.6", "`seabed`, `injection`, `mandel`"),
-            ("terzaghi", "points.offset=0.1", "does not depend on it"),
-            ("sealed-element", "material.gravity=1.6", "does not depend on it"),
+            ("terzaghi", "points.offset=0.1", "do not depend on it"),
+            ("sealed-element", "material.gravity=1.6", "do not depend on it"),
         ] {
             let set = Assignments { assignments: vec![typed.to_owned()] };
             let error = Asked::of_solution(kind.parse().expect("a solution"), &set)

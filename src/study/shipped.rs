@@ -69,7 +69,7 @@ pub fn shipped_studies() -> Vec<StudySource> {
 
 /// Longest name, bytes: file systems take 255, and what is made of a name puts more around it.
 const LONGEST: usize = 100;
-/// Names by which the report, the golden values and the tables call parts of their own.
+/// Names of parts of the report, the golden values and the tables.
 const TAKEN: [&str; 6] = ["findings", "survival", "how", "profiles", "history", "columns"];
 
 /// Name of a study by its file: without folders and extension.
@@ -98,7 +98,7 @@ pub fn refused_name(name: &str) -> Option<String> {
         return Some(format!("it has {} letters: take {LONGEST} at most", name.len()));
     }
     TAKEN.contains(&name).then(|| {
-        format!("`{name}` is what a part of the report, of the golden values or of the tables is called")
+        format!("`{name}` is the name of a part of the report, of the golden values or of the tables")
     })
 }
 
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// What nobody published and no study shows has no place in the program.
+    /// A method that is neither published nor shown in a study has no place in the program.
     #[test]
     fn every_part_of_a_method_has_a_source_or_a_study() {
         let studied: BTreeSet<(&str, &str)> = shipped_studies()
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(refused_name(&"a".repeat(101)).as_deref(), Some("it has 101 letters: take 100 at most"));
         for name in ["findings", "survival", "how", "profiles", "history", "columns"] {
             let why = format!(
-                "`{name}` is what a part of the report, of the golden values or of the tables is called"
+                "`{name}` is the name of a part of the report, of the golden values or of the tables"
             );
             assert_eq!(refused_name(name), Some(why));
             assert_eq!(refused_name(&format!("{name}2")), None);

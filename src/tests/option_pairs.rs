@@ -1,6 +1,6 @@
 //! Which options, and which pairs of them, a case of the CI tier has.
 //!
-//! A fault in a branch that no case takes is caught by nobody. Every value of every option must have a
+//! A fault in a branch that no case takes is not caught. Every value of every option must have a
 //! case; pairs of values that a study may ask for and none does are listed in a snapshot, so that the list
 //! changes knowingly. What cannot go together is told by the checker itself.
 

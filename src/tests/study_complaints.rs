@@ -36,11 +36,11 @@ terzaghi ¦ column.strain = 0.1 ¦ cells = [4]⏎load = [1.0, 2.0] ¦  ¦ the co
 mandel ¦ column.dimensions = 1 ¦ cells = [10] ¦  ¦ `mandel` has two dimensions ¦ leave the key out: the plate presses across the direction in which the water flows
 layered ¦ column = { height = 2.5, soils = [{ thickness = 3.0 }, { thickness = 1.5 }] } ¦ cells = [4] ¦  ¦ the layers are 4.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the column 4.5 m high, or the layers thinner
 layered ¦ column = { height = 2.5, soils = [{ thickness = 1.0 }, { thickness = 0.5 }] } ¦ cells = [4] ¦  ¦ the layers are 1.5 m thick together, and the column is 2.5 m high: they must fill it ¦ make the last layer 1.5 m thick, or the column 1.5 m high
-layered ¦ column.soils = [NINE] ¦ cells = [4] ¦  ¦ 9 layers of soil ¦ 8 are the most
+layered ¦ column.soils = [NINE] ¦ cells = [4] ¦  ¦ 9 layers of soil ¦ at most 8 are allowed
 terzaghi ¦ solver = [{ name = 'a', command = ['b'], result = '{out}/c', solve_seconds = 'LONG' }] ¦ cells = [4] ¦  ¦ the pattern has more than 500 letters ¦ write a short one, like "It took ([0-9.e+-]+) s"
 cosine-layer ¦  ¦ cells = [4, 8, 16] ¦ reference = 'none'⏎probe = 0.5⏎uncertainty = { below = 0.1 } ¦ a probe is for a field of a column that is compared with no reference ¦ add `reference = "none"`, or leave the key out
 terzaghi ¦  ¦ cells = [4, 8]⏎height = [1.0, 2.0] ¦ at = { cells = 8, below = 0.5 } ¦ the cases have several heights, and the expectation names none ¦ add the one that it is about, like `height = 2.0`
-terzaghi ¦  ¦ cells = [4, 8]⏎[[sweep]]⏎method = ['MPM']⏎integrator = ['implicit']⏎cells = [4, 8]⏎porosity = [0.4] ¦ method = 'GIMP'⏎porosity = 0.4⏎at = { cells = 8, below = 0.5 } ¦ no case of the study has `porosity = 0.4` with the others that the expectation names ¦ the cases have 0.3
+terzaghi ¦  ¦ cells = [4, 8]⏎[[sweep]]⏎method = ['MPM']⏎integrator = ['implicit']⏎cells = [4, 8]⏎porosity = [0.4] ¦ method = 'GIMP'⏎porosity = 0.4⏎at = { cells = 8, below = 0.5 } ¦ no case of the study has `porosity = 0.4` and the other inputs of the expectation ¦ the cases have 0.3
 terzaghi ¦  ¦ cells = [4]⏎time_step = [{ seconds = 1.0 }, { seconds = 0.5 }] ¦ axis = 'time_step'⏎class = 'asymptotic'⏎at = { cells = 4, below = 0.5 } ¦ the bound names no level of its axis, or no bound ¦ write like { cells = 10, below = 5.0e-3 }
 terzaghi ¦  ¦ cells = [4, 8] ¦ quantity = 'settlement'⏎norm = 'l2'⏎at = { cells = 8, below = 0.5 } ¦ a settlement has no `norm = "l2"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
 footing ¦  ¦ cells = [4, 8] ¦ quantity = 'load_factor'⏎sample = 'nodes'⏎at = { cells = 8, below = 0.5 } ¦ a load factor has no `sample = "nodes"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
@@ -141,7 +141,7 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
     for typed in ["0.00099", "1000.1", "0.0", "-1.0", "nan"] {
         let told = ppp(typed).expect_err(typed);
         assert_eq!(
-            told.0, "the parameter of a projection is between 0.001 and 1000 of its source's",
+            told.0, "the parameter of a projection is between 0.001 and 1000 times the published value",
             "{typed}"
         );
         assert_eq!(told.1, "take 1, or leave it out");
@@ -288,13 +288,13 @@ fn who_names_no_integrator_is_told_both_times() {
     let taken = study("cells = [640, 5]\ntime_factors = [1.0]");
     let explicit = study("integrator = ['explicit']\ncells = [640, 5]\ntime_factors = [1.0]");
     let told = format!(
-        "the sweep names no integrator, and `explicit` would take {} for its longest case: `implicit` is taken, {}",
+        "the sweep names no integrator, and `explicit` would take {} for its longest case: `implicit` is used, {}",
         longest(&explicit),
         longest(&taken)
     );
     assert_ne!(longest(&explicit), longest(&taken));
     let found = taken.warnings.join("\n").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(found.starts_with(&format!("warning: {told} --> t.toml:5:1 ")), "{found} for {told}");
-    let help = "write `integrator = [\"implicit\"]` to say so, or `integrator = [\"explicit\"]` to have it all the same";
+    let help = "write `integrator = [\"implicit\"]` to confirm it, or `integrator = [\"explicit\"]` to solve explicitly";
     assert!(found.ends_with(help), "{found}");
 }

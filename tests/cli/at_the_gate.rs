@@ -32,8 +32,11 @@ fn a_golden_file_that_cannot_be_read_is_never_replaced_and_says_what_to_do() {
     let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
     for (text, words) in [
         (pointer.to_owned(), "git lfs pull"),
-        (format!("{head}<<<<<<< HEAD\n{tail}=======\n{tail}>>>>>>> other\n"), "conflict marks in it (line "),
-        (format!("<<<<<<< HEAD\n{sound}=======\n{sound}>>>>>>> other\n"), "conflict marks in it (line 1)"),
+        (
+            format!("{head}<<<<<<< HEAD\n{tail}=======\n{tail}>>>>>>> other\n"),
+            "conflict markers of git (line ",
+        ),
+        (format!("<<<<<<< HEAD\n{sound}=======\n{sound}>>>>>>> other\n"), "conflict markers of git (line 1)"),
         (sound[..sound.len() - 5].to_owned(), "git checkout HEAD -- golden/s.csv"),
         (String::new(), "git checkout HEAD -- golden/s.csv"),
     ] {

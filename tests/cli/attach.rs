@@ -9,11 +9,11 @@ use tempfile::TempDir;
 
 /// Every way in which the toy ends, with the status that it must get and words of its message.
 const ENDS: [(&str, &str, &str); 9] = [
-    ("hang", "timed-out", "did not end within the 2 s"),
+    ("hang", "timed-out", "exceeded its 2 s"),
     ("abort", "killed", "signal: 6"),
     ("fail", "failed", "matrix is singular in row 7"),
     ("skip", "skipped", "the library that I need is not here"),
-    ("no-file", "no-result", "in {out} there is elsewhere.csv"),
+    ("no-file", "no-result", "{out} has elsewhere.csv"),
     ("garbage", "unreadable", "result.csv"),
     ("nan", "not-finite", "`nan` in the column `p`"),
     ("half", "incomplete", "no sample lies between the heights 0.5 m and 1 m"),

@@ -109,7 +109,7 @@ fn a_value_without_a_reference_must_be_one_number_and_nothing_else_has_an_uncert
             "quantity = \"settlement\"\nreference = \"none\"\nuncertainty = { below = -1.0 }",
             "positive number",
         ),
-        ("quantity = \"settlement\"\nreference = \"none\"", "asks for nothing"),
+        ("quantity = \"settlement\"\nreference = \"none\"", "demands nothing"),
         ("reference = \"next-finer\"\norder = { value = 2.0 }", "the next finer level has other places"),
     ] {
         assert_says(&refused_expectation(keys), &[part]);
@@ -243,7 +243,7 @@ fn names_that_are_none_are_refused_with_the_names_there_are() {
 #[test]
 fn a_path_whose_axes_differ_in_length_is_refused() {
     let told = refused_with("cells = [2]", "cells = [2, 4, 8]\npath = [\"cells\", \"time_step\"]");
-    assert_says(&told, &["ties `time_step` with 1 values", "lists of one length"]);
+    assert_says(&told, &["combines `time_step` with 1 values", "equal lengths"]);
 }
 
 #[test]

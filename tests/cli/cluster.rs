@@ -70,7 +70,7 @@ impl Cluster {
 }
 
 fn submitted(array: usize) -> String {
-    format!("submitted 3 tasks as job {array}, and the merge behind it as {}", array + 1)
+    format!("submitted 3 tasks as job {array}, and the dependent merge as {}", array + 1)
 }
 
 fn given_up(submissions: &str) -> String {
@@ -99,7 +99,7 @@ fn a_campaign_is_run_merged_and_ends_as_its_cases_do() {
     let told = cluster.run(&["--dry-run"]);
     assert_eq!((told.code, told.out.as_str()), (0, ""));
     assert!(
-        told.err.ends_with("short: every case has its record: nothing would be submitted\n"),
+        told.err.ends_with("short: every case has a record: there is nothing to submit\n"),
         "{}",
         told.err
     );
@@ -148,7 +148,7 @@ fn what_is_under_way_is_followed_and_not_submitted_beside_it() {
     let left = "not followed; run the command without `--detach` to follow it".to_owned();
     assert_eq!(cluster.said(&["--detach"]), (0, vec![submitted(101), left.clone()]));
     assert_eq!(cluster.file("out/slurm/job").as_deref(), Some("101\n102\n"));
-    let there = "job 101 is under way already: it is followed".to_owned();
+    let there = "job 101 is already submitted, and is followed".to_owned();
     busy();
     assert_eq!(cluster.said(&["--detach"]), (0, vec![there.clone(), left]));
     assert_eq!(cluster.asked().len(), 2);
@@ -175,7 +175,7 @@ fn a_cluster_that_takes_no_array_or_is_none_is_told() {
     let none = Cluster { path: "/nowhere".to_owned(), ..Cluster::new(4, "COMPLETED", NOTHING) };
     let told = none.run(&["--detach"]);
     let end =
-        "error: cannot call sbatch: No such file or directory; is this a machine of a cluster with Slurm?\n";
+        "error: cannot start sbatch: No such file or directory; is this a machine of a Slurm cluster?\n";
     assert!(told.code == 2 && told.err.ends_with(end), "{}: {}", told.code, told.err);
     let told = none.run(&["--tier", "smoke"]);
     assert_eq!((told.code, told.err.as_str()), (4, "error: no case belongs to this tier\n"));

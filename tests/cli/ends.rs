@@ -22,7 +22,7 @@ fn place() -> TempDir {
 const ENDS: &str = "
 plan short.toml --missing none | 2 | there is no folder of results none
 merge short.toml empty none | 2 | there is no folder of results none
-merge empty | 4 | the folders have results of no study of this project and of no shipped one
+merge empty | 4 | the folders have no results of a study of this project or of a shipped one
 records empty | 4 | empty has no such record
 records none | 2 | there is no folder of a study's results none
 exact mandel --zeta 0.5 | 2 | the fields of `mandel` depend on the distance from the middle: give it by `--x`
@@ -34,12 +34,12 @@ run short.toml --shard 0/2 | 2 | `--shard 0/2` is not a share: write i/n with 1 
 run short.toml --shard 1/0 | 2 | `--shard 1/0` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3
 run short.toml --shard 2 | 2 | `--shard 2` is not a share: write i/n with 1 ≤ i ≤ n, like 2/3
 new solver short.toml --scene mandel | 2 | `--scene` belongs to `oedometer new NAME`: the adapter of a solver is for `terzaghi`
-solve terzaghi --set method=1 | 2 | `method` has an option of its own: --method NAME
-solve terzaghi --set sweep.method=1 | 2 | `method` has an option of its own: --method NAME
-solve terzaghi --set integrator=1 | 2 | `integrator` has an option of its own: --integrator NAME
-solve terzaghi --set sweep.cells=1 | 2 | `cells` has an option of its own: --cells NUMBER
-solve terzaghi --set points_per_cell=1 | 2 | `points_per_cell` has an option of its own: --points-per-cell NUMBER
-solve terzaghi --set sweep.time_step=1 | 2 | `time_step` has an option of its own: --time-step RULE
+solve terzaghi --set method=1 | 2 | `method` has a separate option: --method NAME
+solve terzaghi --set sweep.method=1 | 2 | `method` has a separate option: --method NAME
+solve terzaghi --set integrator=1 | 2 | `integrator` has a separate option: --integrator NAME
+solve terzaghi --set sweep.cells=1 | 2 | `cells` has a separate option: --cells NUMBER
+solve terzaghi --set points_per_cell=1 | 2 | `points_per_cell` has a separate option: --points-per-cell NUMBER
+solve terzaghi --set sweep.time_step=1 | 2 | `time_step` has a separate option: --time-step RULE
 solve terzaghi --set task=1 | 2 | `--set task` has no effect here: `oedometer stability` looks for critical steps
 solve terzaghi --set timing.repeats=1 | 2 | `--set timing.repeats` has no effect here: cases are timed by `oedometer run` with a study file
 exact terzaghi --set case_seconds=1 | 2 | `--set case_seconds` has no effect here: nothing is run

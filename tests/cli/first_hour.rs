@@ -53,7 +53,7 @@ fn the_natural_study_of_a_soft_soil_ends_in_seconds_and_who_names_explicit_is_wa
     let told = call(at, &["run", "short.toml"]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert!(
-        told.err.contains("the sweep names no integrator") && told.err.contains("is taken"),
+        told.err.contains("the sweep names no integrator") && told.err.contains("is used"),
         "{}",
         told.err
     );

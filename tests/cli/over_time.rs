@@ -118,7 +118,7 @@ fn bisect_finds_the_commit_that_moved_the_results_and_skips_what_cannot_be_tried
         &["bisect", "gate", "--good", "good", "--bad", "good~0", "--run", "sh run.sh {out}"],
     );
     assert_eq!(nothing.code, 4, "{}", nothing.err);
-    assert!(nothing.err.contains("nothing moved between"), "{}", nothing.err);
+    assert!(nothing.err.contains("no value differs between"), "{}", nothing.err);
 }
 
 #[test]
@@ -323,7 +323,7 @@ fn states_that_are_not_whole_are_told_in_sentences() {
     fs::write(at.join("golden/gate.csv"), golden([9e-2, 9e-2], "not committed")).expect("written");
     let told = call(at, &["history"]);
     assert!(told.code == 0 && told.err.contains("1 golden file in JSON is passed over"), "{}", told.err);
-    assert!(told.err.contains("changes that are not committed"), "{}", told.err);
+    assert!(told.err.contains("uncommitted changes"), "{}", told.err);
     git(at, &["checkout", "-q", "--", "golden/gate.csv"]);
     // Records of another layout.
     assert_eq!(call(at, &["run", "studies/gate.toml", "--out", "a"]).code, 0);

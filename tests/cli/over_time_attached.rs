@@ -86,7 +86,7 @@ fn the_commit_that_moved_a_python_solver_is_found_marked_and_told() {
     assert_eq!(git(at, &["status", "--porcelain"]), "", "the user's tree is as it was");
     // What neither builds nor runs is never blamed, though it is all that is left.
     let told = bisect(&["--bad", "HEAD~3"]);
-    assert!(told.code == 4 && told.err.contains("nothing moved between"), "{}{}", told.out, told.err);
+    assert!(told.code == 4 && told.err.contains("no value differs between"), "{}{}", told.out, told.err);
 
     let told = call(at, &["history", "mine", "--format", "csv"]);
     let rows: Vec<&str> = told.out.lines().collect();

@@ -177,7 +177,7 @@ fn a_resumed_run_keeps_what_nothing_proves_only_where_it_is_asked_to_and_says_so
     let words = "`mine` was not run: 1 result taken over (mine cells=10), made by `mine 1.2`, `sh adapter.sh";
     assert!(runs == 0 && told.contains(words) && told.contains("nothing proves"), "{told}");
     let (runs, told) = resumed(&[]);
-    assert!(runs == 1 && told.contains("not taken up") && told.contains("--keep-unproven"), "{told}");
+    assert!(runs == 1 && told.contains("not reused") && told.contains("--keep-unproven"), "{told}");
     // A page shows what there is, and says that, and what made it.
     git(&place.root, &["commit", "-qm", "another", "--allow-empty"]);
     write(&place.root, FILES[0].0, FILES[0].2);
@@ -240,7 +240,7 @@ fn what_is_declared_is_taken_over_by_name_until_a_part_of_it_changes() {
 #[test]
 fn a_declaration_that_says_nothing_is_refused_at_its_place() {
     for (declared, code, words) in [
-        ("reuse = \"version\"", 2, "nothing says by what the program is known"),
+        ("reuse = \"version\"", 2, "`reuse` needs something that identifies the program"),
         ("reuse = \"always\"", 2, "version"),
         ("known_by = [\"../package\"]", 2, "`known_by` has no effect without `reuse`"),
         ("reuse = \"version\"\nknown_by = [\"../packages\"]", 2, "there is no file or folder"),

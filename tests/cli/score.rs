@@ -305,7 +305,7 @@ fn a_result_that_is_not_whole_is_told_and_fails_a_gate() {
     }
     let told = score(at, &whole, &["--strict"]);
     assert!(
-        told.code == 0 && told.err.contains("give the times that must be there by --time-factor"),
+        told.code == 0 && told.err.contains("give the required times with --time-factor"),
         "{}",
         told.err
     );

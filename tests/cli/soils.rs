@@ -69,7 +69,7 @@ fn impossible_soils_are_refused_at_their_place() {
         ("yield-front", "material.preconsolidation=2", "0.001", "no yield front"),
         ("yield-front", "column.initial_stress=0.1", "1", "ask for earlier time factors"),
         ("layered", "material.preconsolidation=2", "0.1", "has no effect"),
-        ("terzaghi", "column.initial_stress=2", "0.1", "remembers no stress"),
+        ("terzaghi", "column.initial_stress=2", "0.1", "has no stress history"),
         ("terzaghi", "material.law=preconsolidated", "0.1", "of no other scene"),
     ] {
         let told = solve(&[scene, "--cells", "10", "--set", set, "--time-factor", more]);
@@ -101,7 +101,7 @@ fn impossible_footings_are_refused_at_their_place() {
     for (scene, more, part) in [
         ("footing", &["--cells", "5"][..], "take an even number"),
         ("footing", &["--cells", "4", "--set", "layer.plate_width=5"], "the layer ends under the footing"),
-        ("footing", &["--cells", "4", "--set", "layer.load=5"], "its plate is pushed"),
+        ("footing", &["--cells", "4", "--set", "layer.load=5"], "its plate is prescribed"),
         ("footing", &["--cells", "4", "--set", "points.offset=0.1"], "has no [points]"),
         ("footing", &["--cells", "4", "--set", "material.law=linear"], "is `von-mises`"),
         ("footing", &["--cells", "4", "--integrator", "explicit"], "the integrator is `implicit`"),

@@ -163,7 +163,7 @@ fn sound_records_that_disagree_are_no_merge() {
     let told = merge("disagreed");
     assert_eq!(told.code, 6, "{}", told.err);
     assert!(told.err.contains("one/short and other/short have different results of"), "{}", told.err);
-    assert!(told.err.contains("though one program is said to have made both"), "{}", told.err);
+    assert!(told.err.contains("although both name the same program"), "{}", told.err);
     assert!(!at.join("disagreed/short/short.csv").exists(), "no table of results that nobody can trust");
     // The same numbers from other sources are another program's all the same.
     change_records(&at.join("other"), "short", |_, record| {

@@ -338,7 +338,11 @@ fn more_tasks_than_an_array_takes_are_as_many_shares_as_it_takes() {
         call_with(at, &[("PATH", path.as_str())], &words)
     };
     let told = with("8", "--dry-run");
-    assert!(told.code == 0 && told.err.contains("this Slurm takes at most 3 tasks an array"), "{}", told.err);
+    assert!(
+        told.code == 0 && told.err.contains("this Slurm takes at most 3 tasks per array"),
+        "{}",
+        told.err
+    );
     for part in ["--shard $SLURM_ARRAY_TASK_ID/3 --balance", "# array=$(sbatch --parsable --array=1-3 out/"] {
         assert!(told.out.contains(part), "no {part} in {}", told.out);
     }
@@ -415,7 +419,7 @@ fn records_of_another_machine_are_merged_and_counted_and_those_of_other_sources_
     changed_share(at, "sources", &|record| record.provenance.sources = "0123456789abcdef".to_owned());
     let told = call(at, &["merge", "short.toml", "first", "sources", "--out", "none"]);
     assert_eq!(told.code, 6, "{}", told.err);
-    assert!(told.err.contains("were not made by one program: 36 of version"), "{}", told.err);
+    assert!(told.err.contains("come from several programs: 36 of version"), "{}", told.err);
     assert!(!at.join("none").exists(), "nothing is written");
     let told = call(at, &["plan", "short.toml", "--missing", "sources"]);
     assert_eq!(told.out.lines().count() - 1, CASES, "none of them counts as done");
@@ -430,7 +434,7 @@ fn records_of_another_machine_are_merged_and_counted_and_those_of_other_sources_
     let told = call(at, &["merge", "short.toml", "mixed", "--out", "none"]);
     assert_eq!(told.code, 6, "{}", told.err);
     let (own, other) = ("24 of version", "12 of version");
-    assert!(told.err.contains("were not made by one program"), "{}", told.err);
+    assert!(told.err.contains("come from several programs"), "{}", told.err);
     assert!(told.err.contains(own) && told.err.contains(other), "{}", told.err);
     assert!(!at.join("none").exists(), "nothing is written");
     let told = call(at, &["plan", "short.toml", "--missing", "mixed"]);

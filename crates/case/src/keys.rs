@@ -165,7 +165,7 @@ const SHIFT: Kind = Kind::Number(Range::Within(
     -0.5,
     0.5,
     "points shifted by {} spacings",
-    "half a spacing up or down, 0.5 or -0.5, is as far as they go",
+    "it lies between -0.5 and 0.5 point spacings",
 ));
 const SHARE_OF_FLIP: Kind =
     Kind::Number(Range::Within(0.0, 1.0, "a FLIP share of {}", "it lies between 0 (PIC) and 1 (FLIP)"));
@@ -186,7 +186,7 @@ const TURN: Kind = Kind::Number(Range::Within(
     -4.0,
     4.0,
     "a prescribed angle of {}",
-    "more than a whole turn either way needs finer meshes than there are: it lies between -4 and 4 rad",
+    "larger angles need finer meshes than there are: it lies between -4 and 4 rad",
 ));
 
 // One row per key: name, tables, values, unit, field of the case; meaning.
@@ -294,7 +294,7 @@ impl Key {
         KEYS.iter().filter(move |key| key.tables.contains(&table))
     }
 
-    /// Whether it is the integrator or a choice of its own.
+    /// Whether it is the integrator or one of its options.
     pub fn is_of_integrator(&self) -> bool {
         self.name == "integrator" || self.tables.contains(&"integrator")
     }
@@ -421,7 +421,7 @@ mod tests {
             Kind::Number(Range::Within(low, high, said, right)) => (low, high, said, right),
             _ => panic!("{name} has other values"),
         };
-        let half = "half a spacing up or down, 0.5 or -0.5, is as far as they go";
+        let half = "it lies between -0.5 and 0.5 point spacings";
         let filled = "it is the share of the top cell that is filled: more than 0, at most 1";
         let fold = "from 1 on it folds the body: it lies between -0.99 and 0.99";
         for (name, low, high, said, right) in [

@@ -39,7 +39,7 @@ impl Case {
             return vec![when(
                 "task",
                 is_stability,
-                "an attached solver has no critical step that could be searched",
+                "the critical step of an attached solver cannot be searched",
                 "name methods of this program alone, or leave `task` out",
             )]
             .into_iter()
@@ -77,7 +77,7 @@ impl Case {
                 *scene == SceneKind::SealedElement
                     && *integrator == IntegratorKind::Explicit
                     && settings.drag == Drag::Explicit,
-                "explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves",
+                "explicit drag in a nearly impermeable soil needs steps below 1e-12 of those of the waves",
                 "take `drag = \"implicit\"`",
             ),
             when(
@@ -89,7 +89,7 @@ impl Case {
             when(
                 "affine",
                 settings.affine && has_moving_points && by_limit,
-                "the critical step with APIC is not predicted: no share of it can be taken",
+                "the critical step with APIC is not predicted: `stable` cannot be used",
                 NAME_THE_STEP,
             ),
             when(
@@ -102,7 +102,7 @@ impl Case {
             when(
                 "stress_slopes",
                 settings.stress_slopes && has_domains && by_limit,
-                "the critical step with stress slopes is not predicted: no share of it can be taken",
+                "the critical step with stress slopes is not predicted: `stable` cannot be used",
                 NAME_THE_STEP,
             ),
             when(
@@ -133,7 +133,7 @@ impl Case {
             when(
                 "sets",
                 two && method.has_projection(),
-                "the projection is of a pressure that the points of the skeleton carry",
+                "the projection needs pressures at the points of the skeleton",
                 "take the method \"VP\", or `sets = 1`",
             ),
             when(
@@ -145,7 +145,7 @@ impl Case {
             when(
                 "sets",
                 two && moves && !matches!(method.basis, Basis::Cpgimp | Basis::Cpdi),
-                "the domains of water points follow the water where points move, and this basis has none that follow",
+                "the domains of water points follow the water where points move, and the domains of this basis do not",
                 "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
             ),
             when(
@@ -175,7 +175,7 @@ impl Case {
             when(
                 "formulation",
                 *scene == SceneKind::Footing && *formulation != Formulation::QuasiStatic,
-                "a footing is pushed so slowly that nothing has inertia",
+                "a footing is quasi-static: it has no inertia",
                 "leave `formulation` out",
             ),
             when(
@@ -195,7 +195,7 @@ impl Case {
             when(
                 "sets",
                 two && (*scene == SceneKind::Layered || !column.soils.is_empty()),
-                "the water of two point sets knows one soil",
+                "two point sets take one soil",
                 "take another scene, or `sets = 1`",
             ),
             when(
@@ -283,19 +283,19 @@ mod tests {
 
     /// What is said of the cases of the table below that are refused, by their rows.
     const TOLD: &str = r#"
-0 task: an attached solver has no critical step that could be searched: name methods of this program alone, or leave `task` out
-1 affine: the critical step with APIC is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
-2 stress_slopes: the critical step with stress slopes is not predicted: no share of it can be taken: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
-3 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
-4 sets: the domains of water points follow the water where points move, and this basis has none that follow: take the basis "cpgimp" or "cpdi", or `sets = 1`
-8 sets: the projection is of a pressure that the points of the skeleton carry: take the method "VP", or `sets = 1`
+0 task: the critical step of an attached solver cannot be searched: name methods of this program alone, or leave `task` out
+1 affine: the critical step with APIC is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+2 stress_slopes: the critical step with stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
+3 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
+4 sets: the domains of water points follow the water where points move, and the domains of this basis do not: take the basis "cpgimp" or "cpdi", or `sets = 1`
+8 sets: the projection needs pressures at the points of the skeleton: take the method "VP", or `sets = 1`
 9 sets: cell averages need points that carry both phases, and here are two point sets: take a method without the suffix -cells, or `sets = 1`
 10 sets: the chord mean is taken over points that carry both phases: take `conductivity_mean = "points"`, or `sets = 1`
 11 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
 12 sets: shifted domains of the water do not end where the soil does: leave `offset` and `jitter` out, or take `sets = 1`
-14 sets: the water of two point sets knows one soil: take another scene, or `sets = 1`
+14 sets: two point sets take one soil: take another scene, or `sets = 1`
 15 conductivity_mean: the chord mean is taken along the compression of one soil, and the column has layers: take `conductivity_mean = "points"`
-18 drag: explicit drag in a soil that lets no water through needs steps below 1e-12 of those of the waves: take `drag = "implicit"`
+18 drag: explicit drag in a nearly impermeable soil needs steps below 1e-12 of those of the waves: take `drag = "implicit"`
 21 formulation: the quasi-static formulation leaves out the waves that this scene is about: take "v-w" or "u-p", or the scene "terzaghi"
 23 alternating: cells with unequal numbers of points are those of a column in one dimension: leave `alternating` out, or take a column with `dimensions = 1`
 25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: take an even number

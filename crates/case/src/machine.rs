@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 pub struct Machine {
     /// Name of the host.
     pub node: String,
-    /// Its processor, by its name where the system tells it.
+    /// Its processor, by its name if the system reports it.
     pub processor: String,
 }
 

@@ -18,7 +18,7 @@ pub struct MethodPart {
     pub source: &'static str,
 }
 
-/// The method of a name in one line; `None` where it is no method's.
+/// The method of a name in one line; `None` if no method has it.
 pub fn method_words(name: &str) -> Option<String> {
     let method = Method::named(name)?;
     Some(parts(&method).iter().map(|part| part.description).collect::<Vec<_>>().join("; "))

@@ -18,8 +18,8 @@ pub trait Solver: Sync {
     /// When the numbers of the case are such that nothing can solve it.
     fn solve(&self, case: &Case, course: &Course<'_>) -> Result<Outcome, ExactError>;
 
-    /// What an earlier outcome of it is to the solver of now, by what is known of the program that made it. Those of
-    /// this program are told apart by its sources.
+    /// How an earlier outcome relates to the present solver, by what identifies the program that made it; for this
+    /// program, its sources.
     fn standing(&self, earlier: Option<&AttachedRun>) -> Standing {
         let _ = earlier;
         Standing::Proven
@@ -56,7 +56,7 @@ pub struct Course<'a> {
     pub alone: bool,
     /// Longest wall time, s.
     pub seconds: f64,
-    /// Folder of the case's record, beside which files of the run may be kept; none where nothing is.
+    /// Folder of the case's record, beside which files of the run may be kept; `None` if none are kept.
     pub place: Option<&'a Path>,
     /// Takes work done and expected, and says whether the case is still wanted.
     pub observe: &'a dyn Fn(u64, u64) -> bool,
@@ -210,16 +210,16 @@ pub struct WallSample {
     pub seconds: f64,
     /// Whether nothing else of this program ran meanwhile; only such samples are compared.
     pub alone: bool,
-    /// Seconds that the processor worked on it, where the system tells.
+    /// Seconds that the processor worked on it, if the system reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_seconds: Option<f64>,
     /// Where it ran, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<Machine>,
-    /// Largest memory of an attached solver, bytes, where the system tells.
+    /// Largest memory of an attached solver, bytes, if the system reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory: Option<u64>,
-    /// Programs that wanted the processor when an attached solver began, where the system tells.
+    /// Runnable processes when an attached solver began, if the system reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Time that an attached solver says it took, s.
@@ -256,8 +256,8 @@ pub struct AttachedRun {
     /// Digest of the content of the result's files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub result_digest: Option<String>,
-    /// Largest difference between the results of repeats, over the largest value of its field; none where there was
-    /// one run. Results at other places are told as a note.
+    /// Largest difference between the results of repeats, over the largest value of its field; `None` after a
+    /// single run. Results at different places are reported in a note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeats_differ_by: Option<f64>,
     /// What is odd about the run and fails nothing.

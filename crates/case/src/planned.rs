@@ -33,7 +33,7 @@ impl Planner {
         self.planned.reserve_exact(more);
     }
 
-    /// Puts a case among those that are planned: each once, in the smallest tier that has it.
+    /// Adds a case to the plan: each once, in the smallest tier that includes it.
     pub fn put(&mut self, mut case: Case, tier: Tier) {
         match self.places.entry(case.number()) {
             Entry::Occupied(place) => {

@@ -32,7 +32,7 @@ impl Quantity {
         matches!(self, Self::Settlement | Self::LoadFactor)
     }
 
-    /// The norm in which it is told first.
+    /// The norm in which it is reported first.
     pub fn first_norm(self) -> Norm {
         if self.is_of_surface() { Norm::Relative } else { Norm::L2 }
     }

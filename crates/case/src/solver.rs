@@ -76,7 +76,7 @@ pub enum NameError {
 }
 
 impl Attached {
-    /// A solver by its name and the digest of what it is made of.
+    /// A solver by its name and the digest of its files.
     ///
     /// # Errors
     /// When the name is not plain or too long, or the digest is invalid.

@@ -57,7 +57,7 @@ fn places_in(samples: &Samples) -> usize {
     samples.initial_height.len()
 }
 
-/// A list that is no field of its places: of another length, or with a value that is no number.
+/// A list that is not a field of its places: its length differs, or a value is not a number.
 fn lack_of_samples(samples: &Samples) -> Option<String> {
     let places = places_in(samples);
     let plane = samples.plane.as_ref();

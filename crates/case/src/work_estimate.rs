@@ -127,7 +127,7 @@ const PLANE_FIT_FACTOR: f64 = 1.3;
 const MEMORY_FACTOR: f64 = 1.8;
 /// Factor of a point-wise step that assembles and factors the projection of its pressure anew.
 const PROJECTION_FACTOR: f64 = 4.5;
-/// Factors of a linear step whose soil yields, by dimensions: it takes iterations, most of them with a tangent of their own.
+/// Factors of a linear step whose soil yields, by dimensions: it takes iterations, most of them with a new tangent.
 const YIELDING_FACTORS: [f64; 2] = [7.0, 25.0];
 /// Factor for a scene whose body forces and sources are evaluated at every point.
 const FORCED_FACTOR: f64 = 2.0;

@@ -111,7 +111,7 @@ impl SeriesDemand {
             (oscillation.is_none_or(f64::is_finite), "the bound on the oscillation must be a number"),
             (uncertainty.is_none_or(positive), "the bound on the uncertainty must be a positive number"),
             (self.xfail.as_ref().is_none_or(has_reason), "a known failure needs a reason"),
-            (asks || oscillation.is_some() || uncertainty.is_some(), "the expectation asks for nothing"),
+            (asks || oscillation.is_some() || uncertainty.is_some(), "the expectation demands nothing"),
         ];
         rules.into_iter().filter(|(met, _)| !met).map(|(_, problem)| problem.to_owned()).collect()
     }

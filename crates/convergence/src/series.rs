@@ -136,8 +136,7 @@ impl ErrorSeries {
 impl SeriesLevel {
     /// The error as a positive normal number.
     ///
-    /// # Errors
-    /// What it is instead.
+    /// # Errors Its value, if it is not.
     pub fn positive_error(&self) -> Result<f64, Undefined> {
         let size = self.size;
         match self.error {

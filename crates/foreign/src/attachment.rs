@@ -43,7 +43,7 @@ pub fn solver_of<'a>(solver: &'a ExternalSolver, axes: Axes, may_start: bool) ->
     if may_start { Box::new(program) } else { Box::new(HeldBack { program }) }
 }
 
-/// What the result of a solver means, or why that cannot be told.
+/// What the result of a solver means, or why it is unknown.
 struct Reading<'a> {
     solver: &'a ExternalSolver,
     mapping: Result<Mapping, String>,
@@ -53,14 +53,14 @@ struct Reading<'a> {
 struct Attachment<'a> {
     reading: Reading<'a>,
     version: OnceLock<Result<Version, String>>,
-    /// Digest of its program as it is when first asked, or why that is not known.
+    /// Digest of its program at the first request, or why that is unknown.
     program: OnceLock<Result<String, String>>,
     /// Commit of the repository that the study is in.
     commit: OnceLock<Option<String>>,
     gate: Gate,
 }
 
-/// A program that nobody allowed to start.
+/// A program that is not allowed to start.
 struct HeldBack<'a> {
     program: Attachment<'a>,
 }
@@ -139,7 +139,7 @@ impl<'a> Attachment<'a> {
         }
     }
 
-    /// What an earlier run is to the program of now. Only a solver that may be started tells its version.
+    /// How an earlier run relates to the present program. Only a solver that may start is asked for its version.
     fn standing_where(&self, earlier: Option<&AttachedRun>, may_start: bool) -> Standing {
         let solver = self.reading.solver;
         let known = earlier.and_then(|about| about.program_digest.as_ref());
@@ -181,7 +181,7 @@ impl<'a> Attachment<'a> {
         about.program_digest = program.as_ref().ok().filter(is_same).cloned();
         if about.program_digest.is_none() {
             let why = program.as_ref().err().map_or("its program changed while it ran", String::as_str);
-            note(about, format!("no later run takes its results over: {why}"));
+            note(about, format!("later runs do not reuse its results: {why}"));
         }
         left
     }
@@ -232,8 +232,8 @@ impl<'a> Attachment<'a> {
             note(
                 about,
                 format!(
-                    "it says that it took {own} s, more than the {wall} s of its run: what is the unit of the number \
-                     that `solve_seconds` finds (`solve_unit = \"ms\"`)?"
+                    "it reports {own} s, more than the {wall} s of its run: which unit has the number that \
+                     `solve_seconds` matches (`solve_unit = \"ms\"`)?"
                 ),
             );
         }
@@ -261,7 +261,7 @@ impl<'a> Attachment<'a> {
         let keep =
             || staged.keep_words(&finished.output, &finished.errors).and_then(|()| staged.keep(!failed));
         if !is_stopped && let Err(error) = keep() {
-            note(about, format!("its files could not be kept: {error}"));
+            note(about, format!("its files could not be stored: {error}"));
         }
         left
     }
@@ -360,7 +360,10 @@ fn note_difference(about: &mut AttachedRun, difference: f64) {
             note(about, "its repeats do not give the same result; see `repeats_differ_by`".to_owned());
         }
     } else {
-        note(about, "its repeats give results at other places, or such as no one can compare".to_owned());
+        note(
+            about,
+            "its repeats give results at different places, or results that cannot be compared".to_owned(),
+        );
     }
 }
 
@@ -414,7 +417,7 @@ fn settlement_in(case: &Case, state: &SampledState) -> Option<f64> {
     surface.map(|up| -up)
 }
 
-/// Programs that want the processor, as a mean over the last minute, where the system tells.
+/// Runnable processes, as a mean over the last minute, if the system reports it.
 fn load_of_machine() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }

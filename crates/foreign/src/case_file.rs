@@ -1,4 +1,4 @@
-//! Writes `case.json`, which tells an attached solver what to solve.
+//! Writes `case.json`, which describes the problem to an attached solver.
 
 use oedometer_case::{Case, Key};
 use oedometer_exact::soil_layers::SoilLayer;
@@ -70,13 +70,13 @@ pub struct CaseColumn {
     /// Time over which the load grows, s; 0 where it acts at once.
     pub loading_time: f64,
     /// Whether skeleton and water have a weight; the water level stands in the surface at the start. Pressures of a
-    /// result are excess pressures all the same.
+    /// result are excess pressures in either case.
     pub self_weight: bool,
     /// Directions that this program would solve, 1 or 2.
     pub dimensions: usize,
     /// How a layer rests on its base, `rough` or `smooth`; of a column nothing.
     pub base: Option<String>,
-    /// Layers of soil from the base up: thickness, m, and what differs from `material`; none of a column of one soil.
+    /// Layers of soil from the base up: thickness, m, and what differs from `material`; empty for a column of one soil.
     pub soils: Vec<SoilLayer>,
     /// Vertical effective stress of the start, Pa, compression positive, of a preconsolidated soil; 0 of others. Effective
     /// stresses of a result are counted from it.
@@ -154,15 +154,16 @@ impl CaseFile {
 /// What a solver has to know of the sides of a body, and whoever writes its result of the axes.
 fn axes_of(case: &Case) -> &'static str {
     if case.scene.has_plates() {
-        "x counts from the middle of the slab, where nothing flows or moves along x, to its drained side, which is free, at \
-         `height`; y from the middle between the plates to the plate, at `width`, which is rigid, smooth and impermeable and \
-         presses across with the mean stress `load`; cells count along x; the settlement is the plate's"
+        "x is measured from the middle of the slab, without flow or motion along x, to its drained, free \
+         side, at `height`; y from the middle between the plates to the plate, at `width`, which is rigid, \
+         smooth and impermeable and applies the mean stress `load`; cells are counted along x; the settlement is the plate's"
     } else if case.scene.is_a_layer() {
-        "y counts upward from the base, impermeable, held along y and where it is rough along x, to the drained surface; x \
-         from under the crest of the load, load · cos(π x/width), to its trough; at both ends nothing flows or moves along x"
+        "y is measured upward from the base, impermeable, fixed along y and if rough along x, to the drained \
+         surface; x from the crest of the load, load · cos(π x/width), to its trough; at both ends there is \
+         neither flow nor motion along x"
     } else {
-        "y counts upward from the base, held and impermeable, to the drained surface, on which a load presses evenly; \
-         nothing flows or moves along x"
+        "y is measured upward from the base, fixed and impermeable, to the drained surface, which carries a \
+         uniform load; along x there is neither flow nor motion"
     }
 }
 
@@ -271,8 +272,8 @@ mod tests {
     #[test]
     fn the_axes_are_those_of_the_body_and_its_numbers_stand_at_their_keys() {
         for (scene, part) in [
-            (SceneKind::Terzaghi, "on which a load presses evenly"),
-            (SceneKind::CosineLayer, "from under the crest of the load"),
+            (SceneKind::Terzaghi, "which carries a uniform load"),
+            (SceneKind::CosineLayer, "from the crest of the load"),
             (SceneKind::Mandel, "from the middle of the slab"),
         ] {
             let file = CaseFile::of(&Case::seed(Task::Solve, scene));

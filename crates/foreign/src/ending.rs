@@ -1,4 +1,4 @@
-//! The end of a run by its name, with whose error it is: a closed list, of which the first that applies holds.
+//! The end of a run by its name, and who made the error: a closed list; the first that applies holds.
 //!
 //! | status | when | whose |
 //! | :-- | :-- | :-- |
@@ -69,13 +69,13 @@ pub fn of_process(run: &Finished, solver: &ExternalSolver) -> Option<Failure> {
         Ending::TimedOut => (
             FailureKind::TimedOut,
             format!(
-                "the solver did not end within the {} s that the study gives it, and was ended with all that it had \
-                 started{}; its own, or `timeout` is too short",
+                "the solver exceeded its {} s and was killed with everything that it had started{}; it \
+                 hangs, or `timeout` is too short",
                 typed(solver.timeout),
                 if run.found.lives_on.is_empty() {
                     String::new()
                 } else {
-                    format!(", but for what could not be ended, {}", named(&run.found.lives_on))
+                    format!(", except for {}, which could not be killed", named(&run.found.lives_on))
                 }
             ),
         ),
@@ -126,7 +126,9 @@ fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
         )),
         None => Some((
             FailureKind::Killed,
-            format!("{status} ended it, and not this program; a crash of the solver, or want of memory"),
+            format!(
+                "{status} ended it, which this program did not send; the solver crashed, or memory ran out"
+            ),
         )),
     }
 }
@@ -134,8 +136,8 @@ fn of_status(status: ExitStatus) -> Option<(FailureKind, String)> {
 /// The end of a run whose result cannot be taken.
 pub fn of_reading(unread: Unread, solver: &ExternalSolver, contents: &str) -> Failure {
     let no_file = format!(
-        "it ended well and left no {}; in {{out}} there is {contents}: the adapter writes it elsewhere, or `result` in \
-         the study names it otherwise",
+        "it ended with exit code 0 and left no {}; {{out}} has {contents}: the adapter writes it elsewhere, \
+         or `result` in the study has another name",
         solver.result
     );
     of_unread(unread, no_file, "; the adapter wrote it wrongly, or the mapping describes it wrongly")
@@ -163,21 +165,20 @@ fn of_unread(unread: Unread, no_file: String, whose: &str) -> Failure {
 
 /// The end of a run whose result lacks something.
 pub fn of_incomplete(lack: &str) -> Failure {
-    let reason =
-        format!("{lack}; the adapter does not write all, or the solver ended early and said nothing");
+    let reason = format!("{lack}; the adapter left data out, or the solver ended early without an error");
     Failure::of_attached(FailureKind::Incomplete, reason)
 }
 
 /// The end of a run for which the machine had no place.
 pub fn of_folder(error: &std::io::Error) -> Failure {
     let reason =
-        format!("no fresh folder could be made for it: {error}; the machine's, and not the solver's");
+        format!("its folder could not be created: {error}; an error of the machine, not of the solver");
     Failure::of_attached(FailureKind::NotStartable, reason)
 }
 
 /// The end of a run whose mapping is wrong.
 pub fn of_mapping(why: &str) -> Failure {
-    Failure::of_attached(FailureKind::Unreadable, format!("the mapping cannot be taken: {why}"))
+    Failure::of_attached(FailureKind::Unreadable, format!("the mapping cannot be used: {why}"))
 }
 
 /// The last lines of a run's errors, or of its output if it wrote no errors, behind the first that names what went wrong:
@@ -287,7 +288,7 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
                 if distance.is_nan() { String::new() } else { format!(", x = {} m", short(distance)) };
             format!(", the first at y = {} m{across}", short(height))
         });
-        return Some(format!("{when}, {} samples stand twice with different values{at}", state.repeated));
+        return Some(format!("{when}, {} samples are repeated with different values{at}", state.repeated));
     }
     if state.initial_height.is_empty() {
         // A settlement curve alone has none.

@@ -56,9 +56,9 @@ pub struct Finished {
     pub ending: Ending,
     /// Wall time from its start to its end, s.
     pub seconds: f64,
-    /// Processor time of it and of the children that it waited for, s, where the system tells.
+    /// Processor time of it and of the children that it waited for, s, if the system reports it.
     pub cpu_seconds: Option<f64>,
-    /// Largest memory of it or of one of those children, bytes, where the system tells.
+    /// Largest memory of it or of one of those children, bytes, if the system reports it.
     pub peak_memory: Option<u64>,
     /// The end of its standard output.
     pub output: String,
@@ -144,7 +144,7 @@ fn ended(reaped: Option<Reaped>) -> Ending {
     match reaped.map(|reaped| reaped.status) {
         Some(Ok(status)) => Ending::Ended(status),
         Some(Err(error)) => Ending::NotStarted(error),
-        None => Ending::NotStarted(std::io::Error::other("nobody could wait for its end")),
+        None => Ending::NotStarted(std::io::Error::other("waiting for its end failed")),
     }
 }
 
@@ -166,7 +166,7 @@ fn started(order: &Order<'_>, mark: &Mark) -> std::io::Result<Child> {
     command.spawn()
 }
 
-/// Waits for a process in a thread of its own, which tells its end.
+/// Waits for a process in a separate thread, which reports its end.
 fn reaped(mut child: Child) -> Receiver<Reaped> {
     let (tell, end) = channel();
     std::thread::spawn(move || {
@@ -211,7 +211,7 @@ struct Listener {
 }
 
 impl Listener {
-    /// Reads a stream to its end, in a thread of its own.
+    /// Reads a stream to its end in a separate thread.
     fn to(mut stream: impl Read + Send + 'static) -> Self {
         let kept = Arc::new(Mutex::new(VecDeque::new()));
         let (tell, ended) = channel();

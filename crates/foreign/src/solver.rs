@@ -98,7 +98,7 @@ pub struct ExternalSolver {
 }
 
 impl ExternalSolver {
-    /// Whether its results are there already, and nothing is run.
+    /// Whether its results exist already, so that nothing runs.
     pub fn is_given(&self) -> bool {
         !self.files.is_empty()
     }

@@ -1,4 +1,4 @@
-//! TOML that somebody wrote, with a name for messages.
+//! TOML of a user, with a name for messages.
 
 use crate::diagnostic::{Diagnostic, StudyError};
 

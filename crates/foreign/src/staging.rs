@@ -1,5 +1,5 @@
 //! What a run needs: the words that start it, with placeholders filled in and files of the adapter found beside the study;
-//! and its folder, fresh, under a name of its own until the run is whole, then beside the record.
+//! and its folder, empty, under a temporary name until the run is complete, then beside the record.
 
 use crate::case_file::suggested_step;
 use crate::solver::ExternalSolver;
@@ -22,7 +22,7 @@ const MOST_NAMES: usize = 8;
 #[derive(Debug)]
 pub struct Staged {
     folder: PathBuf,
-    /// Where it goes in the end; a run of which nothing is kept has no place.
+    /// Where it goes in the end; `None` if nothing of the run is kept.
     place: Option<PathBuf>,
 }
 
@@ -161,7 +161,7 @@ impl Filling {
         }
     }
 
-    /// A text with its placeholders filled in, in one pass: what a value has in braces stays as it is.
+    /// A text with its placeholders filled in, in one pass: braces in a value stay as they are.
     pub fn fill(&self, text: &str) -> String {
         let mut filled = String::new();
         let mut rest = text;

@@ -66,7 +66,7 @@ impl Drop for Mark {
     }
 }
 
-/// A program that was started in a group of its own, with all that it starts.
+/// A program that was started in a separate process group, with everything that it starts.
 pub struct Family {
     mark: Mark,
     #[cfg(unix)]
@@ -168,7 +168,7 @@ impl Family {
     }
 }
 
-/// What Linux tells of a process in `/proc/ID/stat`.
+/// What Linux reports about a process in `/proc/ID/stat`.
 #[cfg(target_os = "linux")]
 struct Process {
     seen: Seen,

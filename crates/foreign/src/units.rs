@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// second, and its size in these as a power of ten times a factor.
 type Symbol = (&'static [&'static str], &'static str, [i32; 3], i32, f64);
 
-/// Prefixes that nobody means are left out: an `mPa` is a mistyped `MPa`.
+/// Unlikely prefixes are left out: an `mPa` is a mistyped `MPa`.
 const SYMBOLS: [Symbol; 12] = [
     (&["Pa"], "kMG", [1, -1, -2], 0, 1.0),
     (&["bar"], "", [1, -1, -2], 5, 1.0),

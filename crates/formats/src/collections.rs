@@ -96,7 +96,7 @@ pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
 pub(crate) fn of_folder(folder: &Path) -> String {
     let files = files_of(folder);
     if ADIOS2.iter().any(|name| folder.join(name).is_file()) || ends_with(folder, "bp") {
-        return "it is a file of ADIOS2, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU (dolfinx.io.VTKFile)"
+        return "it is an ADIOS2 file, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU (dolfinx.io.VTKFile)"
             .to_owned();
     }
     let first = |endings: &[&'static str]| {

@@ -54,7 +54,7 @@ pub(crate) fn frame(store: &mut Store, place: usize, wanted: Wanted) -> Result<F
 fn coordinates(store: &mut Store) -> Result<Vec<[f64; 3]>, String> {
     let mut axes = Vec::new();
     if let Some(shape) = store.shape("coord").map(<[u64]>::to_vec) {
-        let [count, _] = shape[..] else { return Err("`coord` has not two axes".to_owned()) };
+        let [count, _] = shape[..] else { return Err("`coord` does not have two axes".to_owned()) };
         for axis in 0..count.min(3) {
             axes.push(store.numbers("coord", Some((axis, 1)))?);
         }
@@ -75,7 +75,7 @@ fn block_of(store: &mut Store, block: usize, is_flat: bool) -> Result<Cells, Str
     let shape = store.shape(&name).map(<[u64]>::to_vec).unwrap_or_default();
     let list: Vec<u32> = whole(&store.numbers(&name, None)?)?;
     let own = shape.get(1).and_then(|own| usize::try_from(*own).ok()).filter(|own| *own > 0);
-    let own = own.ok_or_else(|| format!("`{name}` says no nodes per element"))?;
+    let own = own.ok_or_else(|| format!("`{name}` lacks the number of nodes per element"))?;
     let known = if is_flat { &FLAT[..] } else { &SOLID[..] };
     let types = known.iter().find(|(nodes, _)| *nodes == own).map(|(_, types)| *types);
     let types = types.ok_or_else(|| format!("`{name}` has elements of {own} nodes, which are not read"))?;

@@ -68,7 +68,7 @@ impl Array {
     }
 }
 
-/// The part of a path behind its last `/`; units like `[m/s]` are no path.
+/// The part of a path behind its last `/`; units like `[m/s]` are not a path.
 fn last_part(path: &str) -> &str {
     let end = path.find('[').unwrap_or(path.len());
     path[..end].rfind('/').map_or(path, |slash| &path[slash + 1..])
@@ -85,7 +85,7 @@ pub struct Frame {
     pub cells: Option<Cells>,
     /// Arrays.
     pub arrays: Vec<Array>,
-    /// Points that belong to another piece, or are hidden: they shape cells and are no samples. Empty if there are none.
+    /// Points that belong to another piece, or are hidden: they shape cells but are not samples. Empty if there are none.
     pub ghosts: Vec<bool>,
     /// Times that the file lists beside its arrays: one axis of an array may run over them.
     pub times: Vec<f64>,

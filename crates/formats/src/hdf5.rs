@@ -1,5 +1,5 @@
-//! HDF5: data sets by their paths, with a list of times if there is one, and tables of records. Layouts of programs have
-//! files of their own: `exodus`, `pflotran`, `vtkhdf`.
+//! HDF5: data sets by their paths, with a list of times if there is one, and tables of records. Layouts of programs
+//! have separate files: `exodus`, `pflotran`, `vtkhdf`.
 //!
 //! The groups are walked once and the data sets kept: the library would walk a group again for each path.
 

@@ -12,7 +12,7 @@ use std::path::Path;
 pub const LARGEST: u64 = 8 << 30;
 /// Largest text file that is read, bytes: a study of a million cases takes less.
 pub const LARGEST_TEXT: u64 = 16_000_000;
-/// Bytes that a packed file may become: so many in any case, and more for each of its own.
+/// Bytes that a packed file may become: this many in any case, and more per byte of the file.
 const UNPACKED: (u64, u64) = (16 << 20, 200);
 /// First bytes of gzip.
 const GZIP: &[u8] = &[0x1f, 0x8b, 8];
@@ -118,7 +118,7 @@ fn wide(bytes: &[u8]) -> Option<(FromBytes, usize)> {
     all(|[first, second], is_letter| *first == 0 && is_letter(*second)).then_some((u16::from_be_bytes, 0))
 }
 
-/// Bytes without a byte order mark; text in UTF-16 as UTF-8. What is no UTF-16 behind its mark stays as it is.
+/// Bytes without a byte order mark; text in UTF-16 as UTF-8. Text that is not UTF-16 behind its mark stays as it is.
 fn plain(mut bytes: Vec<u8>) -> Vec<u8> {
     if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
         bytes.drain(..3);

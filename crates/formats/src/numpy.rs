@@ -26,7 +26,7 @@ pub(crate) fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     for entry in &entries {
         let name = String::from_utf8_lossy(entry.file_path().as_bytes()).into_owned();
         if name == "[Content_Types].xml" {
-            return Err("it is a workbook of Excel: save the sheet as CSV".to_owned());
+            return Err("it is an Excel workbook: save the sheet as CSV".to_owned());
         }
         let name = name.strip_suffix(".npy").unwrap_or(&name);
         let of_member = |why: String| format!("the member `{name}`: {why}");
@@ -41,7 +41,7 @@ pub(crate) fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
     }
     if frame.arrays.is_empty() && skipped.is_empty() {
         return Err(
-            "it is a zip without arrays of NumPy (a workbook of Excel: save the sheet as CSV)".to_owned()
+            "it is a zip without arrays of NumPy (an Excel workbook: save the sheet as CSV)".to_owned()
         );
     }
     if !skipped.is_empty() {

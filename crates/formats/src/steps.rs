@@ -266,7 +266,7 @@ fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
     input_file::read(path).map_err(ImportError::io(path))
 }
 
-/// The text of a file; what is not UTF-8 is replaced.
+/// The text of a file; invalid UTF-8 is replaced.
 fn read_text(path: &Path) -> Result<String, ImportError> {
     let bytes = read(path)?;
     Ok(String::from_utf8(bytes)

@@ -122,7 +122,7 @@ fn trimmed(axes: &[usize]) -> Vec<usize> {
     axes[..end.max(1).min(axes.len())].to_vec()
 }
 
-/// Number of places, if an array tells it: of two axes one has the length of the list of times.
+/// Number of places, if an array has it: of two axes one has the length of the list of times.
 fn places_of(frame: &Frame, arrays: &[(&Array, Use)], count: usize) -> Option<usize> {
     if !frame.coordinates.is_empty() {
         return Some(frame.coordinates.len());

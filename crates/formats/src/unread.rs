@@ -6,50 +6,44 @@ use crate::steps::Kind;
 const NAMED: [(&[u8], &str); 30] = [
     (
         b"version https://git-lfs.github.com/",
-        "it is a pointer of Git LFS and not the file: fetch the file with `git lfs pull`",
+        "it is a Git LFS pointer, not the file: fetch the file with `git lfs pull`",
     ),
-    (
-        b"/annex/objects/",
-        "it is a pointer of git-annex and not the file: fetch the file with `git annex get`",
-    ),
+    (b"/annex/objects/", "it is a git-annex pointer, not the file: fetch the file with `git annex get`"),
     (b"<!doctype html", "it is a web page and not a result: download the file itself"),
     (b"<html", "it is a web page and not a result: download the file itself"),
     (b"CDF\x01", CLASSIC),
     (b"CDF\x02", CLASSIC),
     (b"CDF\x05", CLASSIC),
-    (b"PAR1", "it is a file of Parquet, which is not read: write CSV (pandas: `read_parquet(…).to_csv(…)`)"),
-    (b"ARROW1", "it is a file of Arrow, which is not read: write CSV (pandas: `read_feather(…).to_csv(…)`)"),
-    (b"FEA1", "it is a file of Feather, which is not read: write CSV (pandas: `read_feather(…).to_csv(…)`)"),
+    (b"PAR1", "it is a Parquet file, which is not read: write CSV (pandas: `read_parquet(…).to_csv(…)`)"),
+    (b"ARROW1", "it is an Arrow file, which is not read: write CSV (pandas: `read_feather(…).to_csv(…)`)"),
+    (b"FEA1", "it is a Feather file, which is not read: write CSV (pandas: `read_feather(…).to_csv(…)`)"),
     (b"#!TDV", TECPLOT),
     (b"#!SZPLT", TECPLOT),
     (b"ADIOS-BP", ADIOS2),
-    (b"ITEM: TIMESTEP", "it is a dump of LAMMPS, which is not read: write its columns as CSV"),
-    (b"GiD Post", "it is a result of GiD, which is not read: write VTU or legacy VTK"),
-    (b"GiDPostEx", "it is a result of GiD, which is not read: write VTU or legacy VTK"),
-    (b"MATLAB 5.0", "it is a file of MATLAB 5, which is not read: save with `-v7.3`, as CSV, or as NPZ"),
-    (b"BZh", "it is packed by bzip2: unpack it first, or pack it by gzip"),
-    (b"\xfd7zXZ", "it is packed by xz: unpack it first, or pack it by gzip"),
-    (b"\x28\xb5\x2f\xfd", "it is packed by Zstandard: unpack it first, or pack it by gzip"),
-    (b"7z\xbc\xaf", "it is packed by 7-Zip: unpack it first"),
-    (b"SQLite format 3", "it is a database of SQLite: export the table as CSV"),
+    (b"ITEM: TIMESTEP", "it is a LAMMPS dump, which is not read: write its columns as CSV"),
+    (b"GiD Post", "it is a GiD result, which is not read: write VTU or legacy VTK"),
+    (b"GiDPostEx", "it is a GiD result, which is not read: write VTU or legacy VTK"),
+    (b"MATLAB 5.0", "it is a MATLAB 5 file, which is not read: save with `-v7.3`, as CSV, or as NPZ"),
+    (b"BZh", "it is compressed with bzip2: decompress it first, or use gzip"),
+    (b"\xfd7zXZ", "it is compressed with xz: decompress it first, or use gzip"),
+    (b"\x28\xb5\x2f\xfd", "it is compressed with Zstandard: decompress it first, or use gzip"),
+    (b"7z\xbc\xaf", "it is compressed with 7-Zip: decompress it first"),
+    (b"SQLite format 3", "it is an SQLite database: export the table as CSV"),
     (b"%PDF", "it is a PDF and not a result"),
     (b"\x89PNG", "it is a picture and not a result"),
-    (b"\xd0\xcf\x11\xe0", "it is an old workbook of Excel: save the sheet as CSV"),
+    (b"\xd0\xcf\x11\xe0", "it is an old Excel workbook: save the sheet as CSV"),
     (b"\x80\x02", PICKLE),
     (b"\x80\x03", PICKLE),
     (b"\x80\x04", PICKLE),
     (b"\x80\x05", PICKLE),
-    (
-        b"FORMAT\n",
-        "it is a case of EnSight, which is not read: write PVD with VTU (ParaView: File, Save Data)",
-    ),
+    (b"FORMAT\n", "it is an EnSight case, which is not read: write PVD with VTU (ParaView: File, Save Data)"),
 ];
 /// What stands in an archive of tar, and where.
 const TAR: (usize, &[u8]) = (257, b"ustar");
 const CLASSIC: &str = "it is classic netCDF (of Exodus II, too), which is not read: export VTU or CSV, or turn it into \
                        netCDF-4 by `nccopy -k nc4 FILE NEW`";
-const TECPLOT: &str = "it is a file of Tecplot, which is not read: export VTU or CSV";
-const ADIOS2: &str = "it is a file of ADIOS2, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU";
+const TECPLOT: &str = "it is a Tecplot file, which is not read: export VTU or CSV";
+const ADIOS2: &str = "it is an ADIOS2 file, which is not read: write XDMF (dolfinx.io.XDMFFile) or VTU";
 const PICKLE: &str = "it is a pickled object, which is a program and never opened: write NPZ or CSV";
 const FRD: &str =
     "it is CalculiX's FRD, which is not read: write VTU (ccx2paraview), or tables by `*NODE PRINT` as CSV";
@@ -64,7 +58,7 @@ pub(crate) fn named(head: &[u8], kind: Kind) -> Option<String> {
         return Some("it is empty: the program wrote nothing into it".to_owned());
     }
     if head.get(TAR.0..).is_some_and(|rest| rest.starts_with(TAR.1)) {
-        return Some("it is an archive of tar: unpack it first".to_owned());
+        return Some("it is a tar archive: unpack it first".to_owned());
     }
     let begins = |begin: &[u8]| start.get(..begin.len()).is_some_and(|part| part.eq_ignore_ascii_case(begin));
     if let Some((_, told)) = NAMED.iter().find(|(begin, _)| begins(begin)) {
@@ -85,12 +79,12 @@ pub(crate) fn named(head: &[u8], kind: Kind) -> Option<String> {
         return Some("it is XML of a kind that is not read: expected a VTKFile or XDMF".to_owned());
     }
     if start.starts_with(b"{") {
-        return Some("it is JSON and no `.series` with \"files\": write CSV or NPZ".to_owned());
+        return Some("it is JSON, but not a `.series` with \"files\": write CSV or NPZ".to_owned());
     }
     head.contains(&0).then(|| {
         let bytes: Vec<String> = head.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         format!(
-            "it begins with the bytes {}, which no format has that is read: write VTU, NPZ or CSV",
+            "it begins with the bytes {}, which no readable format has: write VTU, NPZ or CSV",
             bytes.join(" ")
         )
     })
@@ -121,7 +115,7 @@ mod tests {
             (b"PAR1\x15\x04", "Parquet"),
             (b"ADIOS-BP v2.8.3\0", "ADIOS2"),
             (b"\x80\x04\x95\x10\0", "never opened"),
-            (b"\xfd7zXZ\0", "unpack it first"),
+            (b"\xfd7zXZ\0", "decompress it first"),
             (b"{\"a\": 1}", "JSON"),
             (b"<mesh></mesh>", "expected a VTKFile or XDMF"),
             (b"abc\0\x01", "begins with the bytes 61 62 63 00 01"),

@@ -78,7 +78,7 @@ pub(crate) fn frame(store: &mut Store, place: usize, wanted: Wanted) -> Result<F
     Ok(frame)
 }
 
-/// A number of a step; 0 where there is no list of it.
+/// A number of a step; 0 without a list of it.
 fn of_step(store: &mut Store, name: &str, step: Option<u64>) -> Result<u64, String> {
     let path = format!("{ROOT}Steps/{name}");
     match step.filter(|_| store.has(&path)) {

@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
         for part in &state.beside {
             let frame = self.part(part, wanted)?;
             whole.join(frame).map_err(|why| {
-                format!("functions of one time stand on different meshes: {why}; write each into a file of its own")
+                format!("functions of one time have different meshes: {why}; write each to a separate file")
             })?;
         }
         whole.time = state.time;

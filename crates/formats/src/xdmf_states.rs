@@ -25,7 +25,7 @@ pub(crate) struct State<'a> {
     pub time: Option<f64>,
     /// Its parts, one unless a spatial collection has several.
     pub parts: Vec<Part<'a>>,
-    /// Other functions of the state, with meshes of their own.
+    /// Other functions of the state, with their meshes.
     pub beside: Vec<Part<'a>>,
     /// Collections that its grids are of.
     collections: Vec<Option<NodeId>>,

@@ -1,4 +1,4 @@
-//! The part of `XPath` that writers of XDMF use to refer to elements of their own document.
+//! The part of `XPath` that writers of XDMF use to refer to elements of the same document.
 //!
 //! `/Xdmf/Domain/Grid[@GridType='Uniform'][1]/*[self::Topology or self::Geometry]`, `//Grid[@Name="mesh"]/Geometry`,
 //! `Grid[last()]`, and `element(/1/1/2)`, which counts elements from 1. Grammar: "XML Path Language 1.0", w3.org/TR/xpath-10.

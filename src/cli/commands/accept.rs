@@ -26,7 +26,7 @@ pub struct Arguments {
     /// Study files, folders of them, or names of shipped studies
     #[arg(required = true, value_name = "STUDY.toml")]
     studies: Vec<PathBuf>,
-    /// Take the values although expectations or cases of their study fail
+    /// Accept the values even if expectations or cases of the study fail
     #[arg(long)]
     despite_failing: bool,
     /// Why the new values are right
@@ -79,7 +79,7 @@ fn spread_over(golden: &GoldenFile, others: &[&[Record]]) -> BTreeMap<String, f6
     spread_by_group(&golden.values, &values)
 }
 
-/// Says which expectations and cases fail, and refuses to take values of their studies unless told.
+/// Says which expectations and cases fail, and refuses to accept values of their studies unless asked to.
 fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> anyhow::Result<()> {
     let mut fails = false;
     for (study, records) in studies.iter().zip(records) {
@@ -93,8 +93,8 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
     if fails && !despite {
         return Err(Ended::with(
             Exit::VerdictFailed,
-            "nothing is taken, for these fail: mend the code or the expectations first, or take the values all the \
-             same with --despite-failing",
+            "nothing was accepted, because these fail: mend the code or the expectations first, or accept \
+             the values with --despite-failing",
         ));
     }
     Ok(())
@@ -106,9 +106,7 @@ fn refuse_failing(studies: &[Study], records: &[Vec<Record>], despite: bool) -> 
 /// A sentence that says which.
 pub fn refuse_without_origin() -> anyhow::Result<()> {
     if is_on("CI") {
-        return Err(Ended::usage(
-            "golden values are never taken in CI: look at them first, on your own machine",
-        ));
+        return Err(Ended::usage("golden values are not accepted in CI: review them first, on your machine"));
     }
     if Provenance::of_this_program().dirty {
         return Err(Ended::usage(
@@ -118,14 +116,14 @@ pub fn refuse_without_origin() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The golden values there are; `None` where there are none. What cannot be read is not replaced: nobody has seen what it was.
+/// The golden values there are; `None` where there are none. An unreadable file is not replaced, because its content is unknown.
 fn older_of(folder: &Path, study: &str) -> anyhow::Result<Option<GoldenFile>> {
     match GoldenFile::read(folder, study) {
         Ok(older) => Ok(Some(older)),
         Err(GoldenError::Missing(_)) => Ok(None),
         Err(error) => Err(Ended::with(
             Exit::Golden,
-            format!("nothing is taken: {error}. Only a file that can be read, or that is gone, is replaced"),
+            format!("nothing was accepted: {error}. Only a readable or missing file is replaced"),
         )),
     }
 }

@@ -1,6 +1,6 @@
-//! `oedometer bisect`: the commit from which on the results of a study are others.
+//! `oedometer bisect`: the first commit with different results of a study.
 //!
-//! Drives `git bisect` in a work tree of its own. A commit is bad where values that moved between the good and the
+//! Drives `git bisect` in a separate work tree. A commit is bad where values that moved between the good and the
 //! bad one have moved; one that cannot be built or run, or has none of these values, is skipped.
 
 use crate::cli::exit::{Ended, Exit};
@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let [good, bad] = [&arguments.good, &arguments.bad].map(|named| repository.commit(named));
     let (good, bad) = (good.map_err(|error| usage(&error))?, bad.map_err(|error| usage(&error))?);
     if repository.is_dirty(&["--untracked-files=no"]) {
-        say!("the work tree has changes that are not committed: no commit that is tried has them");
+        say!("the work tree has uncommitted changes, which the tested commits do not have");
     }
     let trial = Trial::new(arguments, &repository, &bad)?;
     let ended = search(&trial, &good, &bad);
@@ -81,7 +81,7 @@ fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<Stri
         return Err(Ended::with(
             Exit::NothingSelected,
             format!(
-                "nothing moved between {} and {}: there is nothing to search for",
+                "no value differs between {} and {}: there is nothing to search for",
                 good.short(),
                 bad.short()
             ),
@@ -98,7 +98,7 @@ fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<Stri
             let list =
                 told.lines().filter(|line| line.len() == 40).map(|hash| &hash[..8]).collect::<Vec<_>>();
             let reason = format!(
-                "the commits that are left cannot be tried, one of them is the first bad one: {}",
+                "the remaining commits cannot be tested; one of them is the first bad one: {}",
                 list.join(", ")
             );
             return Err(Ended::with(Exit::IncompleteMerge, reason));
@@ -108,7 +108,7 @@ fn search(trial: &Trial<'_>, good: &Commit, bad: &Commit) -> anyhow::Result<Stri
             Ok(values) => match moved_like(&right, &values, &moved) {
                 Some(true) => "bad",
                 Some(false) => "good",
-                None => skip(&mut skipped, &commit, "it has none of the values that moved"),
+                None => skip(&mut skipped, &commit, "it lacks the values that moved"),
             },
             Err(reason) => skip(&mut skipped, &commit, &reason),
         };
@@ -169,7 +169,7 @@ fn report(trial: &Trial<'_>, right: &StudyState, hash: &str, skipped: &[String])
     Ok(text)
 }
 
-/// A work tree of its own in which commits are tried one after the other.
+/// A separate work tree in which commits are tested one after the other.
 struct Trial<'a> {
     arguments: &'a Arguments,
     repository: &'a Repository,
@@ -244,7 +244,7 @@ impl<'a> Trial<'a> {
         listed.lines().next().map(str::to_owned).ok_or_else(|| format!("it has no study `{named}`"))
     }
 
-    /// Runs the study by this program. Cases that fail leave records, and are told by the values that are missing.
+    /// Runs the study by this program. Cases that fail leave records, and show by their missing values.
     fn run_here(&self, study: &str, out: &Path) -> Result<(), String> {
         let program = std::env::current_exe().map_err(|error| error.to_string())?;
         let mut command = Command::new(program);

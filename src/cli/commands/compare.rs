@@ -22,7 +22,7 @@ pub struct Arguments {
     /// State after
     #[arg(value_name = "B")]
     after: String,
-    /// Names of studies [default: all that both states have]
+    /// Names of studies [default: all studies in both states]
     #[arg(value_name = "STUDY")]
     studies: Vec<String>,
     /// A and B are commands that replace the command of the study's `[[solver]]`
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     if found.is_empty() {
         return Err(Ended::with(
             Exit::NothingSelected,
-            format!("{} and {} have no value of a study in common", before.name, after.name),
+            format!("{} and {} share no values of any study", before.name, after.name),
         ));
     }
     let names = [before.name.as_str(), &after.name];
@@ -161,7 +161,7 @@ pub fn repository_with(golden: Option<&Path>, studies: &[String]) -> anyhow::Res
     })?;
     let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
     if repository.is_dirty(&["--", &folder]) {
-        say!("{folder}/ has changes that are not committed: no revision has them");
+        say!("{folder}/ has uncommitted changes, which no revision has");
     }
     Ok((repository, folder))
 }

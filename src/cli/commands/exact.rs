@@ -42,7 +42,7 @@ pub struct Arguments {
     /// Time factors `T_v` = `c_v` t/H², comma-separated
     #[arg(long, default_value = DEFAULT_TIMES, value_name = "LIST", allow_hyphen_values = true)]
     time_factor: String,
-    /// Time factors at which these degrees of consolidation (by settlement) are reached, instead
+    /// Degrees of consolidation (by settlement) whose time factors are computed, instead of --time-factor
     #[arg(long, value_name = "LIST", conflicts_with = "time_factor", allow_hyphen_values = true)]
     degree: Option<String>,
     /// Lagrangian depths ζ below the drained surface, comma-separated
@@ -296,8 +296,8 @@ fn time_factors_of(
         let at_once = 1.0 - storage + 0.0;
         if !(*degree >= at_once && *degree < 1.0) {
             return Err(Ended::usage(format!(
-                "a degree of consolidation of {degree} has no time factor: it must be at least {at_once:.3e}, \
-                 which is there at once, and below 1, which is never reached"
+                "a degree of consolidation of {degree} has no time factor: it must be at least \
+                 {at_once:.3e}, the degree at the start, and below 1"
             )));
         }
         let drained = (degree - (1.0 - storage)) / storage;

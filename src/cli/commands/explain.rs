@@ -123,7 +123,7 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
 }
 
 /// The stored record, if this program made it; or else the case is solved and nothing is stored. The record of
-/// another program is taken as it is, because none is started here.
+/// another program is used as it is, because no solver starts here.
 fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Record> {
     let store = RecordStore::new(results, &study.name);
     if study.solver_of(case).is_some_and(|solver| !solver.is_given()) {

@@ -18,7 +18,7 @@ pub struct Arguments {
     /// Explain a method in words, or print the file of a shipped study
     #[arg(long, value_name = "METHOD|STUDY")]
     show: Option<String>,
-    /// Print every method, those too that do not race
+    /// Print all methods, also those outside the race
     #[arg(long, conflicts_with = "show")]
     all: bool,
 }

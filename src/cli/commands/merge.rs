@@ -22,19 +22,19 @@ const MOST_HOLES: usize = 10;
 /// Arguments of `merge`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files (`*.toml`) and folders of results; without a study those of the project here and the shipped ones that
-    /// the folders know
+    /// Study files (`*.toml`) and folders of results; without study files, those of the project and the shipped
+    /// ones with records in the folders
     #[arg(required = true, value_name = "STUDY.toml|DIR")]
     inputs: Vec<PathBuf>,
     /// Folder for the merged results
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     out: PathBuf,
-    /// Tier of the cases that must be there
+    /// Tier of the required cases
     #[arg(long, value_enum, default_value_t = Tier::Full)]
     tier: Tier,
 }
 
-/// Merges and tells of holes.
+/// Merges and reports missing cases.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let is_study = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "toml");
     let (files, folders): (Vec<PathBuf>, Vec<PathBuf>) =
@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let files = if files.is_empty() { known_to(&folders) } else { files };
     if files.is_empty() {
-        let why = "the folders have results of no study of this project and of no shipped one";
+        let why = "the folders have no results of a study of this project or of a shipped one";
         return Err(Ended::with(Exit::NothingSelected, why));
     }
     let studies = load(&files)?;
@@ -100,7 +100,7 @@ fn origins_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> anyh
         Some(programs) => Err(Ended::with(
             Exit::IncompleteMerge,
             format!(
-                "{}: the records were not made by one program: {programs}; run the shards of all but one again with it",
+                "{}: the records come from several programs: {programs}; run all shards with the same one",
                 study.name
             ),
         )),
@@ -157,7 +157,7 @@ fn bring(study: &Study, case: &Case, target: &RecordStore, others: &[RecordStore
             return Err(Ended::with(
                 Exit::IncompleteMerge,
                 format!(
-                    "{}: {} and {} have different results of {} {}, though one program is said to have made both",
+                    "{}: {} and {} have different results of {} {}, although both name the same program",
                     study.name,
                     from.folder().display(),
                     store.folder().display(),

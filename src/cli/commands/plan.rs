@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Only cases without a finished record in this folder of results
     #[arg(long, value_name = "DIR")]
     missing: Option<PathBuf>,
-    /// Print a job list instead: one command per line for each of this many shares that has something to do
+    /// Print a job list instead: one command per line for each share with missing cases, of this many shares
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     tasks: Option<u64>,
     /// Divide the cases by estimated time, the longest first, instead of by hash

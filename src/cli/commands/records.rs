@@ -69,7 +69,7 @@ pub struct Arguments {
     #[arg(value_name = "HASH")]
     cases: Vec<String>,
     /// Output format: a list of the cases, or with `json` their whole records, an array where no case is named [default: csv
-    /// of all cases, json of those named]
+    /// for all cases, json for named ones]
     #[arg(long, value_enum, conflicts_with_all = ["profiles", "history"])]
     format: Option<TableFormat>,
     /// Print the fields over the height of every case as CSV

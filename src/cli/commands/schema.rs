@@ -34,11 +34,11 @@ pub enum Document {
     Record,
     /// The mapping of an external result
     Mapping,
-    /// The file that tells an attached solver its case
+    /// The file that describes a case to an attached solver
     Case,
-    /// Everything that a report has found: findings.json beside the front page
+    /// The findings of a report: findings.json beside the front page
     Findings,
-    /// What is found about a study: NAME.findings.json beside its page
+    /// The findings about a study: NAME.findings.json beside its page
     StudyFindings,
 }
 

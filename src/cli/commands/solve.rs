@@ -160,7 +160,7 @@ fn study_of(arguments: &Arguments) -> anyhow::Result<Study> {
     lines.refuse_without_effect(&[("task", "`oedometer stability` looks for critical steps"), TIMING])?;
     for (key, option) in OWN_OPTIONS {
         if lines.has(key) || lines.has(&format!("sweep.{key}")) {
-            return Err(Ended::usage(format!("`{key}` has an option of its own: {option}")));
+            return Err(Ended::usage(format!("`{key}` has a separate option: {option}")));
         }
     }
     let mut sweep = vec![

@@ -1,5 +1,5 @@
-//! The engine of a cluster that runs Slurm: an array of shares, a merge that waits for it, and somebody who looks
-//! after both.
+//! The engine of a cluster that runs Slurm: an array of shares, a merge that waits for it, and a process that
+//! follows both.
 //!
 //! Every share is `oedometer run … --shard i/n --resume` into one folder of results, so that a task that is killed,
 //! requeued or submitted again goes on where the last one ended, and the shares stay the same.
@@ -83,7 +83,7 @@ pub fn run(
     if arguments.dry_run {
         let shares = campaign.shares_to_run();
         if shares.is_empty() {
-            say!("{}: every case has its record: nothing would be submitted", campaign.name);
+            say!("{}: every case has a record: there is nothing to submit", campaign.name);
         } else {
             print_data(&scripts.shown(&shares))?;
         }
@@ -101,7 +101,7 @@ pub fn run(
         }
         let jobs = match under_way.take() {
             Some(jobs) => {
-                say!("{}: job {} is under way already: it is followed", campaign.name, jobs.array);
+                say!("{}: job {} is already submitted, and is followed", campaign.name, jobs.array);
                 jobs
             }
             None if attempt == arguments.attempts => return Ok(campaign.given_up(attempt, files)),
@@ -156,7 +156,9 @@ impl<'a> Campaign<'a> {
         }
         let most = most_tasks()?;
         if arguments.tasks.min(count as u64) > most {
-            say!("this Slurm takes at most {most} tasks an array: the cases are parted into as many shares");
+            say!(
+                "this Slurm takes at most {most} tasks per array: the cases are divided into as many shares"
+            );
         }
         let list = JobList {
             files: copies,
@@ -202,7 +204,7 @@ impl<'a> Campaign<'a> {
         job.keep(&folder.join(JOB))?;
         let tasks = count_of(shares.len(), "task", "tasks");
         say!(
-            "{}: submitted {tasks} as job {}, and the merge behind it as {}",
+            "{}: submitted {tasks} as job {}, and the dependent merge as {}",
             self.name,
             job.array,
             job.merge

@@ -55,8 +55,8 @@ impl Job {
         (tasks_of(&job.array).ok()? != Tasks::default()).then_some(job)
     }
 
-    /// Waits until the array and its merge are over and tells how many of `all` cases are done; whether somebody
-    /// cancelled tasks.
+    /// Waits for the end of the array and its merge and reports how many of `all` cases are done; whether tasks
+    /// were cancelled.
     ///
     /// # Errors
     /// When Slurm has not answered for long.
@@ -81,7 +81,7 @@ impl Job {
             let work = match array {
                 Tasks { running: 0, waiting: 0 } => "merging".to_owned(),
                 Tasks { running, waiting: 0 } => format!("{running} tasks at work"),
-                Tasks { running, .. } => format!("{running} tasks at work, others wait"),
+                Tasks { running, .. } => format!("{running} tasks running, others waiting"),
             };
             let line = format!("job {}: {} of {all} cases, {work}", self.array, done());
             if line != told {
@@ -99,7 +99,7 @@ fn called(command: &str, more: &[&str]) -> anyhow::Result<String> {
     let mut words = command.split(' ');
     let program = words.next().unwrap_or_default();
     let output = Command::new(program).args(words).args(more).output().map_err(|error| {
-        Ended::usage(format!("cannot call {program}: {error}; is this a machine of a cluster with Slurm?"))
+        Ended::usage(format!("cannot start {program}: {error}; is this a machine of a Slurm cluster?"))
     })?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
@@ -148,7 +148,7 @@ fn array_size_in(told: &str) -> Option<u64> {
     pairs.find(|(name, _)| name.trim() == "MaxArraySize")?.1.trim().parse().ok()
 }
 
-/// The tasks of a job that are not over; none of one that Slurm no longer knows.
+/// The unfinished tasks of a job; none if Slurm no longer knows the job.
 fn tasks_of(job: &str) -> anyhow::Result<Tasks> {
     match called("squeue --noheader --format=%T", &[&format!("--jobs={job}")]) {
         Err(error) if error.to_string().contains("Invalid job id") => Ok(Tasks::default()),
@@ -172,7 +172,7 @@ fn counted(states: &str) -> Tasks {
     }
 }
 
-/// Seconds before its time limit at which a task is told to end.
+/// Seconds before its time limit at which a task gets the signal to end.
 const WARNING: u64 = 60;
 
 /// The scripts of one campaign.

@@ -38,8 +38,8 @@ fn what_is_remembered_follows_commands_environment_and_files_and_no_sweep() {
     assert_ne!(digest(at, "", "\"toy\""), own, "the adapter is another one");
 }
 
-/// What is asked about is what would be started then: a study may have been read before a file of it was changed, and the
-/// program that tells the version is no part of a case's identity.
+/// The question names the commands that would start then: a file of a study may have changed since it was read, and
+/// the version command is not part of a case's identity.
 #[test]
 fn a_yes_ends_with_a_change_of_any_file_that_is_started() {
     let folder = tempfile::TempDir::new().expect("a folder");

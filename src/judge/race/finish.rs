@@ -65,7 +65,7 @@ pub struct Level {
     pub cells: usize,
     /// Counted work by the calibration, s.
     pub cost: f64,
-    /// Measured seconds of the processor, where the system tells.
+    /// Measured seconds of the processor, if the system reports it.
     pub seconds: Option<f64>,
     /// Largest errors over the outputs; none where the run failed.
     pub errors: RunErrors,

@@ -5,7 +5,7 @@ use oedometer_soil::elementary::powi;
 /// Fewest different numbers that show their digits: a few round ones prove nothing.
 const FEWEST: usize = 4;
 
-/// Most decimal digits that are told from all digits of a double.
+/// Most decimal digits that differ from all digits of a double.
 const MOST: usize = 12;
 
 /// How near a number must lie to its rounded self, relative, after a change of units.

@@ -82,8 +82,8 @@ pub fn resolution(reference: &Reference, time_factor: f64) -> f64 {
 }
 
 impl FieldError<'_> {
-    /// The error in every norm in which it is defined; no row where the exact field is zero, too small to be told
-    /// from zero, or has vanished against its largest value at the start.
+    /// The error in every norm in which it is defined; no row where the exact field is zero, indistinguishable from
+    /// zero, or has vanished against its largest value at the start.
     pub fn rows(
         self,
         computed: &[f64],

@@ -80,7 +80,7 @@ fn measures_of(record: &Record) -> Vec<([String; ERROR_COLUMNS.len()], String)> 
     measures
 }
 
-/// An input as the table has it: nothing where it says nothing of the case.
+/// An input as the table has it, empty if it has no effect on the case.
 fn input_of(key: &Key, case: &Case) -> String {
     if key.counts_for(case) { key.get(case).to_string() } else { String::new() }
 }

@@ -157,7 +157,7 @@ impl Checker<'_> {
         if demand == CaseDemand::default() && self.diagnostics.len() == before {
             self.complain(
                 table.span(),
-                "the expectation asks for nothing",
+                "the expectation demands nothing",
                 "add `status = \"ok\"`, `critical_step_within = 0.02` or `error = { below = 1e-2 }`",
             );
         }
@@ -394,7 +394,7 @@ impl Checker<'_> {
             self.complain(
                 range.span(),
                 format!("no value is at least {} and below {}", bounds.above, bounds.below),
-                "`above`, 0 where it is left out, must be smaller than `below`",
+                "`above` (0 by default) must be smaller than `below`",
             );
         }
         Some(bounds)
@@ -478,7 +478,7 @@ impl Checker<'_> {
         {
             self.complain(
                 table.span(),
-                "an order of the time step cannot be read off errors against an exact solution: they end at that of the mesh",
+                "errors against an exact solution cannot show an order in time: they stop at the error of the mesh",
                 format!(
                     "add `reference = \"{NEXT_FINER}\"`, the differences from the next finer step, or name the exact solution where \
                      the mesh is fine enough for it"
@@ -507,7 +507,7 @@ impl Checker<'_> {
             if cases.is_empty() {
                 let others = listed(before.iter().map(|case| key.get(case).to_string()));
                 let with =
-                    if selection.0.len() > 1 { " with the others that the expectation names" } else { "" };
+                    if selection.0.len() > 1 { " and the other inputs of the expectation" } else { "" };
                 self.complain(
                     inputs.span(key.name).unwrap_or(place),
                     format!("no case of the study has `{} = {value}`{with}", key.name),
@@ -519,7 +519,7 @@ impl Checker<'_> {
         Some(cases)
     }
 
-    /// Complains where none of the cases keeps its state at a time factor.
+    /// Complains if no case has an output at a time factor.
     fn time_is_kept(&mut self, cases: &[&Case], time_factor: f64, place: Range<usize>) {
         let is_kept = |case: &&Case| case.task == Task::Stability || case.time_factors.contains(&time_factor);
         if !cases.iter().any(is_kept) {
@@ -527,7 +527,7 @@ impl Checker<'_> {
                 listed(cases.iter().flat_map(|case| case.time_factors.iter()).map(ToString::to_string));
             self.complain(
                 place,
-                format!("no case keeps its state at T_v = {time_factor}"),
+                format!("no case has an output at T_v = {time_factor}"),
                 format!("the outputs are at {factors}: name one of them, or add it to `output.time_factors`"),
             );
         }

@@ -138,7 +138,7 @@ impl Checker<'_> {
             (
                 "initial_stress",
                 scene != SceneKind::YieldFront,
-                format!("the soil of `{name}` remembers no stress"),
+                format!("the soil of `{name}` has no stress history"),
                 "an initial stress belongs to the scene \"yield-front\"",
             ),
             (
@@ -185,7 +185,11 @@ impl Checker<'_> {
         }
         let Some(layers) = SoilLayers::of(&list) else {
             let count = list.len();
-            self.complain(whole, format!("{count} layers of soil"), format!("{MOST_LAYERS} are the most"));
+            self.complain(
+                whole,
+                format!("{count} layers of soil"),
+                format!("at most {MOST_LAYERS} are allowed"),
+            );
             return SoilLayers::default();
         };
         if let Some(sum) = layers.misses(height) {
@@ -206,7 +210,11 @@ impl Checker<'_> {
         let is_footing = scene == SceneKind::Footing;
         let message = || format!("the scene `{}` has no `{}`", scene.name(), key.name);
         if is_footing && key.name == "load" {
-            self.complain(place, message(), "its plate is pushed, and the load is what it is asked for");
+            self.complain(
+                place,
+                message(),
+                "the settlement of its plate is prescribed, and the load is the result",
+            );
         } else if !is_footing && ["plate_width", "plate", "undrained"].contains(&key.name) {
             self.complain(place, message(), "a plate belongs to the scene \"footing\"");
         }
@@ -248,8 +256,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Complains of values outside the range of any soil; where nothing is solved the problem may be one without dimensions,
-    /// and it warns.
+    /// Refuses values outside the range of any soil; where nothing is solved the problem may be dimensionless, and
+    /// it warns.
     pub(super) fn units_are_si(&mut self, material: &Inputs) {
         for (name, strange, message, help) in UNIT_MISTAKES {
             let Some(typed) = material.typed(name) else { continue };
@@ -273,7 +281,7 @@ impl Checker<'_> {
         let has_load = file.column.inputs.typed("load").is_some()
             || file.sweep.iter().any(|block| block.inputs.typed("load").is_some());
         let (message, help) = if !file.column.soils.is_empty() {
-            ("the layers of a column have strains of their own".to_owned(), "give a `load`")
+            ("the layers of a column have different strains".to_owned(), "give a `load`")
         } else if has_load {
             (
                 "the column has a `load` and a `strain`".to_owned(),
@@ -289,7 +297,7 @@ impl Checker<'_> {
         } else {
             (
                 format!("`column.strain` is {}", **typed),
-                "it is the share by which the column gets shorter: between 0 and 1, both excluded",
+                "it is the shortening over the height: between 0 and 1, both excluded",
             )
         };
         self.complain(typed.span(), message, help);
@@ -332,7 +340,7 @@ impl Checker<'_> {
                 soil.porosity
             ),
             format!(
-                "load less than {} Pa, or write `strain` in [column] for the load, below {}",
+                "take a load below {} Pa, or instead of it a `strain` in [column] below {}",
                 short(load_of(soil.porosity, case)),
                 soil.porosity
             ),

@@ -99,7 +99,7 @@ impl Checker<'_> {
         for word in table.version.iter().flat_map(|list| &***list) {
             if let Some(name) = placeholders_of(word).next() {
                 let message = format!("the command for the version has a placeholder, `{{{name}}}`");
-                self.complain(word.span(), message, "it is called without a case: write it as it stands");
+                self.complain(word.span(), message, "it runs without a case: write it without placeholders");
             }
         }
         let preset = self.preset_of(table.preset.as_ref());
@@ -238,7 +238,7 @@ impl Checker<'_> {
         if !is_below {
             self.complain(
                 result.span(),
-                "the result does not lie below `{out}`, where it is fresh",
+                "the result must lie below `{out}`, which is empty at the start",
                 "write it like \"{out}/result.csv\", and have the adapter write it there",
             );
         }
@@ -255,7 +255,7 @@ impl Checker<'_> {
         let typed = typed?;
         let path = folder.join(typed.as_str());
         if !path.is_file() {
-            let help = "name a file by its path from the folder of the study";
+            let help = "give the path of a file relative to the folder of the study";
             self.complain(typed.span(), format!("there is no file {}", path.display()), help);
         }
         Some(typed.to_string())
@@ -267,13 +267,13 @@ impl Checker<'_> {
         for typed in table.known_by.iter().flat_map(|list| &***list) {
             let path = folder.join(typed.strip_prefix("{study}/").unwrap_or(typed));
             if !path.exists() {
-                let help = "name files and folders by their paths from the folder of the study";
+                let help = "give paths relative to the folder of the study";
                 self.complain(typed.span(), format!("there is no file or folder {}", path.display()), help);
             }
         }
         let Some(reuse) = &table.reuse else {
             if let Some(typed) = &table.known_by {
-                let help = "add reuse = \"version\" to take results over while these files stay the same";
+                let help = "add reuse = \"version\" to reuse results while these files are unchanged";
                 self.complain(typed.span(), "`known_by` has no effect without `reuse`", help);
             }
             return None;
@@ -282,7 +282,7 @@ impl Checker<'_> {
         if table.version.is_none() && named.is_empty() {
             let help = "add the command that prints its version, like version = [\"ogs\", \"--version\"], or the files that \
                         it is made of, like known_by = [\"src/\"]";
-            self.complain(reuse.span(), "nothing says by what the program is known", help);
+            self.complain(reuse.span(), "`reuse` needs something that identifies the program", help);
         }
         Some(named)
     }

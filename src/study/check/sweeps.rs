@@ -108,8 +108,8 @@ impl Checker<'_> {
         if let (Some((key, own, first)), Some(path)) = (sweep.uneven_path(), &table.path) {
             self.complain(
                 path.span(),
-                format!("the path ties `{key}` with {own} values to an axis with {first}"),
-                "give the axes of a path lists of one length",
+                format!("the path combines `{key}` with {own} values and an axis with {first}"),
+                "the lists in a path need equal lengths",
             );
         }
         let is_sound = self.diagnostics.len() == before && self.can_be_multiplied_out(start, &sweep);
@@ -137,7 +137,7 @@ impl Checker<'_> {
             count.map_or("more cases than can be counted".to_owned(), |count| format!("{count} cases"));
         self.complain(
             start.clone(),
-            format!("the sweep multiplies out to {count}{others}"),
+            format!("the sweep has {count}{others}"),
             format!(
                 "a study has at most {MOST_CASES}: shorten its lists, tie axes with `path`, or split it into several"
             ),
@@ -204,7 +204,7 @@ impl Checker<'_> {
                     case.points_per_cell,
                     1e-9 * bytes
                 ),
-                format!("take fewer: {:.0} GB is the most", 1e-9 * MOST_BYTES),
+                format!("take fewer: {:.0} GB are the maximum", 1e-9 * MOST_BYTES),
             );
         }
         if let Some(place) = place("water_per_cell").filter(|_| !has_water_points) {
@@ -247,13 +247,13 @@ impl Checker<'_> {
         self.warn(&Diagnostic::at(
             start.clone(),
             format!(
-                "the sweep names no integrator, and `explicit` would take {} for its longest case: `{implicit}` is \
-                 taken, {}",
+                "the sweep names no integrator, and `explicit` would take {} for its longest case: `{implicit}` \
+                 is used, {}",
                 duration(explicit),
                 duration(slowest(sweep)),
             ),
             format!(
-                "write `integrator = [\"{implicit}\"]` to say so, or `integrator = [\"explicit\"]` to have it all the same"
+                "write `integrator = [\"{implicit}\"]` to confirm it, or `integrator = [\"explicit\"]` to solve explicitly"
             ),
         ));
     }
@@ -345,8 +345,8 @@ impl Sweep {
         self.turning().into_iter().try_fold(1_usize, |count, at| count.checked_mul(length(at)))
     }
 
-    /// A case for every combination, the first key slowest; what is not varied it has from `base`. The keys of
-    /// a path step together. None at all where they cannot be counted.
+    /// A case for every combination, the first key slowest; other inputs are those of `base`. The keys of a path
+    /// vary together. `None` if they cannot be counted.
     pub fn cases(&self, base: &Case) -> impl Iterator<Item = Case> {
         let (turning, leader) = (self.turning(), self.leader());
         (0..self.count().unwrap_or(0)).map(move |number| {

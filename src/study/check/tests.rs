@@ -18,8 +18,8 @@ mod point_sets {
             ("\"GIMP\"", "sets = [2]\nintegrator = [\"implicit\"]", "integrated explicitly only"),
             ("\"TL-GIMP\"", two, "stay with the skeleton"),
             ("\"GIMP-SRI-patch-cells\"", two, "cell averages need points that carry both phases"),
-            ("\"MPM\"", two, "this basis has none that follow"),
-            ("\"uGIMP\"", two, "this basis has none that follow"),
+            ("\"MPM\"", two, "the domains of this basis do not"),
+            ("\"uGIMP\"", two, "the domains of this basis do not"),
             (
                 "\"GIMP\"",
                 "sets = [2]\nconductivity_mean = [\"chord\"]",
@@ -50,11 +50,11 @@ mod point_sets {
         let growing = of("xie-leo", "column.loading_time = 20.0");
         let explicit = "integrator = [\"explicit\"]\n";
         for (scene, more, why) in [
-            (of("layered", ""), format!("{explicit}sets = [2]"), "knows one soil"),
-            (growing.clone(), format!("{explicit}sets = [2]"), "knows one soil"),
+            (of("layered", ""), format!("{explicit}sets = [2]"), "take one soil"),
+            (growing.clone(), format!("{explicit}sets = [2]"), "take one soil"),
             (growing.clone(), "conductivity_mean = [\"chord\"]".to_owned(), "compression of one soil"),
             (growing.replace("20.0", "20.0\ncolumn.self_weight = true"), String::new(), "has no weight here"),
-            (growing.replace("20.0", "20.0\ncolumn.strain = 0.2"), String::new(), "strains of their own"),
+            (growing.replace("20.0", "20.0\ncolumn.strain = 0.2"), String::new(), "have different strains"),
             (of("xie-leo", ""), String::new(), "give a loading time"),
             (of("terzaghi", ""), String::new(), "has no layers"),
             (of("layered", ""), format!("{explicit}formulation = [\"u-p\"]"), "its pressure diffuses"),
@@ -215,7 +215,7 @@ mod answers {
                 "\"GIMP-SRI\"",
                 ["no case of the study has `method = GIMP-SRI`", "the cases have MPM, GIMP"],
             ),
-            ("0.1", "0.15", ["no case keeps its state at T_v = 0.15", "the outputs are at 0.1, 0.2"]),
+            ("0.1", "0.15", ["no case has an output at T_v = 0.15", "the outputs are at 0.1, 0.2"]),
             ("0.1", "0.1\nintegrator = \"explicit\"", ["`integrator = explicit`", "the cases have implicit"]),
             ("order", "at = { cells = 10, below = 0.1 }\norder", ["has 10 cells", "they have 4, 8, 16"]),
         ] {
@@ -301,7 +301,11 @@ mod expectations_that_cannot_be_judged {
         for (swept, expected, parts) in [
             (STEPS, ORDER, &["needs 3 levels: its cases have 1", "axis = \"time_step\"", "next-finer"][..]),
             (STEPS, "at = { cells = 8, below = 0.5 }", &["needs 2 levels", "axis = \"time_step\""]),
-            (STEPS, "axis = \"time_step\"\norder = { value = 1.0 }", &["that of the mesh", "\"next-finer\""]),
+            (
+                STEPS,
+                "axis = \"time_step\"\norder = { value = 1.0 }",
+                &["at the error of the mesh", "\"next-finer\""],
+            ),
             (MESHES, "axis = \"time_step\"\norder = { value = 1.0 }", &["have 1", "add `axis = \"cells\"`"]),
             ("cells = [4, 8]", ORDER, &["needs 3 levels: its cases have 2", "add values of `cells`"]),
             // Differences from the next finer step are one fewer than the steps.

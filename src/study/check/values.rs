@@ -28,7 +28,7 @@ const RULES: [Rule; 5] = [
     ("stable", TimeStepRule::Stable, 1e-9, NO_ERROR_LEFT),
     ("courant", TimeStepRule::Courant, 1e-9, NO_ERROR_LEFT),
     ("seconds", TimeStepRule::Seconds, 0.0, ""),
-    ("growth", TimeStepRule::Growth, 1e-9, "steps that grow by less are too many for any run"),
+    ("growth", TimeStepRule::Growth, 1e-9, "a smaller growth needs too many steps"),
     ("tolerance", TimeStepRule::Tolerance, 1e-12, "round-off is an error of that size"),
 ];
 
@@ -84,9 +84,7 @@ impl Checker<'_> {
             let gone = GONE.iter().find(|(old, _)| name.ends_with(old));
             let help = gone.map_or_else(
                 || one_of(name, &names),
-                |(old, new)| {
-                    format!("it left the program with version 0.3: take `{}`", name.replace(old, new))
-                },
+                |(old, new)| format!("version 0.3 removed it: take `{}`", name.replace(old, new)),
             );
             self.complain(span, format!("no method is called `{name}`"), help);
             return None;
@@ -134,7 +132,7 @@ impl Checker<'_> {
             ("this recovery has no projection", "leave `projection` out, or take the recovery \"ppp\"")
         } else if !(0.001..=1000.0).contains(&**typed) {
             (
-                "the parameter of a projection is between 0.001 and 1000 of its source's",
+                "the parameter of a projection is between 0.001 and 1000 times the published value",
                 "take 1, or leave it out",
             )
         } else {
@@ -186,8 +184,8 @@ impl Checker<'_> {
         let (message, help) = if number > 0.0 && number < *least {
             (format!("a time step by `{name} = {number:e}`"), format!("{why}: at least {least:e}"))
         } else if *name == "growth" && number.is_finite() && number > 1.0 {
-            let message = format!("a step of {number} times the time that has passed");
-            (message, "a growth is a share: 0.05 is five percent, and 1 the most".to_owned())
+            let message = format!("a step of {number} times the elapsed time");
+            (message, "a growth is a fraction: 0.05 is 5 %, and 1 is the maximum".to_owned())
         } else if number.is_finite() && number > 0.0 {
             return Some(rule(number));
         } else {
@@ -261,14 +259,16 @@ impl Checker<'_> {
         let (fits, help) = match range {
             Range::Positive => (
                 value.is_finite() && value > 0.0,
-                format!("it must be positive and finite; the seed column has {usual} {unit}"),
+                format!("it must be positive and finite; the default column has {usual} {unit}"),
             ),
             Range::NotNegative => {
                 (value.is_finite() && value >= 0.0, "it must be 0 or positive, and finite".to_owned())
             }
             Range::Between(least, most) => (
                 value > least && value < most,
-                format!("it must lie between {least} and {most}, both excluded; the seed column has {usual}"),
+                format!(
+                    "it must lie between {least} and {most}, both excluded; the default column has {usual}"
+                ),
             ),
             Range::Within(least, most, told, help) => {
                 message = told.replace("{}", &value.to_string());

@@ -20,7 +20,7 @@ pub(crate) enum Bend {
 /// A fit worse than this (root mean square, relative) explains nothing.
 const POOR: f64 = 0.05;
 
-/// Lowest exponent told apart from a floor.
+/// Lowest exponent distinguished from a floor.
 const LEAST_ORDER: f64 = 0.3;
 
 /// A second term with a smaller share of the finest error than this does not count.

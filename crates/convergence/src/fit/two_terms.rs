@@ -1,6 +1,6 @@
 //! Least-squares fit of an error by two powers, `e = A h^a + B h^b`, with `A, B ≥ 0`.
 //!
-//! One fit tells apart what bends a straight line on a log-log plot: a floor (`a = 0`), a term of
+//! One fit distinguishes what bends a straight line on a log-log plot: a floor (`a = 0`), a term of
 //! lower order that takes over (`a` below the order sought), and a term of higher order that has
 //! not died out yet. Residuals are relative, `(model − e)/e`, so that every level counts alike.
 //! The coefficients are eliminated (variable projection, Golub & Pereyra 1973); only exponents

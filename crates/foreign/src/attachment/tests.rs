@@ -122,7 +122,7 @@ mod runs {
         .as_its_solver_knows()
     }
 
-    /// Runs a shell script in the place of a solver.
+    /// Runs a shell script instead of a solver.
     fn run(script: &str, change: impl Fn(&mut ExternalSolver)) -> Outcome {
         let folder = tempfile::TempDir::new().expect("a folder");
         let mut solver = solver(folder.path(), &["sh", "-c", script]);
@@ -161,11 +161,11 @@ mod runs {
         let good = format!("{ROWS} > result.csv");
         let nan = good.replace("0.6", "nan");
         for (script, kind, told) in [
-            (format!("{good}; sleep 600"), FailureKind::TimedOut, "did not end within the 1 s"),
+            (format!("{good}; sleep 600"), FailureKind::TimedOut, "exceeded its 1 s"),
             (format!("{good}; kill -ABRT $$"), FailureKind::Killed, "signal: 6"),
             (format!("{good}; echo oh no >&2; exit 3"), FailureKind::Failed, "exit code 3"),
             (format!("{good}; exit 77"), FailureKind::Skipped, "cannot run here"),
-            ("touch other.csv".to_owned(), FailureKind::NoResult, "there is other.csv"),
+            ("touch other.csv".to_owned(), FailureKind::NoResult, "has other.csv"),
             (good.replace("u_y", "w"), FailureKind::Unreadable, "no column `u_y`"),
             (nan, FailureKind::NotFinite, "result.csv:3"),
             (good.replace("8.175,0,0.9,0\\n", ""), FailureKind::Incomplete, "between the heights"),
@@ -209,10 +209,7 @@ mod runs {
             solver.solve_seconds = Some("took ([0-9.]+) s".to_owned());
         });
         let notes = ms.foreign.expect("a program").notes;
-        assert!(
-            notes.len() == 1 && notes[0].contains("it says that it took 30740 s, more than"),
-            "{notes:?}"
-        );
+        assert!(notes.len() == 1 && notes[0].contains("it reports 30740 s, more than"), "{notes:?}");
         // The number of the run stands in a pressure.
         let script = format!("{counted} | sed s/0.6/0.6$(wc -l < {})/ > result.csv", count.display());
         let differing = run(&script, |solver| solver.repeats = 2).foreign.expect("a program");
@@ -233,7 +230,7 @@ mod runs {
         }
         // Up to round-off they are the same; those that cannot be compared have no difference.
         let other = "its repeats do not give the same result; see `repeats_differ_by`";
-        let elsewhere = "its repeats give results at other places, or such as no one can compare";
+        let elsewhere = "its repeats give results at different places, or results that cannot be compared";
         for (difference, known, notes) in [
             (0.0, Some(0.0), &[][..]),
             (1e-12, Some(1e-12), &[]),

@@ -107,7 +107,7 @@ fn missing_times_and_uneven_ones_are_told() {
     let more = SampledState { initial_height: lattice(21, 0.0, 0.05), ..late.clone() };
     assert_eq!(said(&[all[0].clone(), more]), "there are 21 samples at T_v = 0.1, and 11 at 0.05");
     let twice = SampledState { repeated: 3, ..late };
-    assert!(said(&[all[0].clone(), twice]).contains("3 samples stand twice"));
+    assert!(said(&[all[0].clone(), twice]).contains("3 samples are repeated"));
 }
 
 #[test]
@@ -248,11 +248,11 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
     }
     let solver = crate::attachment::tests::solver(std::path::Path::new("/"), &["./theirs", "x"]);
     let solver = ExternalSolver { timeout: 90.0, ..solver };
-    let late = "the solver did not end within the 90 s that the study gives it, and was ended with all that it had started";
-    let short = "; its own, or `timeout` is too short. The last it said: out";
+    let late = "the solver exceeded its 90 s and was killed with everything that it had started";
+    let short = "; it hangs, or `timeout` is too short. The last it said: out";
     for (ending, lives_on, told) in [
         (Ending::TimedOut, &[][..], format!("timed-out: {late}{short}")),
-        (Ending::TimedOut, &[4, 5], format!("timed-out: {late}, but for what could not be ended, 4 (p4), 5 (p5){short}")),
+        (Ending::TimedOut, &[4, 5], format!("timed-out: {late}, except for 4 (p4), 5 (p5), which could not be killed{short}")),
         (Ending::Stopped, &[4], "stopped: stopped from outside".to_owned()),
         (
             Ending::NotStarted(std::io::Error::other("no such file")),
@@ -264,7 +264,7 @@ fn processes_are_told_that_live_on_or_were_left_behind_and_not_those_that_were_e
         (
             Ending::Ended(ExitStatus::from_raw(9)),
             &[],
-            "killed: signal: 9 (SIGKILL) ended it, and not this program; a crash of the solver, or want of memory. The last \
+            "killed: signal: 9 (SIGKILL) ended it, which this program did not send; the solver crashed, or memory ran out. The last \
              it said: out"
                 .to_owned(),
         ),
@@ -325,8 +325,7 @@ fn whatever_cannot_be_taken_is_told_with_whose_error_it_is() {
     for (failure, told) in [
         (
             of_reading(Unread::NoFile, &solver, "other.csv"),
-            "no-result: it ended well and left no {out}/result.csv; in {out} there is other.csv: the adapter writes it \
-             elsewhere, or `result` in the study names it otherwise",
+            "no-result: it ended with exit code 0 and left no {out}/result.csv; {out} has other.csv: the adapter writes it elsewhere, or `result` in the study has another name",
         ),
         (
             of_reading(Unread::Unreadable(why()), &solver, ""),
@@ -341,13 +340,13 @@ fn whatever_cannot_be_taken_is_told_with_whose_error_it_is() {
         (of_given(Unread::NotFinite(why()), &files), "not-finite: why; an error of the solver"),
         (
             of_incomplete("why"),
-            "incomplete: why; the adapter does not write all, or the solver ended early and said nothing",
+            "incomplete: why; the adapter left data out, or the solver ended early without an error",
         ),
         (
             of_folder(&refused()),
-            "not-startable: no fresh folder could be made for it: full; the machine's, and not the solver's",
+            "not-startable: its folder could not be created: full; an error of the machine, not of the solver",
         ),
-        (of_mapping("why"), "unreadable: the mapping cannot be taken: why"),
+        (of_mapping("why"), "unreadable: the mapping cannot be used: why"),
         (of_held_back(), "skipped: this study may not start programs without `--allow-solvers`"),
     ] {
         assert_eq!(failure.to_string(), told);

@@ -97,15 +97,15 @@ impl<'a> FrameRows<'a> {
         let has = |column: Column| self.elsewhere.contains(&column);
         let refused = |what: &str| {
             self.refused(format!(
-                "{what}, and the file has it on {} alone: leave one of them out",
+                "{what}, and the file has it only on {}: leave one of them out",
                 self.on.name()
             ))
         };
         if mapping.stress.is == StressKind::Total && has(Column::EffectiveStress) != has(Column::Pressure) {
-            return Err(refused("a total stress becomes effective by the pressure at its place"));
+            return Err(refused("a total stress needs the pressure at its place to become effective"));
         }
         if mapping.position.y == StatedPlace::Current {
-            return Err(refused("a present place becomes the initial one by the displacement there"));
+            return Err(refused("a current place needs the displacement there to become the initial one"));
         }
         rows.set = (1, Some(if on == Association::Cells { Sample::Centres } else { Sample::Nodes }));
         Ok(Some(rows))
@@ -175,7 +175,7 @@ impl<'a> FrameRows<'a> {
         Ok(rows)
     }
 
-    /// Finds the columns that are no quantities.
+    /// Finds the columns that are not quantities.
     fn find_others(&mut self, notes: &mut Vec<String>) -> Result<(), ImportError> {
         let (mapping, frame) = (self.mapping, self.frame);
         let on = Some(self.on);
@@ -283,8 +283,9 @@ impl<'a> FrameRows<'a> {
             if alike.len() > 1 && alike.iter().any(|other| other.name != array.name) {
                 let names: Vec<String> =
                     alike.iter().take(4).map(|array| format!("`{}`", array.name)).collect();
-                return Err(self
-                    .refused(format!("`{typed}` may be each of {}: give the whole path", names.join(", "))));
+                return Err(
+                    self.refused(format!("`{typed}` matches {}: give the whole path", names.join(", ")))
+                );
             }
             let Array { name, components, .. } = array;
             let (component, index) = match spelled.component {
@@ -828,10 +829,10 @@ mod tests {
             (
                 "p = 'p', u_y = '', effective_stress = 'm'",
                 "stress.is = 'total'",
-                "by the pressure at its place",
+                "needs the pressure at its place",
             ),
-            ("p = 'm', u_y = 'p'", "position.y = 'current'", "by the displacement there"),
-            ("p = 'p', u_y = 'm'", "position.y = 'current'", "by the displacement there"),
+            ("p = 'm', u_y = 'p'", "position.y = 'current'", "needs the displacement there"),
+            ("p = 'p', u_y = 'm'", "position.y = 'current'", "needs the displacement there"),
         ] {
             let refused = found(&frame, columns, more);
             assert!(refused.is_err_and(|why| why.contains(told)), "{columns}");

@@ -57,7 +57,7 @@ pub struct RawRow {
     pub moved: Option<[f64; 2]>,
     /// Hash of what distinguishes it from other rows at its place and time.
     pub others: u64,
-    /// Which places it is of, where quantities have places of their own.
+    /// Its kind of places, if quantities have different places.
     pub set: PlaceSet,
 }
 

@@ -416,7 +416,7 @@ impl Reading {
                 |collection| format!("{}, which lists it", collection.display()),
             );
             refused(format!(
-                "its time is given nowhere: score {listed}, give --set-time-step SECONDS if its name has the number of \
+                "its time is unknown: score {listed}, give --set-time-step SECONDS if its name has the number of \
                  a step, or write [time] into a mapping{}",
                 columns.hint_of_program()
             ))
@@ -440,7 +440,7 @@ impl Reading {
                     state.horizontal_displacement.clear();
                 });
             }
-            let note = "a single state has no displacement: give the first state too, from which it counts";
+            let note = "a single state has no displacement: give the first state too, its reference";
             run.notes.push(note.to_owned());
         }
         run.files_are_in_order(mapping)?;
@@ -819,7 +819,7 @@ mod tests {
             let found = reading().time_of(&step, &frame, None, &columns, &mapping, BODY);
             match wanted {
                 None => {
-                    let nowhere = "its time is given nowhere: score the .pvd or .series that lists it, give --set-time-step \
+                    let nowhere = "its time is unknown: score the .pvd or .series that lists it, give --set-time-step \
                                    SECONDS if its name has the number of a step, or write [time] into a mapping";
                     let why = if of_step.is_some() { "its time is NaN" } else { nowhere };
                     assert_eq!(found.expect_err("no time").to_string(), format!("a_7.vtu: {why}"));

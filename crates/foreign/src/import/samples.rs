@@ -47,7 +47,7 @@ pub struct SampledState {
     pub beside: Vec<Beside>,
 }
 
-/// Quantities at places of their own.
+/// Quantities at different places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beside {
     /// Kind of these places, if it is another one than that of the rest.
@@ -88,7 +88,7 @@ pub struct SampleRow {
     pub horizontal_displacement: f64,
     /// Hash of what distinguishes it from other rows at its place and time.
     pub others: u64,
-    /// Which places it is of, where quantities have places of their own.
+    /// Its kind of places, if quantities have different places.
     pub set: PlaceSet,
 }
 

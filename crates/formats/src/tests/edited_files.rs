@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-/// Every array that a test file has, but for `other`, whose numbers nobody wants.
+/// Every array that a test file has, but for `other`, whose numbers are not read.
 const WANTED: [&str; 6] = ["p", "u", "tensor", "level", "with space", "coord_x"];
 
 fn cells_told(cells: &Cells, points: usize) -> String {

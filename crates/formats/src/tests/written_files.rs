@@ -142,7 +142,7 @@ fn places_of_exodus_stand_in_one_data_set_or_in_one_for_each_axis() {
     }
 }
 
-/// A mesh that stays is written once, and each array has offsets of its own; one that moves is written for each step.
+/// A mesh that stays is written once, and each array has its offsets; a moving mesh is written for each step.
 #[test]
 fn arrays_of_a_transient_vtkhdf_begin_at_their_own_step_whether_the_mesh_stays_or_moves() {
     let folder = tempfile::TempDir::new().expect("a folder");

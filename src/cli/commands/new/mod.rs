@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let path = arguments.name.with_file_name(format!("{name}.toml"));
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| not_written(&path, &error))?;
-    say!("{} is a study that runs; next: oedometer check {}", path.display(), path.display());
+    say!("wrote {}; next: oedometer check {}", path.display(), path.display());
     Ok(Exit::Pass)
 }
 
@@ -142,7 +142,7 @@ fn write_adapter(folder: &Path, language: Language) -> anyhow::Result<Exit> {
     }
     let study = folder.join(study);
     say!(
-        "{} attaches {}, a small solver in the place of yours; next: oedometer check {} --allow-solvers",
+        "{} attaches {}, a small solver to replace by yours; next: oedometer check {} --allow-solvers",
         study.display(),
         folder.join(file).display(),
         study.display()

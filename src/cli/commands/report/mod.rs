@@ -220,7 +220,7 @@ fn changes(
     Some(found)
 }
 
-/// The processor by its name where the system tells it, else by its architecture, with the number of its threads.
+/// The processor by its name if the system reports it, else by its architecture, with the number of its threads.
 fn processor() -> String {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     format!("{threads} × {}", Machine::this().processor)

@@ -106,7 +106,7 @@ fn the_schema_has_the_keys_and_the_words_of_the_code() {
     assert!(sweep["method"]["items"]["anyOf"][0]["enum"].as_array().is_some_and(|names| names.len() > 5));
 }
 
-/// Keys without a description, neither of their own nor of the one choice that they stand for.
+/// Keys without a description, of the key or of its single choice.
 fn undescribed(schema: &Value, at: &str, missing: &mut Vec<String>) {
     let is_told = |schema: &Value| schema["description"].as_str().is_some_and(|text| text.len() > 3);
     for (name, property) in schema["properties"].as_object().into_iter().flatten() {

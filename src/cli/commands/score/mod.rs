@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Scene of the result, like `terzaghi`
     #[arg(long, required_unless_present = "show_mapping", default_value = "", hide_default_value = true)]
     scene: String,
-    /// Program that wrote the files, for the meaning of its arrays; --mapping overrides it key by key
+    /// Program that wrote the files; defines what its arrays mean. --mapping overrides it key by key
     #[arg(long, value_enum)]
     preset: Option<Preset>,
     /// Seconds from one numbered step to the next, if file names have the number of the step; comma-separated, one per
@@ -47,7 +47,7 @@ pub struct Arguments {
     /// What the columns mean; see --show-mapping. Without it, the columns are t, y, p, `u_y`
     #[arg(long, value_name = "FILE.toml")]
     mapping: Option<PathBuf>,
-    /// Print the default mapping, that of a scene with --scene, or that of a program with --preset
+    /// Print the default mapping, with --scene the mapping of a scene, with --preset the mapping of a program
     #[arg(long)]
     show_mapping: bool,
     #[command(flatten)]
@@ -94,7 +94,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     if arguments.junit.is_some() && !arguments.strict && arguments.below.is_none() {
         return Err(Ended::usage(
-            "`--junit` has nothing to report: say what is judged by --below ERROR, or by --strict",
+            "`--junit` has nothing to report: add what it judges, --below ERROR or --strict",
         ));
     }
     let tolerance = arguments.time_tolerance;
@@ -182,7 +182,7 @@ fn quantities_of(typed: &[String]) -> anyhow::Result<Vec<Quantity>> {
     let of = |name: &String| {
         Quantity::named(name).ok_or_else(|| {
             let names = Quantity::NAMES.join(", ");
-            Ended::usage(format!("`--without {name}` is no quantity: expected one of {names}"))
+            Ended::usage(format!("`--without {name}` is not a quantity: expected one of {names}"))
         })
     };
     typed.iter().map(of).collect()
@@ -262,7 +262,7 @@ fn judged(
         return Ok((Vec::new(), Exit::Pass));
     }
     if !results.are_times_known() {
-        say!("note: missing times were not looked for: give the times that must be there by --time-factor");
+        say!("note: missing times were not checked: give the required times with --time-factor");
     }
     if let Some(bound) = below {
         let reference = references.first().map(|kind| kind.name());
@@ -404,7 +404,7 @@ mod tests {
         let both = vec![Quantity::Settlement, Quantity::EffectiveStress];
         assert_eq!(of(&["settlement", "effective_stress"]), Ok(both));
         assert_eq!(of(&[]), Ok(Vec::new()));
-        let told = "`--without stress` is no quantity: expected one of pressure, effective_stress, displacement, \
+        let told = "`--without stress` is not a quantity: expected one of pressure, effective_stress, displacement, \
                     settlement, load_factor";
         assert_eq!(of(&["settlement", "stress"]), Err(told.to_owned()));
     }

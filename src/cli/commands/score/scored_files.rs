@@ -41,7 +41,7 @@ pub fn read(
     if mapping.time.case {
         if times.is_empty() {
             return Err(Ended::usage(
-                "the mapping takes the times of the case: give them by --time-factor, in the order of the files".to_owned(),
+                "the mapping takes the times of the case: give them with --time-factor, in the order of the files".to_owned(),
             ));
         }
         let seconds: Vec<f64> = times.iter().map(|factor| factor * body.seconds_per_time_factor).collect();

@@ -92,8 +92,8 @@ fn what_cannot_be_a_solver_is_refused_at_its_place() {
     for (from, to, told) in [
         ("name = \"toy\"", "name = \"GIMP\"", "`GIMP` is a method of this program"),
         ("name = \"toy\"", "name = \"to y\"", "a solver cannot be called `to y`"),
-        ("{out}/result.csv", "result.csv", "does not lie below `{out}`"),
-        ("{out}/result.csv", "{out}/../old.csv", "does not lie below `{out}`"),
+        ("{out}/result.csv", "result.csv", "must lie below `{out}`"),
+        ("{out}/result.csv", "{out}/../old.csv", "must lie below `{out}`"),
         ("\"{case}\"", "\"{cases}\"", "did you mean `case`?"),
         ("[\"sh\", \"adapter.sh\", \"{case}\", \"{out}\"]", "[]", "the command is empty"),
         ("name = \"toy\"", "name = \"toy\"\npreset = \"osg\"", "did you mean `ogs`?"),

@@ -62,7 +62,7 @@ pub struct Mapping {
     /// What the column of the effective stress contains.
     #[serde(default)]
     pub stress: StressMeaning,
-    /// A settlement curve in a file of its own.
+    /// A settlement curve in a separate file.
     #[serde(default)]
     pub settlement: Option<SettlementSeries>,
     /// Layout of the file.
@@ -289,8 +289,8 @@ pub struct Position {
     pub y: StatedPlace,
 }
 
-/// Coordinates in the file at the end from which `sign` counts, in the file's unit of length, and the pressure in it where
-/// nothing is in excess.
+/// Coordinates in the file at the end from which `sign` counts, in the file's unit of length, and the pressure in
+/// it at zero excess pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Origin {
@@ -302,7 +302,7 @@ pub struct Origin {
     pub p: f64,
 }
 
-/// Layout of a table. What is not declared is found where the file leaves one choice.
+/// Layout of a table. What is not declared is inferred if the file is unambiguous.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TableLayout {
@@ -333,7 +333,7 @@ impl Mapping {
         mapping.checked(source)
     }
 
-    /// The mapping, if none of its values is wrong.
+    /// The mapping, if all values are right.
     fn checked(self, source: &StudySource) -> Result<Self, StudyError> {
         let faults = self.faults();
         if faults.is_empty() { Ok(self) } else { Err(source.error(faults)) }
@@ -522,7 +522,7 @@ impl Mapping {
         ] {
             refuse(
                 is_current && given && !has_component,
-                &format!("present places need the displacement to find the initial `{place}`"),
+                &format!("current places need the displacement to find the initial `{place}`"),
                 &format!("name `{component}` in [columns], or give initial places"),
             );
         }

@@ -7,14 +7,14 @@ use crate::source::StudySource;
 use include_dir::{Dir, File, include_dir};
 use oedometer_formats::{Array, Frame};
 
-/// The mapping of a column's result for which nothing is declared.
+/// The mapping of a column's result without a declaration.
 pub const CONVENTION: &str = include_str!("../presets/column.toml");
-/// The mapping of a layer's result for which nothing is declared.
+/// The mapping of a layer's result without a declaration.
 pub const PLANE_CONVENTION: &str = include_str!("../presets/layer.toml");
-/// The mapping of a slab's result for which nothing is declared.
+/// The mapping of a slab's result without a declaration.
 pub const SLAB_CONVENTION: &str = include_str!("../presets/slab.toml");
 
-/// The text of the mapping for which nothing is declared.
+/// The text of the mapping without a declaration.
 pub fn convention_of(axes: Axes) -> &'static str {
     match axes {
         Axes::Column => CONVENTION,
@@ -113,7 +113,7 @@ impl Mapping {
         }
     }
 
-    /// The mapping of a result for which nothing is declared, of a column, of a layer or of a slab.
+    /// The mapping of a result without a declaration, of a column, of a layer or of a slab.
     ///
     /// # Errors
     /// Never: the text is a constant.

@@ -100,7 +100,7 @@ fn all_faults_are_told_at_once() {
         assert!(error.contains(told), "{told}: {error}");
     }
     let current = CONVENTION.replace("\"reference\"", "\"current\"").replacen("u_y = \"u_y\"\n", "", 1);
-    assert!(read(&current).is_err_and(|error| error.contains("present places need the displacement")));
+    assert!(read(&current).is_err_and(|error| error.contains("current places need the displacement")));
     assert!(read("[columns]\ny = \"y\"\n").is_err_and(|error| error.contains("no column to score")));
 }
 
@@ -130,8 +130,8 @@ fn each_fault_of_a_mapping_is_told_alone_in_its_own_sentence() {
     let whole = "`whole_volume` is not positive";
     let total = "a total stress needs the pore pressure to become effective";
     let (x, y) = (
-        "present places need the displacement to find the initial `x`",
-        "present places need the displacement to find the initial `y`",
+        "current places need the displacement to find the initial `x`",
+        "current places need the displacement to find the initial `y`",
     );
     for (text, told) in [
         ("", &[][..]),
