@@ -1,7 +1,9 @@
-//! Tests of what is told of mistakes, and of numbers with units.
+//! Tests of the messages about mistakes, and of numbers with units.
 
+use crate::cli::commands::schema::{Document, schema_of};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
+use oedometer_foreign::synonyms::KEY_NAMES;
 
 const SOUND: &str = "title = \"t\"\nscene = \"terzaghi\"\n[material]\nporosity = 0.3\n\
                      [[sweep]]\nmethod = [\"GIMP\"]\ncells = [4, 8]\n";
@@ -29,7 +31,7 @@ porosity = 0.3 ¦ cells = 3 ¦ 4 ¦ unknown key `cells` ¦ `cells` belongs to [[
 porosity = 0.3 ¦ loading_time = 3 ¦ 4 ¦ unknown key `loading_time` ¦ `loading_time` belongs to [column]: `column.loading_time`
 porosity = 0.3 ¦ flip = 3 ¦ 4 ¦ unknown key `flip` ¦ `flip` belongs to [integrator]: `integrator.flip`
 [material] ¦ [timing]⏎colour = 3⏎[material] ¦ 4 ¦ unknown key `colour` ¦ the keys here are repeats
-porosity = 0.3 ¦ porosity = 30 % ¦ 4 ¦ `30 %` is not a plain number ¦ a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like "50 kPa"; a share as in 0.3
+porosity = 0.3 ¦ porosity = 30 % ¦ 4 ¦ `30 %` is not a plain number ¦ write a number in SI units (m, s, Pa), or with a unit in quotes, like "50 kPa"; a fraction like 0.3
 porosity = 0.3 ¦ load = 5 kPa ¦ 4 ¦ `5 kPa` needs quotes ¦ write `load = "5 kPa"`
 porosity = 0.3 ¦ law = linear ¦ 4 ¦ `linear` needs quotes ¦ write `law = "linear"`
 porosity = 0.3 ¦ porosity = "0.3" ¦ 4 ¦ `porosity` takes a number, not `"0.3"` ¦ write it without quotes: `porosity = 0.3`
@@ -47,9 +49,9 @@ porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write
 [4, 8] ¦ ["8"] ¦ 7 ¦ `cells` takes a whole number, not `"8"` ¦ write it without quotes: `cells = 8`
 [4, 8] ¦ "four" ¦ 7 ¦ `cells` takes a list, not `"four"` ¦ write it like `cells = [10]`
 [4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = { courant = 0.1, growth = 0.1 }`
-[[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has two brackets: [[sweep]]
+[[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has double brackets: [[sweep]]
 title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
-["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ it left the program with version 0.3: take `TL-PPP`
+["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ version 0.3 removed it: take `TL-PPP`
 [4, 8] ¦ [4, 8]⏎layers = [2] ¦ 8 ¦ unknown key `layers` ¦ it is called `sets` now
 [4, 8] ¦ [4, 8]⏎[[expect_case]]⏎one_layer_within = 1 ¦ 9 ¦ unknown key `one_layer_within` ¦ it is called `one_set_within` now
 [4, 8] ¦ [4, 8]⏎[[expect]]⏎time_factor = 0.1⏎order = { minus = 1 } ¦ 10 ¦ `value` is missing in order ¦ add `value = 0.1`
@@ -67,9 +69,94 @@ fn every_mistake_is_told_at_its_line_with_what_to_write() {
         assert_eq!((&at.to_string(), &told, &right), (line, message, help), "{to}");
     }
     let told = refusal(&SOUND.replacen("[material]", "[[material]]", 1));
-    let parts =
-        ["`material` takes a table", "a table that appears once has one pair of brackets: [material]"];
+    let parts = ["`material` takes a table", "a table that appears once has single brackets: [material]"];
     assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+}
+
+/// Keys and words of other programs and of textbooks: the line that is sound, what is typed instead, and the help.
+const SYNONYMS: &str = r#"
+porosity = 0.3 ¦ permeability = 1e-9 ¦ did you mean `hydraulic_conductivity`?
+porosity = 0.3 ¦ k = 1e-9 ¦ did you mean `hydraulic_conductivity`?
+porosity = 0.3 ¦ kf = 1e-9 ¦ did you mean `hydraulic_conductivity`?
+porosity = 0.3 ¦ K_sat = 1e-9 ¦ did you mean `hydraulic_conductivity`?
+porosity = 0.3 ¦ E = 2e6 ¦ did you mean `youngs_modulus`?
+porosity = 0.3 ¦ youngs = 2e6 ¦ did you mean `youngs_modulus`?
+porosity = 0.3 ¦ elastic_modulus = 2e6 ¦ did you mean `youngs_modulus`?
+porosity = 0.3 ¦ nu = 0.3 ¦ did you mean `poissons_ratio`?
+porosity = 0.3 ¦ poisson = 0.3 ¦ did you mean `poissons_ratio`?
+porosity = 0.3 ¦ porosity0 = 0.3 ¦ did you mean `porosity`?
+porosity = 0.3 ¦ n0 = 0.3 ¦ did you mean `porosity`?
+porosity = 0.3 ¦ n = 0.3 ¦ did you mean `porosity`?
+porosity = 0.3 ¦ bulk_modulus_water = 2e9 ¦ did you mean `water_bulk_modulus`?
+porosity = 0.3 ¦ K_w = 2e9 ¦ did you mean `water_bulk_modulus`?
+porosity = 0.3 ¦ rho_s = 2650.0 ¦ did you mean `grain_density`?
+porosity = 0.3 ¦ cohesion = 1e4 ¦ did you mean `undrained_strength`?
+porosity = 0.3 ¦ void_ratio = 1.0 ¦ give the porosity instead, n = e/(1 + e): `porosity`
+porosity = 0.3 ¦ e = 1.0 ¦ give the porosity instead, n = e/(1 + e): `porosity`
+porosity = 0.3 ¦ c_v = 1e-7 ¦ it follows from `hydraulic_conductivity`, `youngs_modulus` and `poissons_ratio`: c_v = k E_oed/γ_w
+porosity = 0.3 ¦ E_oed = 2e6 ¦ it follows from `youngs_modulus` and `poissons_ratio`: E_oed = 1/m_v = E(1 − ν)/((1 + ν)(1 − 2ν))
+porosity = 0.3 ¦ G = 2e6 ¦ give `youngs_modulus` and `poissons_ratio` instead: E = 9KG/(3K + G), ν = (3K − 2G)/(6K + 2G)
+porosity = 0.3 ¦ thickness = 5.0 ¦ `height` belongs to [column]: `column.height`
+porosity = 0.3 ¦ ppc = 2 ¦ `points_per_cell` belongs to [[sweep]]: `sweep.points_per_cell`
+[material] ¦ [column]⏎H = 5.0⏎[material] ¦ did you mean `height`?
+[material] ¦ [column]⏎thickness = 5.0⏎[material] ¦ did you mean `height`?
+[material] ¦ [column]⏎surcharge = 5.0⏎[material] ¦ did you mean `load`?
+[material] ¦ [column]⏎permeability = 1e-9⏎[material] ¦ `hydraulic_conductivity` belongs to [material]: `material.hydraulic_conductivity`
+[material] ¦ [output]⏎output_times = [1.0]⏎[material] ¦ did you mean `times`?
+cells = [4, 8] ¦ mesh = [4, 8] ¦ did you mean `cells`?
+cells = [4, 8] ¦ elements = [4, 8] ¦ did you mean `cells`?
+cells = [4, 8] ¦ n-cells = [4, 8] ¦ did you mean `cells`?
+cells = [4, 8] ¦ cells = [4, 8]⏎ppc = [2] ¦ did you mean `points_per_cell`?
+cells = [4, 8] ¦ cells = [4, 8]⏎particles_per_cell = [2] ¦ did you mean `points_per_cell`?
+cells = [4, 8] ¦ cells = [4, 8]⏎dt = [{ seconds = 0.1 }] ¦ did you mean `time_step`?
+cells = [4, 8] ¦ cells = [4, 8]⏎timestep = [{ seconds = 0.1 }] ¦ did you mean `time_step`?
+cells = [4, 8] ¦ cells = [4, 8]⏎cell_size = [0.1] ¦ give the number of cells over the height, `cells`, or the height of the column, `height`
+cells = [4, 8] ¦ cells = [4, 8]⏎E = [1e6, 2e6] ¦ did you mean `youngs_modulus`?
+cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last output: `times` or `time_factors`
+"#;
+
+#[test]
+fn a_synonym_is_answered_with_the_key_and_makes_no_other_mistake() {
+    for row in SYNONYMS.trim().lines() {
+        let fields: Vec<String> = row.split(" ¦ ").map(|field| field.replace('⏎', "\n")).collect();
+        let [from, to, help] = &fields[..] else { panic!("{row}") };
+        let text = SOUND.replacen(from, to, 1);
+        // A sweep without its cells lacks them whatever stands there instead.
+        let mut told = Study::check(&StudySource { name: "t.toml".to_owned(), text: text.clone() })
+            .expect_err(to)
+            .diagnostics;
+        told.retain(|one| one.message != "the sweep names no cells");
+        assert_eq!(told.len(), 1, "{to}: {told:?}");
+        assert_eq!(told[0].help.as_deref(), Some(help.as_str()), "{to}");
+    }
+    // Each names a key that a study has, once.
+    let schema = schema_of(Document::Study).to_string();
+    let mut names: Vec<&str> = Vec::new();
+    for (others, key) in KEY_NAMES {
+        assert!(schema.contains(&format!("\"{key}\":{{")), "{key}");
+        names.extend(*others);
+    }
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all, "a name stands for two keys");
+}
+
+#[test]
+fn a_word_of_another_program_is_answered_with_the_word() {
+    for (from, to, word) in [
+        ("\"terzaghi\"", "\"consolidation\"", "terzaghi"),
+        ("\"terzaghi\"", "\"finite strain\"", "xie-leo"),
+        ("[4, 8]", "[4, 8]\nintegrator = [\"backward Euler\"]", "implicit"),
+        (
+            "[4, 8]",
+            "[4, 8]\n[[expect]]\nquantity = \"pore_pressure\"\ntime_factor = 0.1\norder = { value = 2.0 }",
+            "pressure",
+        ),
+    ] {
+        let told = refusal(&SOUND.replacen(from, to, 1));
+        assert!(told.contains(&format!("did you mean `{word}`?")), "{told}");
+    }
 }
 
 #[test]

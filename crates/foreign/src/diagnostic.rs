@@ -1,5 +1,6 @@
 //! Messages on mistakes in a study file: what is wrong, where, and what would be right.
 
+use crate::synonyms::usual_word;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::fmt;
@@ -54,7 +55,7 @@ impl fmt::Display for StudyError {
 }
 
 impl Diagnostic {
-    /// The diagnostic as a warning about a source: the study runs all the same.
+    /// The diagnostic as a warning about a source, with which the study still runs.
     pub fn warning(&self, name: &str, source: &str) -> String {
         self.render(Level::WARNING, name, source)
     }
@@ -113,7 +114,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 
 /// Help for a word that is not among the candidates.
 pub fn one_of(word: &str, candidates: &[&str]) -> String {
-    let near = nearest(word, candidates.iter().copied());
+    let near = usual_word(word, candidates).or_else(|| nearest(word, candidates.iter().copied()));
     match near {
         Some(near) if candidates.len() > MOST_LISTED => {
             format!("did you mean `{near}`? `oedometer list` has all {}", candidates.len())

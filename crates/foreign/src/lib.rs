@@ -17,5 +17,6 @@ pub mod solver;
 pub mod source;
 mod staging;
 mod started_processes;
+pub mod synonyms;
 pub mod toml_text;
 pub mod units;

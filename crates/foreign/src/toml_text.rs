@@ -1,9 +1,10 @@
 //! Reads TOML into a type, and explains every mistake at its place by the type's JSON Schema.
 
-use crate::diagnostic::{Diagnostic, StudyError, nearest, one_of};
+use crate::diagnostic::{Diagnostic, StudyError, one_of};
 use crate::source::StudySource;
+use crate::synonyms::help_for_key;
 use crate::units::{has_unit, in_si, leading_number};
-use oedometer_case::keys::{KEYS, Key};
+use oedometer_case::keys::Key;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Deserialize;
@@ -57,11 +58,9 @@ impl<T: JsonSchema> JsonSchema for Placed<T> {
     }
 }
 
-/// Keys that have another name now.
-const RENAMED: [(&str, &str); 2] = [("layers", "sets"), ("one_layer_within", "one_set_within")];
 /// What is said where no better help is known.
 const A_LINE: &str =
-    "a line is `key = value`: words and numbers with units stand in quotes, lists in [ ], comments after #";
+    "a line is `key = value`: words and numbers with units in quotes, lists in [ ], comments after #";
 /// Longest excerpt of the text in a message, letters.
 const LONGEST_EXCERPT: usize = 40;
 
@@ -134,8 +133,8 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
     if has_unit(value) {
         (Some(format!("`{shown}` needs quotes")), write(&format!("\"{value}\"")))
     } else if !number.is_empty() && rest.starts_with(|c: char| c.is_alphabetic() || c == '%') {
-        let help = "a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like \"50 kPa\"; a \
-                    share as in 0.3";
+        let help = "write a number in SI units (m, s, Pa), or with a unit in quotes, like \"50 kPa\"; a \
+                    fraction like 0.3";
         (Some(format!("`{shown}` is not a plain number")), help.to_owned())
     } else if value.starts_with(char::is_alphabetic) {
         let quoted = write(&format!("\"{}\"", value.trim_end_matches(['"', '\''])));
@@ -242,10 +241,10 @@ impl Mistakes<'_> {
         let is_number = ["number", "integer"].contains(&kind);
         let help = match value.get_ref() {
             DeValue::Table(_) if is_block => {
-                format!("a block that may be repeated has two brackets: [[{key}]]")
+                format!("a block that may be repeated has double brackets: [[{key}]]")
             }
             DeValue::Array(_) if kind == "object" => {
-                format!("a table that appears once has one pair of brackets: [{key}]")
+                format!("a table that appears once has single brackets: [{key}]")
             }
             DeValue::Array(_) if Key::named(key, "sweep").is_some() => {
                 format!("several values belong in a [[sweep]]: `{key} = {written}`")
@@ -331,23 +330,6 @@ fn example_of(schema: &Value) -> String {
     }
 }
 
-/// What to write in place of an unknown key.
-fn help_for_key(name: &str, known: &[&str]) -> String {
-    if let Some((_, new)) = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new)) {
-        return format!("it is called `{new}` now");
-    }
-    if let Some(near) = nearest(name, known.iter().copied()) {
-        return format!("did you mean `{near}`?");
-    }
-    match KEYS.iter().find(|key| key.name == name) {
-        Some(key) => match key.tables.iter().find(|table| **table != "sweep") {
-            Some(table) => format!("`{name}` belongs to [{table}]: `{table}.{name}`"),
-            None => format!("`{name}` belongs to [[sweep]]: `sweep.{name}`"),
-        },
-        None => format!("the keys here are {}", known.join(", ")),
-    }
-}
-
 /// The beginning of a text.
 fn cut(text: &str) -> &str {
     text.char_indices().nth(LONGEST_EXCERPT).map_or(text, |(end, _)| &text[..end])
@@ -402,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_line_that_is_no_toml_is_told_by_what_it_shows() {
-        let plain = "a number stands alone, in SI units (m, s, Pa), or with its unit in quotes, like \"50 kPa\"; a share as in 0.3";
+        let plain = "write a number in SI units (m, s, Pa), or with a unit in quotes, like \"50 kPa\"; a fraction like 0.3";
         for (line, message, help) in [
             (
                 "{\"title\": 1}",

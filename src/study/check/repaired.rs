@@ -1,4 +1,4 @@
-//! Reads on after mistakes of spelling, so that a study's mistakes are told all at once and not one kind after the other.
+//! Reads on after misspelt keys and words, so that all mistakes of a study are reported at once.
 
 use crate::study::check::{Purpose, Study};
 use crate::study::diagnostic::{Diagnostic, StudyError};
@@ -12,6 +12,10 @@ const MEANT: [&str; 2] = ["did you mean `", "it is called `"];
 const MISPLACED: &str = "` belongs to ";
 /// A mistake of an expectation that no other key of it makes or hides.
 const TIMELESS: &str = "names no time factor";
+/// Words of mistakes that follow from the time factors of a body.
+const OF_TIMES: [&str; 2] = [" is T_v = ", "no case has an output at T_v = "];
+/// Tables of the body, whose keys change what the time factors of all outputs are.
+const BODY: [&str; 3] = ["column", "layer", "material"];
 /// Words before a line as it would be right, and before an example of one.
 const RIGHT: [&str; 3] = ["write `", "without quotes: `", "like `"];
 
@@ -24,13 +28,23 @@ struct Mended {
     unknown: BTreeMap<usize, Unknown>,
 }
 
-/// A key whose value is not known.
+/// A key that was left out.
 struct Unknown {
     key: String,
     /// The table that it belongs to.
     table: String,
-    /// Whether it stands in another table.
-    is_misplaced: bool,
+    kind: UnknownKind,
+}
+
+/// Why a key was left out.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum UnknownKind {
+    /// Its value cannot be read.
+    Value,
+    /// It stands in another table than the one it belongs to.
+    Misplaced,
+    /// No key has its name: which one was meant is not known.
+    Name,
 }
 
 /// Adds to the mistakes that kept a study from being read those that show once these are mended: a misspelt word is taken
@@ -50,8 +64,8 @@ pub fn with_later_mistakes(mut error: StudyError, purpose: Purpose) -> StudyErro
 }
 
 impl Mended {
-    /// Whether a mistake at a line is none of what was left out: not in the same block; what is expected depends on the
-    /// sweeps and outputs, and these on the values before them.
+    /// Whether a mistake at a line does not follow from a line that was left out: it lies in another block;
+    /// expectations depend on sweeps and outputs, and these on the values before them.
     fn is_sure(&self, line: usize, message: &str) -> bool {
         let lines: Vec<&str> = self.text.split('\n').collect();
         let here = block(&lines, line);
@@ -62,15 +76,18 @@ impl Mended {
             if is_timeless {
                 return !unknown.key.starts_with("time");
             }
-            let is_same = if unknown.is_misplaced {
-                unknown.table == table_here
-            } else {
-                block(&lines, *number) == here && here.is_some()
+            let is_same = match unknown.kind {
+                UnknownKind::Misplaced => unknown.table == table_here,
+                UnknownKind::Value => block(&lines, *number) == here && here.is_some(),
+                UnknownKind::Name if unknown.table == table_here => return true,
+                UnknownKind::Name => false,
             };
             !is_same
                 && match unknown.table.as_str() {
                     "sweep" | "output" => !is_expected,
                     table if table.starts_with("expect") => true,
+                    // The times of a body of unknown size or soil are unknown too.
+                    _ if OF_TIMES.iter().any(|words| message.contains(words)) => false,
                     // What is said of a key of another table by its name is true whatever the value.
                     _ => is_expected || message.starts_with(&format!("`{table_here}.")),
                 }
@@ -95,11 +112,11 @@ fn mended(error: &StudyError) -> Option<Mended> {
         let quoted =
             |words: &str| one.help.as_deref()?.split_once(words)?.1.split_once('`').map(|(text, _)| text);
         let key = line[..line.find('=')?].trim().to_owned();
-        let unknown_in = |table: String, is_misplaced| Unknown { key: key.clone(), table, is_misplaced };
+        let unknown_in = |table: String, kind| Unknown { key: key.clone(), table, kind };
         if let Some((_, home)) = one.help.as_deref().and_then(|help| help.split_once(MISPLACED)) {
             let home = home.split(':').next().unwrap_or_default().trim_matches(['[', ']']).to_owned();
             line.insert(0, '#');
-            unknown.insert(number, unknown_in(home, true));
+            unknown.insert(number, unknown_in(home, UnknownKind::Misplaced));
             continue;
         }
         let right = RIGHT.iter().find_map(|words| quoted(words).map(|text| (text, *words)));
@@ -115,13 +132,16 @@ fn mended(error: &StudyError) -> Option<Mended> {
             (None, Some((right, words))) => {
                 right.clone_into(line);
                 if words == RIGHT[2] {
-                    unknown.insert(number, unknown_in(table_of(&source, number), false));
+                    unknown.insert(number, unknown_in(table_of(&source, number), UnknownKind::Value));
                 }
             }
             _ => {
                 line.insert(0, '#');
+                let table = table_of(&source, number);
                 if !one.message.starts_with("unknown key") {
-                    unknown.insert(number, unknown_in(table_of(&source, number), false));
+                    unknown.insert(number, unknown_in(table, UnknownKind::Value));
+                } else if BODY.contains(&table.as_str()) {
+                    unknown.insert(number, unknown_in(table, UnknownKind::Name));
                 }
             }
         }
@@ -234,6 +254,37 @@ mod tests {
         for (old, new) in [("[\"GC-SRI-patch\"]", "\"GC-SRI-patch\""), ("1.0", "\"tall\"")] {
             let source = StudySource { name: "t.toml".to_owned(), text: wrong.replacen(old, new, 1) };
             assert_eq!(Study::check(&source).expect_err(new).diagnostics.len(), 2, "{new}");
+        }
+    }
+
+    /// A soft clay: an unknown key of its soil leaves the default soil, in which the times and the load are impossible.
+    #[test]
+    fn an_unknown_key_of_the_soil_makes_no_mistake_of_times_and_hides_no_other() {
+        let clay = |soil: &str, rest: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\n[column]\nheight = 5.0\nload = '50 kPa'\n[material]\n\
+                 youngs_modulus = '2 MPa'\n{soil}\n[output]\ntimes = ['30 days', '1 year']\n[[sweep]]\n\
+                 method = ['MPM']\nintegrator = ['implicit']\ncells = [5, 10, 20]\n[[expect]]\nmethod = 'MPM'\n\
+                 quantity = 'settlement'\ntime = '1 year'\nat = {{ cells = 10, below = '1 %' }}\n{rest}"
+            );
+            Study::check(&StudySource { name: "t.toml".to_owned(), text }).map(|study| study.planned.len())
+        };
+        assert_eq!(clay("hydraulic_conductivity = 1e-9", "").expect("sound"), 3);
+        for (soil, rest, said) in [
+            ("permeability = 1e-9", "", &["did you mean `hydraulic_conductivity`?"][..]),
+            ("seepage = 1e-9", "", &["unknown key `seepage`"]),
+            ("void_ratio = 1.0", "", &["n = e/(1 + e): `porosity`"]),
+            (
+                "permeability = 1e-9\nporosity = 3.0",
+                "",
+                &["hydraulic_conductivity", "`material.porosity` is 3"],
+            ),
+            ("seepage = 1e-9\nporosity = 3.0", "", &["seepage", "`material.porosity` is 3"]),
+            ("seepage = 1e-9", "clas = 'locked'", &["seepage", "did you mean `class`?"]),
+        ] {
+            let error = clay(soil, rest).expect_err(soil);
+            assert_eq!(error.diagnostics.len(), said.len(), "{error}");
+            assert!(said.iter().all(|words| error.to_string().contains(words)), "{error}");
         }
     }
 
