@@ -215,7 +215,7 @@ fn clock_of(threads: usize) -> fn() -> Option<f64> {
     if threads > 1 { process_seconds } else { thread_seconds }
 }
 
-/// Seconds that this thread has worked on a processor, where the system tells.
+/// Processor time of this thread, s, if the system reports it.
 pub fn thread_seconds() -> Option<f64> {
     #[cfg(unix)]
     return seconds_of(rustix::time::ClockId::ThreadCPUTime);
@@ -223,7 +223,7 @@ pub fn thread_seconds() -> Option<f64> {
     None
 }
 
-/// Seconds that all threads of this program have worked on processors, where the system tells.
+/// Processor time of all threads of this program, s, if the system reports it.
 pub fn process_seconds() -> Option<f64> {
     #[cfg(unix)]
     return seconds_of(rustix::time::ClockId::ProcessCPUTime);

@@ -38,7 +38,7 @@ impl<'a> CaseRunner<'a> {
         Self { study, this_program: ThisProgram { kernel: Kernel::Fastest }, others: others.collect() }
     }
 
-    /// The same with a solver in the place of the program or result that the study calls so.
+    /// The same with a solver instead of the program or result of that name in the study.
     #[must_use]
     fn with(mut self, name: &str, solver: &'a dyn Solver) -> Self {
         for (known, other) in &mut self.others {
@@ -117,7 +117,7 @@ impl<'a> CaseRunner<'a> {
     }
 }
 
-/// Runs all cases of a study, with a solver in Rust in the place of the `[[solver]]` that the study calls by its name; the
+/// Runs all cases of a study, with a solver in Rust instead of the `[[solver]]` of that name; the
 /// records are judged like any others.
 ///
 /// ```
@@ -165,7 +165,7 @@ pub fn run_study_with(study: &Study, name: &str, solver: &dyn Solver) -> Result<
     cases.map(|case| runner.run_within(case, None, true, &|_, _| true)).collect()
 }
 
-/// Whether the record of a case tells that it was stopped from outside.
+/// Whether the record of a case says that it was stopped from outside.
 pub fn is_stopped(record: &Record) -> bool {
     has_stopped(&record.status)
 }

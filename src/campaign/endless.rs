@@ -1,4 +1,4 @@
-//! Refuses, before anything starts, cases that nobody can wait for.
+//! Refuses, before anything starts, cases that would take longer than a week.
 
 use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
@@ -31,7 +31,7 @@ pub struct EndlessCases {
     pub seconds: f64,
 }
 
-/// Refuses a study with cases that nobody can wait for. A study whose `case_seconds` is longer than the estimate asks for them.
+/// Refuses a study with cases that would take longer than a week. A study whose `case_seconds` is longer than the estimate asks for them.
 ///
 /// # Errors
 /// How many there are, and what takes less.
@@ -76,7 +76,26 @@ pub fn faster(case: &Case) -> Option<Case> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::study_of;
+    use crate::campaign::runner::{RunError, RunOptions, run_study, study_of};
+
+    /// Whoever runs a study: nothing is solved, no record is made, and the report has the one error.
+    #[test]
+    fn the_library_refuses_them_too_and_runs_nothing() {
+        let text = "title = 't'\nscene = 'terzaghi'\nmaterial.hydraulic_conductivity = 1e-9\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['explicit', 'implicit']\ncells = [2]\n";
+        let told = std::sync::Mutex::new(0);
+        let count = |_| *told.lock().expect("no thread panics") += 1;
+        let report = run_study(&study_of("clay", text), &RunOptions::whole(Tier::Full, 2), None, &count);
+        assert_eq!((report.records.len(), *told.lock().expect("no thread panics")), (0, 0));
+        assert!(
+            matches!(&report.errors[..], [RunError::Endless(refused)] if refused.cases == 1),
+            "{:?}",
+            report.errors
+        );
+        let text = text.replace("'explicit', ", "");
+        let report = run_study(&study_of("clay", &text), &RunOptions::whole(Tier::Full, 2), None, &|_| {});
+        assert_eq!((report.records.len(), report.errors.len()), (1, 0));
+    }
 
     #[test]
     fn a_clay_with_explicit_steps_is_refused_with_what_takes_less_unless_the_study_asks_for_it() {

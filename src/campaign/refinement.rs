@@ -1,4 +1,4 @@
-//! The meshes of a contender of the race, from coarse to fine: when there is no need to go on.
+//! The meshes of a contender of the race, from coarse to fine, and when refinement ends.
 
 use crate::case::Case;
 use crate::case::contender::CONTENDERS;

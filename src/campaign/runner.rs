@@ -1,7 +1,7 @@
-//! Runs cases side by side and keeps each record as soon as it is there; tells how it goes, what it came to, and why it could
-//! not go on.
+//! Runs cases in parallel and stores each record at once; reports progress, results, and why it stopped.
 
 use crate::campaign::case_runner::{CaseRunner, is_stopped};
+use crate::campaign::endless::{EndlessCases, refuse_endless};
 use crate::campaign::refinement::{Refinement, ladders};
 use crate::campaign::shares::{Shard, shares_of};
 use crate::campaign::stop;
@@ -56,7 +56,7 @@ pub struct Selected<'a> {
     pub is_kept: bool,
 }
 
-/// Runs the cases of a study and keeps each record as soon as it is there.
+/// Runs the cases of a study and stores each record at once. Nothing runs if a case would take longer than a week.
 pub fn run_study(
     study: &Study,
     options: &RunOptions,
@@ -66,8 +66,8 @@ pub fn run_study(
     run_studies(&[Selected { study, store, is_kept: true }], options, tell).pop().unwrap_or_default()
 }
 
-/// Runs the cases of several studies side by side, so that the cores stay busy to the end of the
-/// last one, and keeps each record as soon as it is there. One report a study.
+/// Runs the cases of several studies side by side, so that the cores stay busy to the end of the last one, and
+/// stores each record at once. One report per study.
 pub fn run_studies(
     studies: &[Selected<'_>],
     options: &RunOptions,
@@ -84,6 +84,9 @@ pub fn run_studies_thinned(
     thin: &(dyn Fn(&Study, &mut Record) + Sync),
     tell: &(dyn Fn(Progress) + Sync),
 ) -> Vec<RunReport> {
+    if let Some(reports) = refused_as_endless(studies, options) {
+        return reports;
+    }
     let selected = cases_of(studies, options);
     let runners: Vec<CaseRunner<'_>> = studies.iter().map(|one| CaseRunner::of(one.study)).collect();
     let of_studies = studies.iter().zip(&runners).zip(selected);
@@ -120,6 +123,16 @@ pub fn run_studies_thinned(
         }
     });
     begun.into_iter().map(|begun| begun.into_report(options)).collect()
+}
+
+/// Reports without a record if a study has cases that would take longer than a week: one of them says so, and nothing is run.
+fn refused_as_endless(studies: &[Selected<'_>], options: &RunOptions) -> Option<Vec<RunReport>> {
+    let refused = |selected: &Selected<'_>| refuse_endless(selected.study, options.tier).err();
+    let (place, endless) =
+        studies.iter().enumerate().find_map(|(place, selected)| Some((place, refused(selected)?)))?;
+    let mut reports: Vec<RunReport> = studies.iter().map(|_| RunReport::default()).collect();
+    reports[place].errors.push(endless.into());
+    Some(reports)
 }
 
 /// Work of jobs by the estimates of their studies, ns.
@@ -414,7 +427,7 @@ pub(crate) fn failed_at(step: u64) -> crate::record::Status {
     crate::record::Status::Failed(Failure { kind, step, time: 1.0, growth: None, reason })
 }
 
-/// What the runner tells while it works.
+/// Progress that the runner reports.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
     /// Work ahead, as estimated before the runs.
@@ -463,6 +476,9 @@ pub enum RunError {
     /// A result could not be kept.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// Cases would take longer than a week, so nothing was run.
+    #[error(transparent)]
+    Endless(#[from] EndlessCases),
     /// The numbers of a case are such that nothing can solve it.
     #[error("{label}: {source}")]
     Refused {
@@ -496,7 +512,7 @@ impl RunError {
     /// The case that has no record, with the reason; `None` if no single case caused it.
     pub fn of_case(&self) -> Option<(&str, String)> {
         match self {
-            Self::Store(_) => None,
+            Self::Store(_) | Self::Endless(_) => None,
             Self::Refused { label, source } => Some((label, source.to_string())),
             Self::Crashed { label } => Some((label, CRASHED.to_owned())),
         }
@@ -520,7 +536,7 @@ pub struct RunReport {
     pub of_another_program: usize,
     /// Records that nothing proves to be of the program of now, and whose cases were run again.
     pub unproven: usize,
-    /// What went wrong beside failed cases; finished records are kept all the same.
+    /// Errors other than failed cases; finished records are kept.
     pub errors: Vec<RunError>,
 }
 

@@ -1,4 +1,4 @@
-//! Tells that a run has to end: by Ctrl-C, or the signal that a scheduler sends before it kills a job.
+//! Says that a run has to end: by Ctrl-C, or the signal that a scheduler sends before it kills a job.
 //!
 //! Ctrl-C, Ctrl-\ and a closed terminal end at once what is at work, with all processes that it has started; what is
 //! finished is kept. A second Ctrl-C ends this program where it stands. SIGTERM lets what is at work come
@@ -50,7 +50,7 @@ fn end_at_once() -> impl Iterator<Item = i32> {
     std::iter::once(signal_hook::consts::SIGINT)
 }
 
-/// Signals that this process ignores, a bit each from the first on, where the system tells.
+/// Signals that this process ignores, a bit each from the first on, if the system reports it.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

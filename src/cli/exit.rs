@@ -1,6 +1,7 @@
 //! Exit codes, and errors as messages.
 
 use crate::campaign::endless::EndlessCases;
+use crate::campaign::runner::RunError;
 use crate::judge::score::results::ScoreError;
 use crate::study::diagnostic::StudyError;
 use crate::study::overrides::OverrideError;
@@ -63,6 +64,7 @@ impl Exit {
         }
         let is_of_input = error.is::<StudyError>()
             || error.is::<EndlessCases>()
+            || matches!(error.downcast_ref(), Some(RunError::Endless(_)))
             || error.is::<OverrideError>()
             || error.is::<ScoreError>();
         if is_of_input || error.is::<ExactError>() || error.is::<ImportError>() {

@@ -7,6 +7,7 @@ use crate::case::{Case, KEYS, Key, Quantity, Sample, Tier, Value};
 use crate::judge::paths::{Path, StudyPaths, first_measure};
 use crate::judge::verdict::judge_expectation;
 use crate::study::check::Study;
+use crate::study::check::outputs::output_at;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
 use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};
 use oedometer_mpm::method::Method;
@@ -18,6 +19,10 @@ const ROOM_OF_ORDER: f64 = 0.25;
 const ROOM_OF_ERROR: f64 = 1.5;
 /// More cases than a person reads expectations of; records of more are not kept whole for them.
 const MOST_CASES: usize = 1000;
+/// Digits behind the first one of a number that has all of them.
+const DIGITS: usize = 17;
+/// Digits behind the first one that tables show.
+const SHOWN: usize = 3;
 
 /// Whether expectations are proposed for a study: it has none, and no race expects any.
 pub fn are_wanted(study: &Study) -> bool {
@@ -145,7 +150,7 @@ fn to_toml(study: &Study, one: &SeriesExpectation) -> String {
     if study.references.first().is_none_or(|kind| kind.name() != measure.reference) {
         lines.push(format!("reference = \"{}\"", measure.reference));
     }
-    lines.push(format!("time_factor = {:?}", measure.time_factor));
+    lines.push(time_of(study, one));
     if let Some(OrderBand { value, minus, plus }) = one.demand.order {
         lines.push(format!("order = {{ value = {value:?}, minus = {minus:?}, plus = {plus:?} }}"));
     }
@@ -156,6 +161,17 @@ fn to_toml(study: &Study, one: &SeriesExpectation) -> String {
         lines.push("tier = \"full\"".to_owned());
     }
     lines.join("\n") + "\n"
+}
+
+/// The time of an expectation: its time factor, with no more digits than it takes to name one output of the cases.
+fn time_of(study: &Study, one: &SeriesExpectation) -> String {
+    let time_factor = one.measure.time_factor;
+    let cases = || study.planned.iter().map(|planned| &planned.case);
+    let selected = || cases().filter(|case| one.selection.fits_along(one.axis.name(), case));
+    let short = |digits: usize| format!("{time_factor:.digits$e}").parse::<f64>().ok();
+    let is_named = |typed: &f64| output_at(*typed, selected()) == time_factor;
+    let typed = (SHOWN..DIGITS).filter_map(short).find(is_named).unwrap_or(time_factor);
+    format!("time_factor = {typed:?}")
 }
 
 /// A level of a series in the words of its axis.

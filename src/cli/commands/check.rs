@@ -1,10 +1,9 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run};
+use crate::cli::commands::run::{DEFAULT_RESULTS, first_that_ends_all, jobs_of, load_after_run};
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{
     TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, write_document,
@@ -34,8 +33,8 @@ pub struct Arguments {
     /// [default: `golden` beside the study or above; for shipped studies without a file there, those inside the program]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Folder of results; cases that this build has solved already are taken from there. Attached solvers always run,
-    /// unless the study declares by what they are known
+    /// Folder of results; cases that this build has solved already are taken from there. Attached solvers always
+    /// run, unless the study declares what identifies them
     #[arg(long, value_name = "DIR", default_value = DEFAULT_RESULTS)]
     records: PathBuf,
     /// Cases at the same time [default: all cores]
@@ -50,7 +49,7 @@ pub struct Arguments {
     /// Append a summary in Markdown [default: $`GITHUB_STEP_SUMMARY`, if set]
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
-    /// Annotate the lines of the studies on standard error for GitHub; default in its workflows
+    /// Write annotations of study lines for GitHub to standard error; default in its workflows
     #[arg(long)]
     annotate: bool,
     #[command(flatten)]
@@ -137,7 +136,7 @@ fn checks_of(
 /// Runs the CI tier of studies and keeps nothing; the records of each study.
 ///
 /// # Errors
-/// When a case has no record, or the run was told to end.
+/// When a case has no record, or the run was interrupted.
 pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Record>>> {
     let of_study = |(study, report): (&Study, RunReport)| match report.errors.into_iter().next() {
         Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
@@ -146,7 +145,7 @@ pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Rec
     studies.iter().zip(run_all(studies, jobs, None, &|_, _| {})?).map(of_study).collect()
 }
 
-/// Runs the CI tier of studies and keeps nothing; what went wrong is in the reports. What this build solved already is taken
+/// Runs the CI tier of studies and stores nothing; errors are in the reports. What this build solved already is taken
 /// from a folder of results, and what other programs did where the study declares by what they are known.
 fn run_all(
     studies: &[Study],
@@ -158,9 +157,6 @@ fn run_all(
         [study] => study.name.as_str(),
         _ => "check",
     };
-    for study in studies {
-        refuse_endless(study, Tier::Ci)?;
-    }
     let bar = StudyBar::new(name);
     let store_of = |study: &Study| Some(RecordStore::new(records?, &study.name));
     let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
@@ -168,13 +164,16 @@ fn run_all(
         .map(|(study, store)| Selected { study, store: store.as_ref(), is_kept: false })
         .collect();
     let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Ci, jobs) };
-    let reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
+    let mut reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
     bar.finish();
+    if let Some(error) = reports.iter_mut().find_map(first_that_ends_all) {
+        return Err(error.into());
+    }
     refuse_unfinished(&reports)?;
     Ok(reports)
 }
 
-/// Refuses to go on with the results of a run that was told to end: what was not run is not judged.
+/// Refuses to judge the results of an interrupted run.
 ///
 /// # Errors
 /// A sentence with the number of cases that are missing.

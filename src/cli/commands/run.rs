@@ -1,7 +1,6 @@
 //! `oedometer run`: runs the cases of study files and writes their records and one tidy CSV per study.
 
 use crate::campaign::case_runner::time_study;
-use crate::campaign::endless::refuse_endless;
 use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, Tally, run_studies};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
@@ -62,7 +61,7 @@ pub struct Arguments {
     /// Write the tables as STUDY.csv.gz, which pandas reads too
     #[arg(long)]
     compress: bool,
-    /// Run the cases by a scheduler instead of on this machine
+    /// Run the cases with a scheduler instead of on this machine
     #[arg(long, value_enum, conflicts_with_all = ["case", "shard", "jobs"])]
     engine: Option<Engine>,
     #[command(flatten)]
@@ -161,7 +160,7 @@ fn with_case(study: &Study, hash: &str) -> Study {
 /// told of, and the others go on.
 ///
 /// # Errors
-/// When a case would take longer than anyone waits, or a result cannot be kept.
+/// When a case would take longer than a week, or a result cannot be stored.
 pub fn run_and_store(
     studies: &[Study],
     selected: &[Study],
@@ -169,9 +168,6 @@ pub fn run_and_store(
     results: &Path,
     tables: Option<TableForm>,
 ) -> anyhow::Result<Vec<RunReport>> {
-    for study in selected {
-        refuse_endless(study, options.tier)?;
-    }
     let stores: Vec<RecordStore> =
         studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
     for (study, store) in studies.iter().zip(&stores) {
@@ -229,7 +225,8 @@ pub fn run_and_store(
 }
 
 /// The first error that no single case caused: no further result can be kept.
-fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
+/// The first error of a report that is not about a single case.
+pub(super) fn first_that_ends_all(report: &mut RunReport) -> Option<RunError> {
     let place = report.errors.iter().position(|error| error.of_case().is_none())?;
     Some(report.errors.swap_remove(place))
 }
@@ -252,8 +249,9 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
     }
     if report.unproven > 0 {
         say!(
-            "{}: nothing proves {} of attached solvers to be of the present programs, for the study does not declare by what \
-             these are known (`reuse = \"version\"`): not taken up; `--keep-unproven` takes such results up",
+            "{}: {} of attached solvers cannot be shown to come from the present programs, because the study \
+             does not declare what identifies them (`reuse = \"version\"`): not reused; `--keep-unproven` \
+             reuses such results",
             study.name,
             count_of(report.unproven, "finished result", "finished results"),
         );
@@ -267,15 +265,15 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
             study.name,
             count_of(report.of_another_program, "record", "records"),
             if report.of_another_program == 1 {
-                "was not taken up; its case was"
+                "was not reused; its case was"
             } else {
-                "were not taken up; their cases were"
+                "were not reused; their cases were"
             }
         );
     }
     if let Some(differences) = report.origins.differences_from(&Provenance::of_this_program()) {
         say!(
-            "{}: records of other builds of these sources were taken up, their values are the same: {differences}",
+            "{}: records of other builds of these sources were reused, their values are the same: {differences}",
             study.name
         );
     }
@@ -288,7 +286,7 @@ pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
     Ok(studies)
 }
 
-/// The same after a run: what is odd about a study that has results in a folder was told then.
+/// The same after a run: warnings about a study with results in a folder were printed then.
 pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<Study>> {
     let studies = checked(paths)?;
     studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);

@@ -65,9 +65,8 @@ pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
         let _ = write!(text, "\n{heading}\n{}\n{classes}", convergence::table_of(table).to_text()?);
     }
     text += &plain_paragraphs(&within(&answers.within)?);
-    for table in &answers.settlements {
-        let heading = wrapped(&settlement::heading(table), "", "  ");
-        let _ = write!(text, "\n{heading}\n{}", settlement::table_of(table).to_text()?);
+    for (heading, table) in settlement::tables_of(&answers.settlements) {
+        let _ = write!(text, "\n{}\n{}", wrapped(&heading, "", "  "), table.to_text()?);
     }
     if let Some(locking) = &answers.locking {
         text += &plain_paragraphs(&templates::sentence("locking", locking)?);

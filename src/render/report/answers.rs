@@ -5,6 +5,7 @@ use crate::judge::findings::QuantityWithin;
 use crate::judge::study_findings::StudyFindings;
 use crate::render::answers::locking;
 use crate::render::page::Block;
+use crate::render::table::Table;
 use crate::render::tables::settlement;
 use crate::render::{RenderError, templates};
 use serde::Serialize;
@@ -45,10 +46,8 @@ pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     if !study.answers.settlements.is_empty() {
         blocks.push(Block::Heading("Settlement by date".to_owned()));
     }
-    for found in &study.answers.settlements {
-        let mut table = settlement::table_of(found);
-        table.title = settlement::heading(found);
-        blocks.push(Block::Table(table));
+    for (title, table) in settlement::tables_of(&study.answers.settlements) {
+        blocks.push(Block::Table(Table { title, ..table }));
     }
     if let Some(found) = &study.answers.locking {
         blocks.push(Block::Heading("Who locks?".to_owned()));

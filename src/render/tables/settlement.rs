@@ -5,21 +5,53 @@ use crate::render::number;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_soil::wording::clock_time;
 
+const HEADER: &str = "> time | > T_v | > consolidated | > exact, mm | > this run, mm | > error";
+
+/// The tables with their headings: one per run, or, where each run has a single output, one with a row per run.
+pub fn tables_of(all: &[SettlementTable]) -> Vec<(String, Table)> {
+    match all {
+        [first, _, ..]
+            if all.iter().all(|of_run| of_run.rows.len() == 1 && of_run.reference == first.reference) =>
+        {
+            vec![one_table_of(all, &first.reference)]
+        }
+        _ => all.iter().map(|of_run| (heading(of_run), table_of(of_run))).collect(),
+    }
+}
+
+/// One table with a row per run: the heading has the words that the labels of all runs share, a row has the others.
+fn one_table_of(all: &[SettlementTable], reference: &str) -> (String, Table) {
+    let is_shared = |word: &&str| all.iter().all(|of_run| of_run.run.split(' ').any(|other| other == *word));
+    let shared: Vec<&str> = all[0].run.split(' ').filter(is_shared).collect();
+    let rows = all.iter().flat_map(|of_run| {
+        let others: Vec<&str> = of_run.run.split(' ').filter(|word| !shared.contains(word)).collect();
+        let with_run = move |row: &SettlementRow| {
+            let mut cells = vec![Cell::from(others.join(" ").trim_end_matches(',').to_owned())];
+            cells.extend(cells_of(row));
+            cells
+        };
+        of_run.rows.iter().map(with_run).collect::<Vec<_>>()
+    });
+    let table = Table::of("", columns(&format!("problem | {HEADER}")), rows);
+    let shared = shared.join(" ");
+    (format!("Settlement of {}, against {reference}", shared.trim_end_matches(',')), table)
+}
+
 /// A row per output: date, time factor, degree of consolidation, settlement exact and of the run.
 pub fn table_of(found: &SettlementTable) -> Table {
+    Table::of("", columns(HEADER), found.rows.iter().map(cells_of))
+}
+
+fn cells_of(row: &SettlementRow) -> Vec<Cell> {
     let millimetres = |metres: f64| number::number(1e3 * metres).into();
-    let row = |row: &SettlementRow| {
-        vec![
-            clock_time(row.seconds).into(),
-            number::time_factor(row.time_factor).into(),
-            Cell::of(row.degree, Cell::Percent, "the exact solution has no end"),
-            millimetres(row.exact),
-            Cell::of(row.computed, millimetres, "no settlement of this run"),
-            Cell::of(row.error, Cell::Percent, "no settlement of this run"),
-        ]
-    };
-    let header = "> time | > T_v | > consolidated | > exact, mm | > this run, mm | > error";
-    Table::of("", columns(header), found.rows.iter().map(row))
+    vec![
+        clock_time(row.seconds).into(),
+        number::time_factor(row.time_factor).into(),
+        Cell::of(row.degree, Cell::Percent, "the exact solution has no end"),
+        millimetres(row.exact),
+        Cell::of(row.computed, millimetres, "no settlement of this run"),
+        Cell::of(row.error, Cell::Percent, "no settlement of this run"),
+    ]
 }
 
 /// What the table is of.
@@ -48,5 +80,37 @@ mod tests {
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
         assert_eq!(heading(&found), "Settlement of MPM, against terzaghi");
+    }
+
+    #[test]
+    fn runs_of_one_output_share_a_table_with_what_tells_them_apart() {
+        let row = |time_factor: f64| SettlementRow {
+            seconds: 86400.0,
+            time_factor,
+            degree: None,
+            exact: 0.0338,
+            computed: Some(0.0338 * 1.01),
+            error: Some(0.01),
+        };
+        let of_run = |ratio: &str, outputs: &[f64]| SettlementTable {
+            run: format!("MPM implicit cells=16, poissons_ratio={ratio}"),
+            reference: "terzaghi".to_owned(),
+            rows: outputs.iter().copied().map(row).collect(),
+        };
+        let tables = tables_of(&[of_run("0.3", &[0.1]), of_run("0.4", &[0.1])]);
+        let [(heading, table)] = &tables[..] else { panic!("{} tables", tables.len()) };
+        assert_eq!(heading, "Settlement of MPM implicit cells=16, against terzaghi");
+        let shown: Vec<Vec<String>> =
+            table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
+        assert_eq!(shown[0], ["poissons_ratio=0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
+        assert_eq!((shown.len(), shown[1][0].as_str()), (2, "poissons_ratio=0.4"));
+        // Two outputs of a run, and a single run, keep a table of their own.
+        assert_eq!(tables_of(&[of_run("0.3", &[0.1, 0.2]), of_run("0.4", &[0.1])]).len(), 2);
+        assert_eq!(tables_of(&[of_run("0.3", &[0.1])])[0].0, heading_of_one());
+        assert!(tables_of(&[]).is_empty());
+    }
+
+    fn heading_of_one() -> String {
+        "Settlement of MPM implicit cells=16, poissons_ratio=0.3, against terzaghi".to_owned()
     }
 }

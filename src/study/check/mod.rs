@@ -2,7 +2,7 @@
 
 mod expectations;
 mod geometry;
-mod outputs;
+pub mod outputs;
 mod repaired;
 pub mod solvers;
 mod sweeps;
@@ -69,7 +69,7 @@ pub struct Study {
     pub is_race: bool,
     /// Contenders that cannot run here, by their names, each with the reason.
     pub not_applicable: Vec<(&'static str, String)>,
-    /// What is odd and runs all the same, as a person reads it.
+    /// Warnings, as text.
     pub warnings: Vec<String>,
 }
 
@@ -115,7 +115,7 @@ impl Study {
         !self.may_start_solvers && self.solver_of(case).is_some_and(|solver| !solver.is_given())
     }
 
-    /// Time that a case will take on one core, s: nothing is solved for a result that lies there.
+    /// Time that a case will take on one core, s: 0 for an existing result.
     pub fn estimated_seconds(&self, case: &Case) -> f64 {
         let is_given = self.solver_of(case).is_some_and(ExternalSolver::is_given);
         if is_given { READING_SECONDS } else { estimated_seconds(case) }
@@ -179,7 +179,7 @@ impl Checker<'_> {
         self.diagnostics.push(Diagnostic::at(span, message, help));
     }
 
-    /// Notes a warning: the study runs all the same.
+    /// Notes a warning, with which the study still runs.
     fn warn(&mut self, diagnostic: &Diagnostic) {
         self.warnings.push(diagnostic.warning(&self.source.name, &self.source.text));
     }

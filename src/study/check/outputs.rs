@@ -1,5 +1,6 @@
 //! Checks when results are kept and judged: time factors, and times in units of the clock.
 
+use crate::case::whole_states::SAME_TIME;
 use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
 use crate::study::expectation::Selection;
@@ -16,7 +17,7 @@ const TIME_FACTORS: RangeInclusive<f64> = LEAST_TIME_FACTOR..=100.0;
 pub(super) struct Outputs {
     /// `T_v = c_v t/H²`, in ascending order.
     factors: Shared<Vec<f64>>,
-    /// Times, s, with their places; each case has time factors of its own for them.
+    /// Times, s, with their places; each case has its time factors for them.
     times: Vec<(Range<usize>, f64)>,
 }
 
@@ -39,6 +40,17 @@ impl Outputs {
 /// The time factor of a case at a time, s.
 fn factor_of(time: f64, case: &Case) -> f64 {
     time / case.seconds_per_time_factor() + 0.0
+}
+
+/// The output that a typed time factor stands for, which may have fewer digits: the same one, or else the only one within
+/// [`SAME_TIME`] of it; the typed one where there is none or more than one.
+pub fn output_at<'a>(typed: f64, cases: impl Iterator<Item = &'a Case>) -> f64 {
+    let outputs = in_order(cases.flat_map(|case| case.time_factors.iter().copied()).collect());
+    let is_near = |output: &f64| (output - typed).abs() <= SAME_TIME * typed;
+    match outputs.iter().filter(|output| is_near(output)).collect::<Vec<_>>()[..] {
+        [only] => *only,
+        _ => typed,
+    }
 }
 
 fn in_order(mut factors: Vec<f64>) -> Vec<f64> {
@@ -75,9 +87,7 @@ impl Checker<'_> {
                 continue;
             }
             let help = if factor > 0.0 && factor < 1.0 {
-                format!(
-                    "nothing has moved by then and steps no longer advance the time: 0, or {LEAST_TIME_FACTOR:e} and later"
-                )
+                format!("it is too early for any step: take 0, or {LEAST_TIME_FACTOR:e} and later")
             } else {
                 "T_v = c_v t/H² lies between 0 and 100; the column is consolidated at 2".to_owned()
             };
@@ -144,7 +154,10 @@ impl Checker<'_> {
         planned: &[PlannedCase],
     ) -> Option<f64> {
         let time = match (factor, time) {
-            (Some(factor), None) => return Some(**factor),
+            (Some(factor), None) => {
+                let cases = planned.iter().map(|planned| &planned.case);
+                return Some(output_at(**factor, cases.filter(|case| selection.fits_along(axis, case))));
+            }
             (None, Some(time)) => time,
             (None, None) => {
                 let help = "add `time_factor = 0.1`, or a time like `time = \"30 days\"`";
@@ -247,6 +260,34 @@ mod tests {
         }
     }
 
+    /// 30 days are T_v = 0.31706; two outputs within a thousandth of each other are told apart by all digits only.
+    #[test]
+    fn a_time_factor_of_few_digits_names_the_output_near_it() {
+        let per_day = 86_400.0 * 1e-9 * 1.2e6 / 9810.0;
+        let expect = |factor: &str| {
+            format!("[[expect]]\nmethod = 'MPM'\ntime_factor = {factor}\nat = {{ cells = 20, below = 0.1 }}")
+        };
+        for (output, factor, right) in [
+            ("times = ['30 days']", "0.3171", Some(30.0 * per_day)),
+            ("times = ['30 days']", "0.318", None),
+            ("time_factors = [0.1, 0.10005]", "0.10005", Some(0.10005)),
+            ("time_factors = [0.1, 0.10005]", "0.1", Some(0.1)),
+            ("time_factors = [0.1, 0.10005]", "0.10002", None),
+            ("time_factors = [0]", "0", Some(0.0)),
+        ] {
+            let study = checked(output, "", &expect(factor));
+            match (study, right) {
+                (Ok(study), Some(right)) => {
+                    let found = study.expectations[0].measure.time_factor;
+                    assert!((found - right).abs() <= 1e-14 * right, "{factor}: {found}");
+                    assert!(study.planned[0].case.time_factors.contains(&found), "{factor}");
+                }
+                (Err(told), None) => assert!(told.contains("no case has an output at T_v"), "{told}"),
+                (study, _) => panic!("{output}, {factor}: {:?}", study.map(|_| "sound")),
+            }
+        }
+    }
+
     #[test]
     fn times_that_cannot_be_are_refused_with_what_would_be_right() {
         let expect = |time: &str| format!("[[expect]]\nmethod = 'MPM'\n{time}\norder = {{ value = 1.0 }}");
@@ -260,7 +301,7 @@ mod tests {
                 String::new(),
                 "T_v = 3.474e4; T_v = c_v t/H² lies between 0 and 100",
             ),
-            ("times = ['1 day']", "", expect("time = '2 days'"), "no case keeps its state at T_v"),
+            ("times = ['1 day']", "", expect("time = '2 days'"), "no case has an output at T_v"),
             (
                 "times = ['1 day']",
                 "",
