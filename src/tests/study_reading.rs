@@ -74,7 +74,7 @@ fn every_mistake_is_told_at_its_line_with_what_to_write() {
 }
 
 /// Keys and words of other programs and of textbooks: the line that is sound, what is typed instead, and the help.
-const SYNONYMS: &str = r#"
+const SYNONYMS: &str = r"
 porosity = 0.3 ¦ permeability = 1e-9 ¦ did you mean `hydraulic_conductivity`?
 porosity = 0.3 ¦ k = 1e-9 ¦ did you mean `hydraulic_conductivity`?
 porosity = 0.3 ¦ kf = 1e-9 ¦ did you mean `hydraulic_conductivity`?
@@ -113,7 +113,7 @@ cells = [4, 8] ¦ cells = [4, 8]⏎timestep = [{ seconds = 0.1 }] ¦ did you mea
 cells = [4, 8] ¦ cells = [4, 8]⏎cell_size = [0.1] ¦ give the number of cells over the height, `cells`, or the height of the column, `height`
 cells = [4, 8] ¦ cells = [4, 8]⏎E = [1e6, 2e6] ¦ did you mean `youngs_modulus`?
 cells = [4, 8] ¦ cells = [4, 8]⏎end_time = [5.0] ¦ a run ends at its last output: `times` or `time_factors`
-"#;
+";
 
 #[test]
 fn a_synonym_is_answered_with_the_key_and_makes_no_other_mistake() {

@@ -136,7 +136,8 @@ impl ErrorSeries {
 impl SeriesLevel {
     /// The error as a positive normal number.
     ///
-    /// # Errors Its value, if it is not.
+    /// # Errors
+    /// Why it is none.
     pub fn positive_error(&self) -> Result<f64, Undefined> {
         let size = self.size;
         match self.error {

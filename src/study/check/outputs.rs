@@ -260,7 +260,7 @@ mod tests {
         }
     }
 
-    /// 30 days are T_v = 0.31706; two outputs within a thousandth of each other are told apart by all digits only.
+    /// 30 days are `T_v` = 0.31706; two outputs within a thousandth of each other are told apart by all digits only.
     #[test]
     fn a_time_factor_of_few_digits_names_the_output_near_it() {
         let per_day = 86_400.0 * 1e-9 * 1.2e6 / 9810.0;
