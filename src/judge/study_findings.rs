@@ -4,7 +4,6 @@
 use crate::case::Task;
 use crate::judge::findings::Findings;
 use crate::judge::findings::study_answers::StudyAnswers;
-use crate::judge::proposals::proposals;
 use crate::judge::study_check::diagnoses;
 use crate::judge::study_results::StudyResults;
 use crate::judge::verdict::Judgement;
@@ -51,8 +50,6 @@ pub struct StudyFindings {
     pub taken_over: Vec<String>,
     /// What seems to be wrong with the results of other programs, as sentences.
     pub diagnoses: Vec<String>,
-    /// Expectations that the results meet, as TOML, of a study without any.
-    pub proposals: Vec<String>,
     /// What made its records.
     pub origins: Origins,
 }
@@ -129,7 +126,6 @@ impl StudyFindings {
             unsound: results.unsound.clone(),
             taken_over: results.taken_over.clone(),
             diagnoses: diagnoses(study, records),
-            proposals: proposals(study, paths),
             origins,
         })
     }

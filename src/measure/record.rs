@@ -36,7 +36,7 @@ fn empty_record(case: &Case, status: Status, step_sizes: StepSizes, step_over_li
         history: Vec::new(),
         references: Vec::new(),
         snapshots: Vec::new(),
-        attached: None,
+        outside: None,
         provenance: Provenance::of_this_program(),
         digest: String::new(),
     }

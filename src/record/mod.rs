@@ -237,9 +237,9 @@ pub struct Record {
     pub references: Vec<ReferenceUse>,
     /// State at each output.
     pub snapshots: Vec<Snapshot>,
-    /// What is known of the run of an attached solver.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub attached: Option<AttachedRun>,
+    /// What is known of the run of another program.
+    #[serde(default, skip_serializing_if = "Option::is_none", rename = "attached")]
+    pub outside: Option<AttachedRun>,
     /// What made this record.
     pub provenance: Provenance,
     /// Hash over all the text before it, on disk only: a record with another one was damaged.
@@ -283,17 +283,17 @@ impl Record {
     /// The same, made by a run outside of this program.
     #[must_use]
     pub fn made_outside(self, run: AttachedRun) -> Self {
-        Self { attached: Some(run), ..self }
+        Self { outside: Some(run), ..self }
     }
 
     /// What is known of the run outside of this program that made it.
     pub fn outside_run(&self) -> Option<&AttachedRun> {
-        self.attached.as_ref()
+        self.outside.as_ref()
     }
 
     /// Whether this program can make it again from its case, with all that a record leaves out.
     pub fn can_be_made_again(&self) -> bool {
-        self.attached.is_none()
+        self.outside.is_none()
     }
 
     /// Kind of places whose errors stand for the case: the points, or what its solver has instead.

@@ -95,6 +95,9 @@ pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::race::RaceFindings;
+    use crate::render::answers::race;
+    use regex_lite::Regex;
 
     #[test]
     fn a_template_without_its_finding_is_an_error() {
@@ -108,19 +111,91 @@ mod tests {
         }
     }
 
-    /// `templates/examples.json` holds findings for every branch of these templates, with the sentences that they make.
+    /// Findings with the sentence that their template makes of them.
+    #[derive(serde::Deserialize)]
+    struct Example {
+        template: String,
+        findings: serde_json::Value,
+        sentence: String,
+    }
+
+    fn examples() -> Vec<Example> {
+        serde_json::from_str(include_str!("../../templates/examples.json")).expect("examples")
+    }
+
+    /// The filters of all templates, those of the race with them.
+    fn every_filter() -> Environment<'static> {
+        race::environment(&RaceFindings::default()).expect("templates of this program")
+    }
+
     #[test]
-    fn every_branch_of_a_template_reads_as_a_sentence() {
-        #[derive(serde::Deserialize)]
-        struct Example {
-            template: String,
-            findings: serde_json::Value,
-            sentence: String,
+    fn every_example_reads_as_its_sentence() {
+        let environment = every_filter();
+        for (place, Example { template, findings, sentence: wanted }) in examples().into_iter().enumerate() {
+            let told = render(&environment, &template, &findings).expect(&template);
+            assert_eq!(told, wanted, "example {}", place + 1);
         }
-        let examples = include_str!("../../templates/examples.json");
-        let examples: Vec<Example> = serde_json::from_str(examples).expect("examples");
-        for (place, Example { template, findings, sentence: wanted }) in examples.into_iter().enumerate() {
-            assert_eq!(sentence(&template, &findings).expect(&template), wanted, "example {}", place + 1);
+    }
+
+    /// A template with a mark in each of its branches, that of a condition that does not hold among them, and their number.
+    fn marked(template: &str) -> (String, usize) {
+        let tag = Regex::new(r"(?s)\{%-?\s*(\w+).*?%\}").expect("a pattern");
+        let (mut text, mut marks, mut end) = (String::new(), 0, 0);
+        // Whether each open condition has had an `else`; a loop has none.
+        let mut open: Vec<Option<bool>> = Vec::new();
+        let mut mark = || {
+            marks += 1;
+            format!("⟦{marks}⟧")
+        };
+        for found in tag.captures_iter(template) {
+            let whole = found.get(0).expect("a tag");
+            text += &template[end..whole.start()];
+            end = whole.end();
+            match &found[1] {
+                "if" => open.push(Some(false)),
+                "for" => open.push(None),
+                "else" => open.last_mut().expect("a condition").iter_mut().for_each(|had| *had = true),
+                "endif" if open.pop() == Some(Some(false)) => text += &("{% else %}".to_owned() + &mark()),
+                "endfor" => drop(open.pop()),
+                _ => {}
+            }
+            text += whole.as_str();
+            if ["if", "elif", "else", "for"].contains(&&found[1]) {
+                text += &mark();
+            }
         }
+        (text + &template[end..], marks)
+    }
+
+    /// Branches of a template that none of its examples takes, by what stands in them.
+    fn untaken(name: &str, template: &str) -> Vec<String> {
+        let (text, marks) = marked(template);
+        let mut environment = every_filter();
+        environment.add_template_owned(name.to_owned(), text.clone()).expect("a template with marks");
+        let examples = examples().into_iter().filter(|example| example.template == name);
+        let told: String =
+            examples.map(|one| render(&environment, name, &one.findings).expect(name)).collect();
+        let is_untaken = |mark: &String| !told.contains(mark);
+        let around = |mark: String| {
+            let place = text.find(&mark).unwrap_or_default();
+            let after: String = text[place..].chars().take(60).collect();
+            format!("{name}: {after}")
+        };
+        (1..=marks).map(|mark| format!("⟦{mark}⟧")).filter(is_untaken).map(around).collect()
+    }
+
+    #[test]
+    fn an_example_takes_every_branch_of_every_template() {
+        let untaken: Vec<String> =
+            TEMPLATES.into_iter().flat_map(|(name, text)| untaken(name, text)).collect();
+        assert!(untaken.is_empty(), "{}", untaken.join("\n"));
+        let all = examples();
+        let is_lacking = |(name, _): &(&str, &str)| all.iter().all(|example| example.template != *name);
+        let lacking: Vec<_> = TEMPLATES.into_iter().filter(is_lacking).map(|(name, _)| name).collect();
+        assert!(lacking.is_empty(), "without an example: {lacking:?}");
+        let (text, marks) = marked("{% if a %}x{% elif b %}y{% endif %}{%- for c in d -%}z{% endfor %}");
+        let whole =
+            "{% if a %}⟦1⟧x{% elif b %}⟦2⟧y{% else %}⟦3⟧{% endif %}{%- for c in d -%}⟦4⟧z{% endfor %}";
+        assert_eq!((text.as_str(), marks), (whole, 4));
     }
 }

@@ -13,7 +13,7 @@ use crate::judge::study_results::StudyResults;
 use crate::record::csv::tidy::{header_line, rows_of};
 use crate::record::{CriticalStep, Record, WallSample};
 use crate::render::page::Block;
-use crate::render::report::cost;
+use crate::render::report::runs::cost;
 use crate::render::table::{Cell, Table};
 use crate::render::tables::{golden_changes, measures, runs};
 use crate::study::check::Study;

@@ -1,12 +1,19 @@
-//! Every number in a table of a study's page stands in its `findings.json`, to the last bit.
+//! Every number of a study's page comes from its `findings.json`: those of its tables stand there to the last bit, and with
+//! other numbers in the findings every number of the page is another, but for those of fixed words.
 
 use crate::campaign::runner::solved;
 use crate::case::Tier;
+use crate::judge::findings::Findings;
+use crate::judge::findings::study_answers::StudyAnswers;
+use crate::judge::study_findings::StudyFindings;
 use crate::judge::study_results::StudyResults;
-use crate::render::page::Block;
+use crate::render::page::{Block, all_figures};
 use crate::render::table::{Cell, Table};
-use crate::study_page;
+use crate::tests::assert_snapshot;
+use crate::{render_markdown, study_page};
+use regex_lite::Regex;
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// All numbers of a JSON value, without their signs.
 fn collect(value: &Value, numbers: &mut Vec<u64>) {
@@ -67,17 +74,18 @@ fn lacking(text: &str, change: impl Fn(&mut Value)) -> (usize, Vec<String>) {
 const COLUMN: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
     method = ['GIMP-SRI', 'GC-SRI-patch']\nintegrator = ['implicit']\ncells = [5, 10, 20]\n";
 
+const STEP: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+    integrator = ['implicit']\ncells = [4]\ntime_step = [{ seconds = 0.2 }, { seconds = 0.1 }, { seconds = 0.05 }]\n";
+const LAYER: &str = "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+    method = ['GIMP-SRI', 'GIMP']\nintegrator = ['implicit']\ncells = [2, 4, 8]\n\
+    time_step = [{ growth = 0.5 }]\n[[sweep]]\nmethod = ['GIMP']\nintegrator = ['implicit']\ncells = [8]\n\
+    time_step = [{ growth = 0.5 }]\npoissons_ratio = [0.3, 0.4, 0.49]\n";
+const PEAK: &str = "title = 't'\nscene = 'mandel'\noutput.time_factors = [0.0645, 0.07]\n[[sweep]]\n\
+    method = ['GIMP-SRI']\nintegrator = ['implicit']\ncells = [20]\n[[expect_case]]\nstatus = 'ok'\n";
+
 #[test]
 fn every_number_of_a_table_stands_in_the_findings() {
-    let step = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
-        integrator = ['implicit']\ncells = [4]\ntime_step = [{ seconds = 0.2 }, { seconds = 0.1 }, { seconds = 0.05 }]\n";
-    let layer = "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\n\
-        method = ['GIMP-SRI', 'GIMP']\nintegrator = ['implicit']\ncells = [2, 4, 8]\n\
-        time_step = [{ growth = 0.5 }]\n[[sweep]]\nmethod = ['GIMP']\nintegrator = ['implicit']\ncells = [8]\n\
-        time_step = [{ growth = 0.5 }]\npoissons_ratio = [0.3, 0.4, 0.49]\n";
-    let peak = "title = 't'\nscene = 'mandel'\noutput.time_factors = [0.0645, 0.07]\n[[sweep]]\n\
-        method = ['GIMP-SRI']\nintegrator = ['implicit']\ncells = [20]\n[[expect_case]]\nstatus = 'ok'\n";
-    for (text, least) in [(COLUMN, 60), (step, 15), (layer, 40), (peak, 10)] {
+    for (text, least) in [(COLUMN, 60), (STEP, 15), (LAYER, 40), (PEAK, 10)] {
         let (count, lacking) = lacking(text, |_| ());
         assert!(lacking.is_empty(), "{} of {count}:\n{}", lacking.len(), lacking.join("\n"));
         assert!(count >= least, "{count} numbers");
@@ -88,4 +96,88 @@ fn every_number_of_a_table_stands_in_the_findings() {
 fn a_number_that_the_findings_lack_is_named() {
     let (_, lacking) = lacking(COLUMN, |findings| findings["blocks"]["checks"] = Value::Null);
     assert!(lacking.iter().any(|one| one.starts_with("Start checks")), "{lacking:?}");
+}
+
+/// Keys of places in other lists and of what is no number of a page.
+const KEPT: [&str; 3] = ["line", "place", "norm"];
+
+/// The findings with another number in place of each: rising, so that what is sorted stays so. Digits in names too.
+fn changed(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            let whole = number.as_u64().map(|whole| Value::from(3 * whole + 2));
+            *value = whole.unwrap_or_else(|| Value::from(0.6 * number.as_f64().unwrap_or_default()));
+        }
+        Value::String(text) => {
+            let next =
+                |letter: char| letter.to_digit(10).and_then(|digit| char::from_digit((digit + 1) % 10, 10));
+            *text = text.chars().map(|letter| next(letter).unwrap_or(letter)).collect();
+        }
+        Value::Array(all) => all.iter_mut().for_each(changed),
+        Value::Object(all) => {
+            all.iter_mut().filter(|(key, _)| !KEPT.contains(&key.as_str())).for_each(|(_, one)| changed(one));
+        }
+        _ => {}
+    }
+}
+
+/// A page in Markdown with the data of its figures, line by line.
+fn lines_of(found: &StudyFindings) -> Vec<String> {
+    let page = study_page(found).expect("a page");
+    let figures = all_figures(&page);
+    let data = figures.iter().map(|figure| figure.chart.data_csv()).collect::<Vec<_>>().join("");
+    let text = render_markdown(&page).expect("Markdown") + &data;
+    // Files of figures, anchors and the list of sections are no words.
+    let is_link = |line: &&str| ["![", "<a ", "- ["].iter().any(|start| line.starts_with(start));
+    text.lines().filter(|line| !is_link(line)).map(str::to_owned).collect()
+}
+
+/// Numbers that are the same on the page of the findings and on that of changed ones, with the words about them.
+fn unmoved(text: &str) -> (usize, BTreeSet<String>) {
+    let (study, records) = solved("s", text);
+    let found = StudyResults::new(&study, &records, Tier::Full).findings().expect("sound cases");
+    let mut json = serde_json::to_value(&found.plain).expect("plain data");
+    changed(&mut json);
+    let plain: Findings = serde_json::from_value(json).expect("findings");
+    let answers = StudyAnswers {
+        within: plain.within.clone(),
+        settlements: plain.settlements.clone(),
+        locking: plain.locking.clone(),
+        ..found.answers.clone()
+    };
+    let other = StudyFindings { plain, answers, ..found.clone() };
+    let (before, after) = (lines_of(&found), lines_of(&other));
+    assert_eq!(before.len(), after.len(), "{}\n{}", before.join("\n"), after.join("\n"));
+    let number = Regex::new(r"[-−]?\d+(\.\d+)?([eE]-?\d+)?").expect("a pattern");
+    let (mut count, mut same) = (0, BTreeSet::new());
+    for (line, other) in before.iter().zip(&after) {
+        let [mut numbers, mut others] = [line, other].map(|line| number.find_iter(line));
+        let mut end = 0;
+        while let (Some(one), Some(two)) = (numbers.next(), others.next()) {
+            count += 1;
+            let is_zero = one.as_str().parse::<f64>().is_ok_and(|value| value == 0.0);
+            if one.as_str() == two.as_str() && !is_zero {
+                let about: String = line[end..one.end()].chars().rev().take(30).collect();
+                same.insert(about.chars().rev().collect());
+            }
+            end = one.end();
+        }
+        assert_eq!(numbers.count(), others.count(), "{line}\n{other}");
+    }
+    (count, same)
+}
+
+#[test]
+fn every_number_of_a_page_is_another_with_other_findings() {
+    let column = COLUMN.replace("cells = [5, 10, 20]", "cells = [4, 8, 16]");
+    let mut told = String::new();
+    for (name, text, least) in
+        [("column", column.as_str(), 300), ("step", STEP, 100), ("layer", LAYER, 2000), ("peak", PEAK, 60)]
+    {
+        let (count, same) = unmoved(text);
+        assert!(count >= least, "{count} numbers of {name}");
+        let same: Vec<String> = same.into_iter().collect();
+        told += &format!("{name}: numbers of fixed words\n  {}\n", same.join("\n  "));
+    }
+    assert_snapshot("fixed_numbers_of_pages", &told);
 }

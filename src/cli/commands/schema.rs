@@ -34,7 +34,7 @@ pub enum Document {
     Record,
     /// The mapping of an external result
     Mapping,
-    /// The file that describes a case to an attached solver
+    /// The file that describes a case to another solver
     Case,
     /// The findings of a report: findings.json beside the front page
     Findings,

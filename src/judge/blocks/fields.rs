@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Cells over the height of the runs whose fields are drawn.
-pub const SHOWN_CELLS: usize = 8;
+const SHOWN_CELLS: usize = 8;
 
 /// Reach of the colours over the largest exact value.
 const REACH: f64 = 1.25;
@@ -20,6 +20,9 @@ const REACH: f64 = 1.25;
 /// Pressure fields over the load at the first output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FieldsFinding {
+    /// Cells over the height.
+    #[serde(default)]
+    pub cells: usize,
     /// Poisson's ratio of the skeleton.
     pub poissons_ratio: f64,
     /// Time factor.
@@ -70,7 +73,12 @@ impl FieldsFinding {
                 fields.push(FieldFinding::new(&field, &field.computed, run));
             }
         }
-        Ok(Some(Self { poissons_ratio: first.case.material.poissons_ratio, time_factor, fields }))
+        Ok(Some(Self {
+            cells: SHOWN_CELLS,
+            poissons_ratio: first.case.material.poissons_ratio,
+            time_factor,
+            fields,
+        }))
     }
 }
 

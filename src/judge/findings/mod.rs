@@ -15,6 +15,7 @@ use crate::judge::answers::locking::LockingFinding;
 use crate::judge::blocks::StudyBlocks;
 use crate::judge::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
 use crate::judge::findings::study_answers::StudyAnswers;
+use crate::judge::proposals::proposals;
 use crate::judge::study_results::StudyResults;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
 use crate::record::{ErrorRow, Record};
@@ -58,6 +59,9 @@ pub struct Findings {
     /// Which methods lock, where the study sweeps Poisson's ratio in the plane.
     #[serde(default)]
     pub locking: Option<LockingFinding>,
+    /// Expectations that the results meet, as TOML, of a study without any.
+    #[serde(default)]
+    pub proposals: Vec<String>,
     /// What the other blocks of the study's page print.
     #[serde(default)]
     pub blocks: StudyBlocks,
@@ -204,6 +208,7 @@ impl Findings {
             settlements,
             within,
             locking: answers.locking.clone(),
+            proposals: proposals(study, paths),
             blocks: StudyBlocks::new(results)?,
         })
     }

@@ -55,7 +55,7 @@ pub struct BoundWithin {
 pub struct WithinFinding {
     /// Method, or name of another solver.
     pub method: String,
-    /// Integrator; empty of an attached solver.
+    /// Integrator; empty where another program solved.
     pub integrator: String,
     /// Cells over the height.
     pub cells: usize,
@@ -298,13 +298,13 @@ mod tests {
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                     integrator = ['implicit']\ncells = [4, 8, 16]\n";
         let other = crate::case::solver::Attached::new("other", "0123456789abcdef").expect("a name");
-        for attached in [4, 8, 16] {
+        for outside in [4, 8, 16] {
             let found = cells_within_one_percent(text, |record| {
-                if record.case.cells == attached {
+                if record.case.cells == outside {
                     record.case.method = crate::case::SolverName::Attached(other);
                 }
             });
-            assert_eq!(found, Some(4), "{attached} cells are another program's");
+            assert_eq!(found, Some(4), "{outside} cells are another program's");
         }
     }
 }

@@ -8,7 +8,7 @@ mod converges;
 mod double_point;
 pub(crate) mod locking;
 mod paper;
-mod race;
+pub(crate) mod race;
 
 pub use race::matrix_page;
 
@@ -21,7 +21,8 @@ use crate::judge::study_findings::AllStudies;
 use crate::record::provenance::Provenance;
 use crate::render::history_tables::comparison_tables;
 use crate::render::page::{Block, Callout, Figure, Page, Section, slug};
-use crate::render::report::{answers as study_answers, cost};
+use crate::render::report::answers as study_answers;
+use crate::render::report::runs::cost;
 use crate::render::table::{Mood, Table};
 use crate::render::{RenderError, templates};
 use oedometer_soil::wording::count_of;

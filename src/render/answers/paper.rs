@@ -4,7 +4,8 @@ use crate::judge::answers::paper::{PaperCurves, PaperFinding};
 use crate::render::answers::Question;
 use crate::render::chart::{Size, Style};
 use crate::render::page::{Block, Figure, Section};
-use crate::render::report::{labels, theory_lines};
+use crate::render::report::fields::theory_lines;
+use crate::render::report::labels;
 use crate::render::{RenderError, templates};
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };

@@ -55,7 +55,7 @@ pub(crate) fn lead(findings: &RaceFindings) -> Result<String, RenderError> {
 }
 
 /// The templates with what the race's need to know.
-fn environment(findings: &RaceFindings) -> Result<Environment<'static>, RenderError> {
+pub(crate) fn environment(findings: &RaceFindings) -> Result<Environment<'static>, RenderError> {
     let mut environment = templates::environment()?;
     let titles: Vec<(String, String)> =
         findings.situations.iter().map(|one| (one.name.clone(), one.title.clone())).collect();

@@ -58,7 +58,7 @@ pub fn unmet(study: &StudyFindings) -> Vec<Block> {
 /// The expectations that a study could have, and every one that it has behind a click.
 pub fn all(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     let mut blocks = vec![Block::Heading("Expectations".to_owned())];
-    let proposed = &study.proposals;
+    let proposed = &study.plain.proposals;
     if !proposed.is_empty() {
         blocks.push(Block::Paragraph(templates::sentence("proposed", &())?));
         let whole = Block::Code(proposed.join("\n"));

@@ -1,17 +1,15 @@
 //! The pages behind the answers: one per study, and the list of all studies.
 
 pub(crate) mod answers;
-mod checks;
-pub(crate) mod cost;
 mod expectations;
+pub(crate) mod fields;
 pub mod index_page;
 pub(crate) mod labels;
-pub(crate) mod layer;
 mod maps;
 pub mod race;
 pub(crate) mod refinement;
+pub(crate) mod runs;
 pub mod study_page;
-pub(crate) mod theory_lines;
 
 use crate::render::chart::Chart;
 use crate::render::page::{Figure, slug};

@@ -3,24 +3,19 @@
 use crate::judge::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::{Block, Page, Section, slug};
-use crate::render::report::{
-    answers, checks, cost, expectations, layer, maps, race, refinement, theory_lines,
-};
+use crate::render::report::{answers, expectations, fields, maps, race, refinement, runs};
 
 /// A part of the page: its blocks, or none where the findings have nothing for it.
 type Part = fn(&StudyFindings) -> Result<Vec<Block>, RenderError>;
 
 /// The parts in the order of the page, after what is not as expected.
-const PARTS: [Part; 10] = [
+const PARTS: [Part; 7] = [
     race::blocks,
     answers::blocks,
     maps::cheapest_methods,
-    layer::blocks,
-    theory_lines::blocks,
+    fields::blocks,
     refinement::blocks,
-    checks::blocks,
-    cost::blocks,
-    checks::balances,
+    runs::blocks,
     expectations::all,
 ];
 

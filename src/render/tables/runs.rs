@@ -218,7 +218,7 @@ mod tests {
         let mut all = [record(), record(), record(), record()];
         assert!(table_of(&all).is_none() && notes_of(&all[0]).is_empty());
         for record in &mut all[1..] {
-            record.attached = Some(AttachedRun::default());
+            record.outside = Some(AttachedRun::default());
         }
         let failed = |kind: FailureKind| {
             Status::Failed(Failure { kind, step: 0, time: 0.0, growth: None, reason: "why".to_owned() })
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(table.rows[1][3], Cell::missing("not run"));
         assert_eq!(table.rows[2][5], Cell::missing("the system does not report it"));
         assert_eq!(table_of(&all[2..]).expect("two").notes.len(), 1, "none was busy");
-        let about = all[1].attached.as_mut().expect("attached");
+        let about = all[1].outside.as_mut().expect("another program's");
         (about.command, about.version) = (["sh", "{case}"].map(str::to_owned).into(), Some("2.1".to_owned()));
         (about.repeats_differ_by, about.notes) = (Some(1e-9), vec!["a note".to_owned()]);
         about.taken = vec!["p from pressure".to_owned()];

@@ -69,7 +69,7 @@ pub struct PlaneSamples {
 pub struct Snapshot {
     /// Time, s.
     pub time: f64,
-    /// Settlement of the loaded surface, m. The result of an attached solver may have none: then it is no number,
+    /// Settlement of the loaded surface, m. The result of another program may have none: then it is no number,
     /// and left out on disk.
     #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub settlement: f64,

@@ -2,7 +2,7 @@
 //! of the skeleton; of a footing the load-settlement curves of all methods.
 
 use crate::case::grouping::grouped;
-use crate::judge::blocks::fields::{FieldFinding, LoadCurves, SHOWN_CELLS};
+use crate::judge::blocks::fields::{FieldFinding, LoadCurves};
 use crate::judge::findings::{StiffnessFinding, StiffnessValue, Swept};
 use crate::judge::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, Style};
@@ -19,9 +19,9 @@ pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     let found = &study.plain.blocks;
     let mut blocks = load_settlement(&study.name, found.loads.as_ref());
     if let Some(found) = &found.fields {
-        let ratio = found.poissons_ratio;
+        let (cells, ratio) = (found.cells, found.poissons_ratio);
         blocks.push(Block::Heading(format!(
-            "Pressure at the points, {SHOWN_CELLS} cells over the height, ν = {ratio}"
+            "Pressure at the points, {cells} cells over the height, ν = {ratio}"
         )));
         let drawn = found.fields.iter().map(|field| figure(&study.name, field, found.time_factor));
         blocks.push(Block::Figures(drawn.collect()));
