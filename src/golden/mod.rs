@@ -462,14 +462,11 @@ mod tests {
         for (observed, stored) in [(None, -1.0), (Some(3.0), 3.0)] {
             records[0].stability = Some(crate::record::CriticalStep {
                 predicted: 2.0,
-                creeping_from: None,
-                unknown: None,
                 observed,
                 wave_limit: 4.0,
                 drag_limit: 8.0,
                 combined_limit: 5.0,
-                probes: Vec::new(),
-                asymmetry: None,
+                ..crate::record::CriticalStep::default()
             });
             let label = records[0].case.label();
             let values = values_of(&records);

@@ -188,9 +188,7 @@ fn critical_steps_spreads_and_phases_stand_under_their_names() {
         wave_limit: 0.017,
         drag_limit: 0.019,
         combined_limit: 0.023,
-        unknown: None,
-        probes: Vec::new(),
-        asymmetry: None,
+        ..CriticalStep::default()
     });
     let table = runs::critical_steps(&critical_steps(&[record.clone()]));
     for (header, value) in [

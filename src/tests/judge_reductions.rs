@@ -207,14 +207,11 @@ fn the_largest_deviation_of_a_map_is_found_in_any_case() {
             let observed = Some(if number == place { 1.3 } else { 1.01 });
             record.stability = Some(CriticalStep {
                 predicted: 1.0,
-                creeping_from: None,
-                unknown: None,
                 observed,
                 wave_limit: 2.0,
                 drag_limit: 2.0,
                 combined_limit: 2.0,
-                probes: Vec::new(),
-                asymmetry: None,
+                ..CriticalStep::default()
             });
         }
         let map = maps_of(&records).remove(0);

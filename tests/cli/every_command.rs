@@ -1,13 +1,13 @@
 //! Every subcommand on small inputs: its exit code and what it writes to both outputs, whole. And what `score` says of a result
 //! whose table or mapping has one edit.
 
+use crate::place::git;
 use crate::program::{PROGRAM, assert_snapshot, call};
 use oedometer::{GoldenFile, RecordStore, RunOptions, Study, StudySource, Tier, run_study};
 use regex_lite::{Captures, Regex};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
 
 const STUDY: &str = r#"title = "A short study"
@@ -150,14 +150,6 @@ fn what_needs_no_study_is_told_as_it_was() {
         told(&mut text, folder.path(), &[word, "--help"], 200);
     }
     assert_snapshot("commands_without_a_study", &text);
-}
-
-fn git(at: &Path, words: &[&str]) -> String {
-    let mut command = Command::new("git");
-    command.args(["-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false"]);
-    let output = command.args(words).current_dir(at).output().expect("git");
-    assert!(output.status.success(), "{words:?}");
-    String::from_utf8(output.stdout).expect("words")
 }
 
 /// Takes golden values of the study in a folder; the program itself takes none from sources that no commit has.

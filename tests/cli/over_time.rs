@@ -2,6 +2,7 @@
 //! crashes, one only renames.
 
 use crate::packs::change_records;
+use crate::place::git;
 use crate::program::{PROGRAM, Told, call, call_with};
 use std::fmt::Write;
 use std::fs;
@@ -15,14 +16,6 @@ const WORSE: &str = "Take a larger porosity";
 const STUDY: &str = "title = \"Gate\"\nscene = \"terzaghi\"\noutput = { time_factors = [0.1], references = [\"terzaghi\"] }\n\
                      [material]\nporosity = 0.3\n[[sweep]]\nmethod = [\"GIMP-SRI\"]\nintegrator = [\"implicit\"]\n\
                      cells = [5, 10]\ntime_step = [{ growth = 0.05 }]\n";
-
-fn git(at: &Path, words: &[&str]) -> String {
-    let mut command = Command::new("git");
-    command.args(["-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false"]);
-    let output = command.args(words).current_dir(at).output().expect("git");
-    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("words").trim().to_owned()
-}
 
 /// Golden values of two cases with an error each.
 fn golden(errors: [f64; 2], reason: &str) -> String {

@@ -1,22 +1,14 @@
 //! `bisect`, `compare` and `history` of a solver in Python: ten commits, of which one makes its results worse, one does not
 //! build, one crashes and one only renames.
 
+use crate::place::git;
 use crate::program::{Told, call};
 use oedometer::{GoldenFile, RunOptions, Study, StudySource, Tier, run_study};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
 
 const WORSE: &str = "Take a larger permeability";
-
-fn git(at: &Path, words: &[&str]) -> String {
-    let mut command = Command::new("git");
-    command.args(["-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false"]);
-    let output = command.args(words).current_dir(at).output().expect("git");
-    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("words").trim().to_owned()
-}
 
 /// Writes what the study gives now as its golden values.
 fn accept(at: &Path, reason: &str) {

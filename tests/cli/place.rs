@@ -4,6 +4,7 @@ use crate::program::{Told, call};
 use oedometer::{GoldenFile, Record, RecordStore, RunOptions, Study, StudySource, Tier, run_study};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use tempfile::TempDir;
 
 /// Two cases that take a moment.
@@ -150,4 +151,15 @@ fn a_check_takes_what_this_build_has_solved_and_nothing_of_another() {
         assert_eq!(call(at, &["run", "studies/first.toml"]).code, 0, "whole again");
         changed(at, |record| record.errors[0].value *= 2.0);
     }
+}
+
+/// What git says to some words in a folder, by a name of its own.
+pub fn git(at: &Path, words: &[&str]) -> String {
+    let names =
+        ["user.name=t", "user.email=t@example.org", "commit.gpgsign=false", "init.defaultBranch=main"];
+    let mut command = Command::new("git");
+    command.args(names.iter().flat_map(|name| ["-c", name])).args(words);
+    let output = command.current_dir(at).output().expect("git");
+    assert!(output.status.success(), "git {words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("words").trim().to_owned()
 }

@@ -2,6 +2,7 @@
 //! ignores it. Only a study that declares by what its program is known takes results over, and then says so.
 #![cfg(unix)]
 
+use crate::place::git;
 use crate::program::{Told, call, call_with};
 use oedometer::{GoldenFile, Record, RecordStore};
 use std::fs;
@@ -55,12 +56,6 @@ const FILES: [(&str, &str, &str); 3] = [
     ("build/solve", "#!/bin/sh\necho good\n", "#!/bin/sh\necho bad\n"),
     ("elsewhere/law.inc", "variable=good\n", "variable=bad\n"),
 ];
-
-fn git(at: &Path, words: &[&str]) {
-    let names = ["-c", "user.name=t", "-c", "user.email=t@t", "-c", "init.defaultBranch=main"];
-    let output = Command::new("git").arg("-C").arg(at).args(names).args(words).output().expect("git");
-    assert!(output.status.success(), "git {words:?}: {}", String::from_utf8_lossy(&output.stderr));
-}
 
 fn write(root: &Path, name: &str, text: &str) {
     let path = root.join(name);

@@ -250,14 +250,14 @@ mod tests {
         record
     }
 
+    fn one_case() -> Study {
+        let text = "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n";
+        Study::check(&StudySource { name: "s.toml".to_owned(), text: text.to_owned() }).expect("sound")
+    }
+
     #[test]
     fn wall_times_of_one_build_come_together_and_those_of_another_stay_out() {
-        let source = StudySource {
-            name: "s.toml".to_owned(),
-            text: "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n"
-                .to_owned(),
-        };
-        let study = Study::check(&source).expect("sound");
+        let study = one_case();
         let case = &study.planned[0].case;
         let changes: [(&str, bool, Change); 6] = [
             ("nothing", true, |_| {}),
@@ -293,12 +293,7 @@ mod tests {
 
     #[test]
     fn records_with_unlike_values_are_no_merge_and_a_case_without_a_record_is_a_hole() {
-        let source = StudySource {
-            name: "s.toml".to_owned(),
-            text: "title = \"t\"\nscene = \"terzaghi\"\n[[sweep]]\nmethod = [\"MPM\"]\ncells = [4]\n"
-                .to_owned(),
-        };
-        let study = Study::check(&source).expect("sound");
+        let study = one_case();
         let case = &study.planned[0].case;
         let folder = tempfile::TempDir::new().expect("a folder");
         let store = |name: &str| RecordStore::new(&folder.path().join(name), "s");

@@ -181,14 +181,12 @@ mod tests {
         };
         CriticalStep {
             predicted: 2.0,
-            creeping_from: None,
-            unknown: None,
             observed,
             wave_limit: 4.0,
             drag_limit: 8.0,
             combined_limit: 3.0,
             probes: vec![probe(0.97), probe(1.03)],
-            asymmetry: None,
+            ..CriticalStep::default()
         }
     }
 

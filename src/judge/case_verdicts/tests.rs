@@ -174,14 +174,12 @@ fn a_critical_step_is_met_where_it_is_near_and_both_probes_end_as_predicted() {
         let mut record = record();
         record.stability = Some(CriticalStep {
             predicted: 1.0,
-            creeping_from: None,
             observed,
             wave_limit: 2.0,
             drag_limit: 3.0,
             combined_limit: 4.0,
-            unknown: None,
             probes: vec![probe(0.97, fails[0]), probe(1.03, fails[1])],
-            asymmetry: None,
+            ..CriticalStep::default()
         });
         let check = critical_step_found(0.02, &record);
         let ends = fails.map(|fails| if fails { "is unstable at step 90" } else { "runs 100 steps" });

@@ -201,14 +201,11 @@ mod tests {
             for record in &mut records {
                 record.stability = Some(CriticalStep {
                     predicted: 2.0,
-                    creeping_from: None,
-                    unknown: None,
                     observed: (record.case.method.to_string() == "MPM").then_some(1.0),
                     wave_limit: 4.0,
                     drag_limit: 8.0,
                     combined_limit: 3.0,
-                    probes: Vec::new(),
-                    asymmetry: None,
+                    ..CriticalStep::default()
                 });
             }
             // A record whose step was not searched is on no map.

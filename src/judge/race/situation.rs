@@ -27,7 +27,7 @@ use std::collections::BTreeSet;
 pub const THRESHOLDS: [f64; 3] = [ROUGH, THRESHOLD, NEGLIGIBLE];
 
 /// A situation: a study whose sweeps name the race.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Situation {
     /// Its family: the first word of its name.
     pub family: String,
@@ -52,7 +52,7 @@ pub struct Situation {
 }
 
 /// A contender in a situation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Entry {
     /// The contender.
     pub contender: String,

@@ -24,20 +24,11 @@ fn situation(family: &str, name: &str, arrivals: &[(&str, Option<f64>)]) -> Situ
         Entry {
             contender: contender.to_owned(),
             costs,
-            seconds: None,
             reason: costs[1].is_none().then(|| reason_of(&levels, None, None)),
-            detail: String::new(),
             errors: levels.last().map_or([None; 3], |level| level.errors),
             cost: levels.last().map(|level| level.cost),
-            order: None,
-            class: None,
-            scatter: None,
-            oscillation: None,
-            locking: None,
-            step_ratio: None,
-            asymmetry: None,
-            spurious_velocity: None,
             levels,
+            ..Entry::default()
         }
     };
     Situation {

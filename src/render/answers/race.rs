@@ -469,20 +469,11 @@ mod tests {
             Entry {
                 contender: (*contender).to_owned(),
                 costs,
-                seconds: None,
                 reason: costs[1].is_none().then_some(Reason::Locks),
-                detail: String::new(),
                 errors: [Some(error); 3],
                 cost: *cost,
-                order: None,
-                class: None,
-                scatter: None,
-                oscillation: None,
-                locking: None,
-                step_ratio: None,
-                asymmetry: None,
-                spurious_velocity: None,
                 levels,
+                ..Entry::default()
             }
         };
         Situation {

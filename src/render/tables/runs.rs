@@ -188,13 +188,12 @@ mod tests {
             record.stability = Some(CriticalStep {
                 predicted: 0.5,
                 observed,
-                creeping_from: None,
                 wave_limit: 0.25,
                 drag_limit: 1.0,
                 combined_limit: 1.0,
                 unknown: unknown.map(str::to_owned),
                 probes: probes[..2].to_vec(),
-                asymmetry: None,
+                ..CriticalStep::default()
             });
             critical_step_row(&critical_steps(&[record])[0])
         };

@@ -49,7 +49,7 @@ pub struct Probe {
 }
 
 /// What is known of a problem's critical step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriticalStep {
     /// From the spectral radius, s: beyond it a mode grows by as much as is observed, `ln(5·10^4)/32768` per step, in a plane
     /// a doubling in 10 000 steps.
