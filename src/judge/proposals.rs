@@ -246,6 +246,17 @@ mod tests {
         }
     }
 
+    /// 20 s are `T_v` = 0.244648… in the default column.
+    #[test]
+    fn a_time_factor_that_follows_from_a_time_is_proposed_with_four_digits() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.times = ['20 s']\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\n";
+        let (proposed, whole) = pasted(text);
+        assert!(proposed.len() == 1 && proposed[0].contains("time_factor = 0.2446\n"), "{proposed:?}");
+        let judgements = judge_study(&whole, &run(&whole, Tier::Full), Tier::Full);
+        assert!(judgements.len() == 1 && judgements[0].verdict.pass, "{judgements:?}");
+    }
+
     #[test]
     fn each_series_has_an_expectation_of_its_own_in_the_words_of_its_axis_and_inputs() {
         let implicit = "integrator = ['implicit']\n";
