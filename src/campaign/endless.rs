@@ -17,7 +17,7 @@ const WORTH_NAMING: f64 = 5.0;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "{study}: {} would take longer than a week, so nothing was run\n  longest: {}, about {}\n  {}\n  or set \
-     `case_seconds = {:.1e}` in the study to run it all the same", count_of(*cases, "case", "cases"),
+     `case_seconds = {:.1e}` in the study to run it anyway", count_of(*cases, "case", "cases"),
     longest.label(), duration(*seconds), remedy(longest), 1.1 * seconds
 )]
 pub struct EndlessCases {

@@ -6,6 +6,9 @@ use crate::render::report::labels;
 use crate::render::table::{Cell, Table, TableColumn};
 use oedometer_soil::wording::clock_time;
 
+/// Meshes that a class needs.
+const MESHES_OF_A_CLASS: usize = 3;
+
 /// A row per mesh, an error and a rate per quantity.
 pub fn table_of(found: &ConvergenceTable) -> Table {
     let mut columns = vec![TableColumn::text("cells")];
@@ -38,6 +41,9 @@ pub fn heading(found: &ConvergenceTable) -> String {
 
 /// The class of each series in words.
 pub fn classes(found: &ConvergenceTable) -> String {
+    if found.cells.len() < MESHES_OF_A_CLASS {
+        return format!("class: {MESHES_OF_A_CLASS} meshes are needed for one");
+    }
     let class =
         |column: &ConvergenceColumn| format!("{} {}", labels::quantity(column.quantity), column.class.name());
     format!("class: {}", found.columns.iter().map(class).collect::<Vec<_>>().join(", "))

@@ -21,20 +21,27 @@ pub fn tables_of(all: &[SettlementTable]) -> Vec<(String, Table)> {
 
 /// One table with a row per run: the heading has the words that the labels of all runs share, a row has the others.
 fn one_table_of(all: &[SettlementTable], reference: &str) -> (String, Table) {
-    let is_shared = |word: &&str| all.iter().all(|of_run| of_run.run.split(' ').any(|other| other == *word));
-    let shared: Vec<&str> = all[0].run.split(' ').filter(is_shared).collect();
+    let is_shared = |part: &&str| all.iter().all(|of_run| parts_of(&of_run.run).contains(part));
+    let shared: Vec<&str> = parts_of(&all[0].run).into_iter().filter(is_shared).collect();
     let rows = all.iter().flat_map(|of_run| {
-        let others: Vec<&str> = of_run.run.split(' ').filter(|word| !shared.contains(word)).collect();
+        let others: Vec<&str> =
+            parts_of(&of_run.run).into_iter().filter(|part| !shared.contains(part)).collect();
         let with_run = move |row: &SettlementRow| {
-            let mut cells = vec![Cell::from(others.join(" ").trim_end_matches(',').to_owned())];
+            let mut cells = vec![Cell::from(others.join(", "))];
             cells.extend(cells_of(row));
             cells
         };
         of_run.rows.iter().map(with_run).collect::<Vec<_>>()
     });
     let table = Table::of("", columns(&format!("problem | {HEADER}")), rows);
-    let shared = shared.join(" ");
-    (format!("Settlement of {}, against {reference}", shared.trim_end_matches(',')), table)
+    (format!("Settlement of {}, against {reference}", shared.join(" ")), table)
+}
+
+/// The parts of a label: its words, and what stands in parentheses, which commas separate.
+fn parts_of(label: &str) -> Vec<&str> {
+    let (words, variant) = label.split_once(" (").unwrap_or((label, ""));
+    let variant = variant.trim_end_matches(')').split(", ").filter(|part| !part.is_empty());
+    words.split(' ').chain(variant).collect()
 }
 
 /// A row per output: date, time factor, degree of consolidation, settlement exact and of the run.
@@ -93,17 +100,17 @@ mod tests {
             error: Some(0.01),
         };
         let of_run = |ratio: &str, outputs: &[f64]| SettlementTable {
-            run: format!("MPM implicit cells=16, poissons_ratio={ratio}"),
+            run: format!("MPM implicit cells=16 (u-p, ν {ratio})"),
             reference: "terzaghi".to_owned(),
             rows: outputs.iter().copied().map(row).collect(),
         };
         let tables = tables_of(&[of_run("0.3", &[0.1]), of_run("0.4", &[0.1])]);
         let [(heading, table)] = &tables[..] else { panic!("{} tables", tables.len()) };
-        assert_eq!(heading, "Settlement of MPM implicit cells=16, against terzaghi");
+        assert_eq!(heading, "Settlement of MPM implicit cells=16 u-p, against terzaghi");
         let shown: Vec<Vec<String>> =
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
-        assert_eq!(shown[0], ["poissons_ratio=0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
-        assert_eq!((shown.len(), shown[1][0].as_str()), (2, "poissons_ratio=0.4"));
+        assert_eq!(shown[0], ["ν 0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
+        assert_eq!((shown.len(), shown[1][0].as_str()), (2, "ν 0.4"));
         // Two outputs of a run, and a single run, keep a table of their own.
         assert_eq!(tables_of(&[of_run("0.3", &[0.1, 0.2]), of_run("0.4", &[0.1])]).len(), 2);
         assert_eq!(tables_of(&[of_run("0.3", &[0.1])])[0].0, heading_of_one());
@@ -111,6 +118,6 @@ mod tests {
     }
 
     fn heading_of_one() -> String {
-        "Settlement of MPM implicit cells=16, poissons_ratio=0.3, against terzaghi".to_owned()
+        "Settlement of MPM implicit cells=16 (u-p, ν 0.3), against terzaghi".to_owned()
     }
 }

@@ -5,7 +5,7 @@ use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
 use crate::study::expectation::Selection;
 use crate::study::reading::{Placed, Typed};
-use oedometer_soil::wording::{clock_time, duration, typed};
+use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use std::ops::{Range, RangeInclusive};
 
 /// Least time factor beside the undrained start: of shorter times steps no longer advance the sum.
@@ -114,33 +114,33 @@ impl Checker<'_> {
         times
     }
 
-    /// Complains of times that lie before or beyond what a case can reach; of each once.
+    /// Complains of times that lie before or beyond what a case can reach: at the first one, with the number of the others.
     pub(super) fn times_are_possible(&mut self, outputs: &Outputs, cases: impl Iterator<Item = Case>) {
-        let mut left: Vec<&(Range<usize>, f64)> =
-            outputs.times.iter().filter(|(_, time)| *time > 0.0).collect();
         for case in cases {
-            if left.is_empty() {
-                return;
-            }
-            left.retain(|(place, time)| {
-                let factor = factor_of(*time, &case);
-                let is_possible = TIME_FACTORS.contains(&factor);
-                if !is_possible {
-                    let unit = case.seconds_per_time_factor();
-                    let message = format!("{} ({} s) is T_v = {factor:.3e}", clock_time(*time), typed(*time));
-                    let whose = if case.column.soils.is_empty() {
-                        "for this soil and height"
-                    } else {
-                        "for the soil of [material] over the whole height: give the soil of a typical layer there, too"
-                    };
-                    let help = format!(
-                        "T_v = c_v t/H² lies between 0 and 100, and T_v = 1 is {} ({unit:.3e} s) {whose}",
-                        duration(unit)
-                    );
-                    self.complain(place.clone(), message, help);
+            let factor = |time: f64| factor_of(time, &case);
+            let is_impossible = |time: f64| time > 0.0 && !TIME_FACTORS.contains(&factor(time));
+            let mut impossible = outputs.times.iter().filter(|(_, time)| is_impossible(*time));
+            let Some((place, time)) = impossible.next() else { continue };
+            let others = match impossible.count() {
+                0 => String::new(),
+                count => {
+                    format!(", and {} impossible too", count_of(count, "other time is", "other times are"))
                 }
-                is_possible
-            });
+            };
+            let unit = case.seconds_per_time_factor();
+            let message =
+                format!("{} ({} s) is T_v = {:.3e}{others}", clock_time(*time), typed(*time), factor(*time));
+            let whose = if case.column.soils.is_empty() {
+                "for this soil and height"
+            } else {
+                "for the soil of [material] over the whole height: give the soil of a typical layer there, too"
+            };
+            let help = format!(
+                "T_v = c_v t/H² lies between 0 and 100, and T_v = 1 is {} ({unit:.3e} s) {whose}",
+                duration(unit)
+            );
+            self.complain(place.clone(), message, help);
+            return;
         }
     }
 
@@ -300,6 +300,12 @@ mod tests {
                 "",
                 String::new(),
                 "T_v = 3.474e4; T_v = c_v t/H² lies between 0 and 100",
+            ),
+            (
+                "times = ['1 day', '9000 years', '9999 years']",
+                "",
+                String::new(),
+                "(284018400000 s) is T_v = 3.474e4, and 1 other time is impossible too; T_v",
             ),
             ("times = ['1 day']", "", expect("time = '2 days'"), "no case has an output at T_v"),
             (
