@@ -3,7 +3,7 @@
 pub use crate::formulation::Formulation;
 
 use crate::drag::Drag;
-use crate::integrate::schedule::TimeStepRule;
+use crate::integrate::step_rule::TimeStepRule;
 use crate::kernel::scheme::{ExplicitSettings, Scheme};
 use oedometer_soil::wording::words;
 

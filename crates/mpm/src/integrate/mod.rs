@@ -2,7 +2,7 @@
 //!
 //! `explicit_stepper` takes the kernel's step, `assembled` the same as sparse maps where nothing moves, `double_point` with
 //! the water in points of its own; `implicit` takes steps of any size on the same operators. `critical_step` says how large a
-//! step may be, `undrained_start` where a run begins. `schedule` and `run_plan` say when to step and how far, `stepper` is
+//! step may be, `undrained_start` where a run begins. `schedule`, `step_rule` and `run_plan` say when to step and how far, `stepper` is
 //! what each integrator is to a driver, `results` are what is left of a run.
 
 pub mod assembled;
@@ -16,5 +16,6 @@ pub(crate) mod physical_bounds;
 pub mod results;
 pub mod run_plan;
 pub mod schedule;
+pub mod step_rule;
 pub mod stepper;
 mod undrained_start;

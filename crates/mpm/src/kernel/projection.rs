@@ -12,7 +12,7 @@
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::kernel::body::Body;
 use crate::method::{Method, WHOLE_PROJECTION};
-use crate::operators::recovery::points_in_cells;
+use crate::operators::recovery::points_in_cells::points_in_cells;
 use crate::operators::sparse_rows::entry_of;
 use crate::time_limit::TimeLimit;
 use oedometer_soil::material::Material;

@@ -9,7 +9,8 @@
 //! boundary: exact for linear fields whatever its shape. Each corner is a block of hats, so a point has four blocks.
 
 use crate::method::{Basis, Configuration, Method};
-use crate::operators::basis::{Hat, Row, ShapeFunction};
+use crate::operators::basis::{Hat, ShapeFunction};
+use crate::operators::row::Row;
 use crate::operators::stencil::{PointStencils, Stencils};
 use crate::state::grid::{GHOST_LAYERS, Grid, whole};
 use crate::state::points::Points;

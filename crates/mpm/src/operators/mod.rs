@@ -3,6 +3,7 @@
 pub mod basis;
 pub mod corners;
 pub mod recovery;
+pub mod row;
 pub mod sparse_rows;
 pub mod stacked_points;
 pub mod stencil;

@@ -7,7 +7,7 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::method::StrainGradient;
-use crate::operators::basis::Row;
+use crate::operators::row::Row;
 use crate::operators::stencil::{Block, PointStencils, Stencils};
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, cell_below, power};

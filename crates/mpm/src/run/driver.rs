@@ -5,7 +5,8 @@ use crate::integrate::results::outcome::{
 };
 use crate::integrate::results::snapshot::Snapshot;
 use crate::integrate::run_plan::Plan;
-use crate::integrate::schedule::{Observer, StepLimit, steps_for};
+use crate::integrate::schedule::Observer;
+use crate::integrate::step_rule::{StepLimit, steps_for};
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::run::watch::Watch;
 

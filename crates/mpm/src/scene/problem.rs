@@ -11,7 +11,7 @@ use crate::run::observed::{CriticalStep, Stopped, critical_step};
 use crate::run::{Observer, Schedule, run};
 use crate::scene::SceneKind;
 use crate::scene::column::{Column, Undrained, column_parameters};
-use crate::scene::definition::{SceneLoad, SceneStart};
+use crate::scene::definition::{ColumnStart, SceneLoad, SceneStart};
 use crate::scene::manufactured;
 use crate::scene::moment_fitting::fit_volumes;
 use crate::state::grid::Grid;
@@ -21,6 +21,7 @@ use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::{Base, ColumnParameters};
 use oedometer_soil::law::History;
 use oedometer_soil::material::Material;
+use oedometer_soil::tensor::Tensor;
 
 /// Cells above the column, so that a surface that rises stays on the grid.
 const HEADROOM: usize = 1;
@@ -127,7 +128,6 @@ impl From<Problem<2>> for SceneProblem {
 ///
 /// # Errors
 /// When the parameters are impossible.
-#[expect(clippy::too_many_lines, reason = "the parts of a problem, one after the other")]
 pub fn column_problem<const D: usize>(
     scene: SceneKind,
     column: &Column,
@@ -138,94 +138,38 @@ pub fn column_problem<const D: usize>(
 ) -> Result<Problem<D>, ExactError> {
     let cell_size = column.cell_size(cells);
     let mut extent = [column.cells_across(cells).unwrap_or(1); D];
-    let up = column.cells_up(cells);
-    extent[D - 1] = up;
-    let definition = scene.definition();
-    let mut initial_gradient = [[0.0; D]; D];
-    let start = match &definition.start {
+    extent[D - 1] = column.cells_up(cells);
+    let start = match &scene.definition().start {
         SceneStart::OverDepth(start) => Some(start(column, soil)?),
         SceneStart::Solved => None,
     };
+    let mut initial_gradient = [[0.0; D]; D];
     if let Some(start) = &start {
         initial_gradient[D - 1][D - 1] = start.vertical_gradient;
     }
-    let set_of = |per_cell: usize| -> Result<Points<D>, ExactError> {
-        let mut points = column.points.points(cell_size, extent, per_cell);
-        if method.quadrature == Quadrature::Moments {
-            fit_volumes(&mut points, cell_size, extent, column.height);
-        }
-        if soil.law.has_history() {
-            // Stresses are counted from the initial one.
-            let yield_stress = soil.preconsolidation - column.initial_stress;
-            points.history = vec![History { yield_stress, ..History::default() }; points.len()];
-        }
-        for point in 0..points.len() {
-            let layer = column.soils.number_at(points.initial_position[point][D - 1]);
-            points.soil[point] = u8::try_from(layer).unwrap_or(u8::MAX);
-        }
-        if let Some(start) = &start {
-            start.apply(&mut points, column.height)?;
-            if column.self_weight {
-                add_initial_stress(&mut points, &column_parameters(column, soil));
-            }
-        }
-        Ok(points)
-    };
-    let points = set_of(points_per_cell)?;
+    let sets = PointSets { column, soil, method, cell_size, extent, start };
+    let points = sets.with(points_per_cell)?;
     let of_water = column.points.water_per_cell;
     let water =
         column.points.has_two_sets().then_some(if of_water == 0 { points_per_cell } else { of_water });
-    let water = water.map(set_of).transpose()?;
-    // A column at rest is there to show what a method leaves unbalanced.
-    let is_integrated = column.points.is_lattice() && !method.basis.is_spline();
-    let balanced_weight = if column.self_weight && !is_integrated && !scene.is_at_rest() {
-        let mut weighing =
-            Points::<D> { effective_stress: vec![[[0.0; D]; D]; points.len()], ..points.clone() };
-        add_initial_stress(&mut weighing, &column_parameters(column, soil));
-        weighing.effective_stress
-    } else {
-        Vec::new()
-    };
+    let water = water.map(|per_cell| sets.with(per_cell)).transpose()?;
     let forcing = scene
         .model()
         .map(|model| manufactured::forcing(model, column, soil, &points.initial_position))
         .transpose()?;
+    let top = extent[D - 1] as f64 * cell_size;
     if forcing.is_none() {
         extent[D - 1] += HEADROOM;
     }
-    let support = if scene.is_manufactured() {
-        Support::closed()
-    } else if column.base() == Some(Base::Rough) {
-        Support::oedometer().on_rough_base()
-    } else if scene.has_plates() {
-        Support::oedometer().with_movable_side()
-    } else {
-        Support::oedometer()
-    };
-    let footing = (scene == SceneKind::Footing).then_some(column.footing);
-    let plate = footing.map(|footing| PlateOnTop {
-        extent: 0.5 * footing.width,
-        height: up as f64 * cell_size,
-        is_rough: footing.contact == Base::Rough,
-    });
-    let support = Support { plate, ..support };
-    // It settles by its width in the time of `T_v = 1`.
-    let driven_plate = footing.map(|footing| DrivenPlate {
-        velocity: footing.width / column_parameters(column, soil).time(1.0),
-        has_water: footing.undrained == Undrained::TwoPhase,
-    });
-    // Total stress has one phase, whose volume goes the way that the water's would.
-    let of_one_phase = driven_plate.filter(|plate| !plate.has_water).and_then(|_| method.strain.with_bbar());
-    let method = of_one_phase.map_or(method, |strain| Method { strain, ..method });
+    let driven_plate = driven_plate(scene, column, soil);
+    let method = method_on(method, driven_plate);
     let load = column.pressure_scale().abs();
-    // What no water leaves is a soil that lets none through.
-    let sealing = if scene == SceneKind::SealedElement { SEALED } else { 1.0 };
-    let hydraulic_conductivity = sealing * soil.hydraulic_conductivity;
-    let soil = Material { hydraulic_conductivity, ..*soil };
+    let balanced_weight = balanced_weight(scene, column, soil, method, &points);
+    let soil = drained_soil(scene, soil);
     let weight = column.self_weight.then_some(soil.gravity);
     Ok(Problem {
         grid: Grid::new(cell_size, extent),
-        support,
+        support: support(scene, column, top),
         points,
         water,
         material: soil,
@@ -236,12 +180,7 @@ pub fn column_problem<const D: usize>(
         method,
         configuration: method.configuration_in(scene.configuration()),
         load: if scene.is_loaded() && !scene.has_plates() { column.load } else { 0.0 },
-        load_shape: match definition.load {
-            SceneLoad::Cosine => LoadShape::Cosine { length: column.extent() },
-            SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) | SceneLoad::Plates => {
-                LoadShape::Uniform
-            }
-        },
+        load_shape: load_shape(scene, column),
         driven_plate,
         plate_load: scene.has_plates().then_some(column.load),
         weight,
@@ -254,8 +193,115 @@ pub fn column_problem<const D: usize>(
             .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
         forcing,
         // A plate that is told where to go presses as hard as it has to.
-        is_bounded: footing.is_none(),
+        is_bounded: driven_plate.is_none(),
     })
+}
+
+/// What the sets of points of a problem are made of.
+struct PointSets<'a, const D: usize> {
+    column: &'a Column,
+    soil: &'a Material,
+    method: Method,
+    /// m.
+    cell_size: f64,
+    /// Cells in each direction.
+    extent: [usize; D],
+    /// The state at the start, where it is not solved for.
+    start: Option<ColumnStart>,
+}
+
+impl<const D: usize> PointSets<'_, D> {
+    /// Points at the start, so many in each cell.
+    fn with(&self, per_cell: usize) -> Result<Points<D>, ExactError> {
+        let Self { column, soil, method, cell_size, extent, start } = self;
+        let mut points = column.points.points(*cell_size, *extent, per_cell);
+        if method.quadrature == Quadrature::Moments {
+            fit_volumes(&mut points, *cell_size, *extent, column.height);
+        }
+        if soil.law.has_history() {
+            // Stresses are counted from the initial one.
+            let yield_stress = soil.preconsolidation - column.initial_stress;
+            points.history = vec![History { yield_stress, ..History::default() }; points.len()];
+        }
+        for point in 0..points.len() {
+            let layer = column.soils.number_at(points.initial_position[point][D - 1]);
+            points.soil[point] = u8::try_from(layer).unwrap_or(u8::MAX);
+        }
+        if let Some(start) = start {
+            start.apply(&mut points, column.height)?;
+            if column.self_weight {
+                add_initial_stress(&mut points, &column_parameters(column, soil));
+            }
+        }
+        Ok(points)
+    }
+}
+
+/// Stresses that the points' weight is in balance with from the start; none where it is not.
+fn balanced_weight<const D: usize>(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    points: &Points<D>,
+) -> Vec<Tensor<D>> {
+    // A column at rest is there to show what a method leaves unbalanced.
+    let is_integrated = column.points.is_lattice() && !method.basis.is_spline();
+    if !column.self_weight || is_integrated || scene.is_at_rest() {
+        return Vec::new();
+    }
+    let mut weighing = Points::<D> { effective_stress: vec![[[0.0; D]; D]; points.len()], ..points.clone() };
+    add_initial_stress(&mut weighing, &column_parameters(column, soil));
+    weighing.effective_stress
+}
+
+/// Faces that are held, and the plate on a top at a height, m.
+fn support<const D: usize>(scene: SceneKind, column: &Column, top: f64) -> Support<D> {
+    let support = if scene.is_manufactured() {
+        Support::closed()
+    } else if column.base() == Some(Base::Rough) {
+        Support::oedometer().on_rough_base()
+    } else if scene.has_plates() {
+        Support::oedometer().with_movable_side()
+    } else {
+        Support::oedometer()
+    };
+    let plate = (scene == SceneKind::Footing).then_some(PlateOnTop {
+        extent: 0.5 * column.footing.width,
+        height: top,
+        is_rough: column.footing.contact == Base::Rough,
+    });
+    Support { plate, ..support }
+}
+
+/// The plate that is pushed into a body by its width in the time of `T_v = 1`.
+fn driven_plate(scene: SceneKind, column: &Column, soil: &Material) -> Option<DrivenPlate> {
+    (scene == SceneKind::Footing).then(|| DrivenPlate {
+        velocity: column.footing.width / column_parameters(column, soil).time(1.0),
+        has_water: column.footing.undrained == Undrained::TwoPhase,
+    })
+}
+
+/// The method under a plate: total stress has one phase, whose volume goes the way that the water's would.
+fn method_on(method: Method, plate: Option<DrivenPlate>) -> Method {
+    let of_one_phase = plate.filter(|plate| !plate.has_water).and_then(|_| method.strain.with_bbar());
+    of_one_phase.map_or(method, |strain| Method { strain, ..method })
+}
+
+/// A scene's soil: what no water leaves is a soil that lets none through.
+fn drained_soil(scene: SceneKind, soil: &Material) -> Material {
+    let sealing = if scene == SceneKind::SealedElement { SEALED } else { 1.0 };
+    Material { hydraulic_conductivity: sealing * soil.hydraulic_conductivity, ..*soil }
+}
+
+/// How a scene's load lies on the surface.
+fn load_shape(scene: SceneKind, column: &Column) -> LoadShape {
+    match scene.definition().load {
+        SceneLoad::Cosine => LoadShape::Cosine { length: column.extent() },
+        SceneLoad::None | SceneLoad::Sudden | SceneLoad::SuddenOrGrowing(_) | SceneLoad::Plates => {
+            LoadShape::Uniform
+        }
+    }
 }
 
 /// Gives points the stress of the soil's own weight, that to the sides as an oedometer at rest has it.

@@ -2,11 +2,12 @@
 //!
 //! The skeleton is a [`Body`] whose points carry no water: its grid, shape functions, strains, load and nodal fields.
 //! [`DoublePoint`] puts the water beside it and takes the explicit step of [`Body::kick_and_drift`], each phase on its
-//! own points. `water_points` are the water's state and domains, `water_pressure` its continuity and what its pressure
+//! own points. `water_points` are the water's state, `following_water` what it takes from the soil, `water_pressure` its continuity and what its pressure
 //! does to the nodes, `pressure_lines` what its points forget, `sliver_nodes` the nodes that the surface has all but
 //! left, `samples` what a snapshot tells. Balances of momentum, kicks and the skeleton's strain are those of a
 //! single set of points.
 
+mod following_water;
 mod pressure_lines;
 mod samples;
 mod sliver_nodes;

@@ -22,7 +22,7 @@
 use crate::integrate::double_point::DoublePoint;
 use crate::kernel::volumetric::Place;
 use crate::method::PressureIntegration;
-use crate::operators::recovery::PointsInCells;
+use crate::operators::recovery::points_in_cells::PointsInCells;
 use oedometer_soil::tensor::Vector;
 
 impl<const D: usize> DoublePoint<D> {

@@ -16,6 +16,7 @@ mod guess;
 pub mod linear;
 pub(crate) mod linear_system;
 pub(crate) mod newton;
+mod point_strain;
 mod residual;
 mod secants;
 mod straining;

@@ -3,12 +3,12 @@
 //! Points do not move within a step: shape functions stay on the configuration of its start, and gradients are pushed
 //! forward from there.
 
-use crate::integrate::implicit::straining::{KnownStretch, PointStrain};
+use crate::integrate::implicit::point_strain::{KnownStretch, PointStrain};
 use crate::integrate::implicit::unknowns::Unknowns;
 use crate::integrate::integrator::Formulation;
 use crate::kernel::body::Body;
 use crate::method::Memory;
-use crate::operators::recovery::points_in_cells;
+use crate::operators::recovery::points_in_cells::points_in_cells;
 use crate::state::points::Points;
 use oedometer_soil::tensor::{Tensor, Vector, dot, identity, inverse, product};
 

@@ -11,8 +11,9 @@
 //! adjoint of the first. Nodal means do not see a divergence that changes its sign from cell to cell, which stays at the
 //! points (the mode of Q1-Q1 elements).
 
-use crate::operators::basis::{Hat, Row, ShapeFunction};
-use crate::operators::recovery::PointsInCells;
+use crate::operators::basis::{Hat, ShapeFunction};
+use crate::operators::recovery::points_in_cells::PointsInCells;
+use crate::operators::row::Row;
 
 /// Where the values are that means are taken of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 //! span the constants and the lines along the [felt slopes](felt_slopes). What is felt is the plane
 //! `p̄ + s·(x − x̄)` through the values by least squares, in one dimension their mean; the rest is the null space.
 
-use crate::operators::recovery::PointsInCells;
+use crate::operators::recovery::points_in_cells::PointsInCells;
 use oedometer_soil::tensor::{Tensor, Vector, solve_symmetric};
 
 /// The plane through the values of each cell's points, `[cell]`.
@@ -128,8 +128,9 @@ fn felt_slopes<const D: usize>(at: &PointsInCells<'_, D>, cell: usize) -> [bool;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operators::basis::{Hat, Row, ShapeFunction};
+    use crate::operators::basis::{Hat, ShapeFunction};
     use crate::operators::recovery::tests::{SiteBlock, applied};
+    use crate::operators::row::Row;
 
     /// Forces `Σ V p ∇N` of pressures at the points on a corner of a cell.
     fn force(at: &PointsInCells<'_, 2>, values: &[f64], cell: usize, corner: usize) -> Vector<2> {

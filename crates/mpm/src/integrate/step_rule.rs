@@ -1,0 +1,247 @@
+//! The rule by which steps are chosen, and how large it lets them be.
+
+use crate::integrate::critical_step::formula;
+use crate::integrate::stepper::EqualSteps;
+use crate::kernel::body::Problem;
+use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
+use serde::{Deserialize, Serialize};
+
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TimeStepRule {
+    /// Share of the predicted critical step.
+    Stable(f64),
+    /// Share of `h/c`, the fastest wave's way through a cell.
+    Courant(f64),
+    /// Seconds.
+    Seconds(f64),
+    /// Grows with time, `max(Δt₀, α t)`; the number is `α`.
+    Growth(f64),
+    /// As large as an estimate of the error in time allows: the number bounds it, relative to the
+    /// load and to the settlement it makes.
+    Tolerance(f64),
+}
+
+impl TimeStepRule {
+    /// The rule of the same kind with another number.
+    #[must_use]
+    pub fn with_number(self, number: f64) -> Self {
+        match self {
+            Self::Stable(_) => Self::Stable(number),
+            Self::Courant(_) => Self::Courant(number),
+            Self::Seconds(_) => Self::Seconds(number),
+            Self::Growth(_) => Self::Growth(number),
+            Self::Tolerance(_) => Self::Tolerance(number),
+        }
+    }
+
+    /// Step, s, on a problem with a predicted critical step.
+    pub fn step<const D: usize>(&self, problem: &Problem<D>, critical: f64) -> f64 {
+        match self {
+            Self::Stable(share) => share * critical,
+            Self::Courant(share) => {
+                let speed = |soil: &Material| formula::fastest_wave_speed(soil, soil.porosity);
+                share * problem.grid.cell_size / problem.most_of_soils(speed)
+            }
+            Self::Seconds(seconds) => *seconds,
+            Self::Growth(growth) => growth * diffusion_time(problem),
+            Self::Tolerance(tolerance) => tolerance.sqrt().min(0.1) * diffusion_time(problem),
+        }
+    }
+
+    /// Limit of a run's steps whose rule asks for steps of `target` seconds at first:
+    /// where they grow, the first ones resolve the first output as the later ones theirs.
+    pub fn limit<const D: usize>(
+        &self,
+        problem: &Problem<D>,
+        target: f64,
+        most: f64,
+        outputs: &[f64],
+    ) -> StepLimit {
+        match self {
+            Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
+            Self::Growth(growth) => {
+                let first = outputs.iter().copied().find(|output| *output > 0.0);
+                let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
+                StepLimit::Growing { first: growth * start, growth: *growth, most }
+            }
+            Self::Tolerance(tolerance) => StepLimit::Tolerance { first: target, tolerance: *tolerance },
+        }
+    }
+}
+
+/// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
+fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
+    problem.grid.cell_size * problem.grid.cell_size
+        / problem.most_of_soils(Material::coefficient_of_consolidation)
+}
+
+/// Step sizes grow by this factor from one level to the next.
+const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
+
+/// How large a step may be at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepLimit {
+    /// One step size at all times, s.
+    Constant(f64),
+    /// `max(Δt₀, α t)`: consolidation slows down as the square root of time, and so may the steps.
+    Growing {
+        /// `Δt₀`, s.
+        first: f64,
+        /// `α`.
+        growth: f64,
+        /// What they may grow to, s.
+        most: f64,
+    },
+    /// What the estimate of the error allows.
+    Tolerance {
+        /// The first step, s.
+        first: f64,
+        /// Error that a step may have.
+        tolerance: f64,
+    },
+}
+
+impl StepLimit {
+    /// The steps to take next from `time` towards `output`: of one size, which is at most the
+    /// limit wherever it is taken, and that end at `output` or where larger ones may begin.
+    pub fn row(&self, time: f64, output: f64) -> EqualSteps {
+        let (size, end) = match *self {
+            Self::Constant(size) => (size, output),
+            // Of a size that the driver goes on from by itself.
+            Self::Tolerance { first, .. } => (first, output),
+            Self::Growing { first, growth, most } => {
+                let allowed = (growth * time).max(first).min(most);
+                // A time that is a level's beginning up to round-off is in that level.
+                let level = (elementary::ln(allowed / first) / elementary::ln(LEVEL_RATIO) + 1e-9).floor();
+                let size = first * elementary::powf(LEVEL_RATIO, level);
+                let grown =
+                    if size * LEVEL_RATIO > most { f64::INFINITY } else { size * LEVEL_RATIO / growth };
+                // Not worth an end of its own where the output is a step away.
+                (size, if output < grown + size { output } else { grown })
+            }
+        };
+        let count = steps_for(end - time, size);
+        EqualSteps::first(time, (end - time) / count as f64, count)
+    }
+
+    /// Steps from the start to `end`, without the outputs in between.
+    pub fn expected_steps(&self, end: f64) -> u64 {
+        if let Self::Tolerance { tolerance, .. } = self {
+            return steps_for(10.0, tolerance.sqrt());
+        }
+        let (mut time, mut steps) = (0.0, 0_u64);
+        while end - time > 1e-9 * end {
+            let row = self.row(time, end);
+            let next = row.end();
+            steps = steps.saturating_add(row.count);
+            // Times at the edge of the numbers: what no longer advances is endless.
+            let advances = next > time;
+            if !advances {
+                return u64::MAX;
+            }
+            time = next;
+        }
+        steps
+    }
+}
+
+/// Equal steps of at most `step` that fill a duration; at least one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates, and that is the right end"
+)]
+pub fn steps_for(duration: f64, step: f64) -> u64 {
+    // A duration that is a whole number of steps up to round-off is that number.
+    ((duration / step) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn growing_steps_keep_to_their_limit_and_come_in_few_sizes(
+            growth in 0.005..0.5_f64, first in 1e-6..1e-2_f64,
+        ) {
+            let limit = StepLimit::Growing { first, growth, most: f64::INFINITY };
+            let outputs = [0.05, 0.1, 1.0];
+            let (mut time, mut sizes, mut steps) = (0.0, 0, 0);
+            for output in outputs {
+                while output - time > 1e-9 * output {
+                    let row = limit.row(time, output);
+                    // Levels are powers, so a last step may exceed the limit by less than one.
+                    prop_assert!(row.dt <= (growth * time).max(first) * (1.0 + 1e-9));
+                    time += row.count as f64 * row.dt;
+                    sizes += 1;
+                    steps += row.count;
+                }
+                prop_assert!((time / output - 1.0).abs() < 1e-9);
+            }
+            let levels = ((growth / first).max(1.0).ln() / LEVEL_RATIO.ln()).ceil() + 6.0;
+            prop_assert!(f64::from(sizes) <= levels, "{sizes} sizes for {levels} levels");
+            // Not many more than the limit itself would take.
+            let least = 1.0 / growth + (growth / first).max(1.0).ln() / growth.ln_1p();
+            prop_assert!(steps as f64 <= 1.35 * least + 2.0 * f64::from(sizes) + 1.0 / first.max(0.5));
+        }
+    }
+
+    #[test]
+    fn constant_steps_fill_the_way() {
+        assert_eq!(StepLimit::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
+        assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
+        assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
+    }
+
+    #[test]
+    fn steps_that_grow_stop_at_the_most_that_they_may_be() {
+        let limit = StepLimit::Growing { first: 1e-3, growth: 0.1, most: 7e-3 };
+        let (mut time, mut largest) = (0.0, 0.0_f64);
+        // After the first output a tenth of the time is far more.
+        for output in [1.0, 2.0] {
+            while output - time > 1e-9 {
+                let row = limit.row(time, output);
+                largest = largest.max(row.dt);
+                time = row.end();
+            }
+        }
+        // Levels of a root of two from the first: the last below 7e-3 is 5.66e-3.
+        assert!(largest <= 7e-3 && largest > 5e-3, "{largest:e}");
+    }
+
+    #[test]
+    fn courant_steps_of_layers_are_those_of_the_fastest_waves_wherever_they_run() {
+        let soil = Material { water_bulk_modulus: 1e5, ..Material::default() };
+        let method = Method::named("GIMP").expect("known");
+        let layer = |youngs_modulus: f64| SoilLayer {
+            thickness: 0.5,
+            youngs_modulus: Some(youngs_modulus),
+            ..SoilLayer::default()
+        };
+        let speed_of = |layer: SoilLayer| {
+            let soil = layer.soil(&soil);
+            formula::fastest_wave_speed(&soil, soil.porosity)
+        };
+        let (soft, stiff) = (layer(1e6), layer(4e9));
+        for layers in [[soft, stiff], [stiff, soft]] {
+            let column = Column { soils: SoilLayers::of(&layers).expect("two"), ..Column::default() };
+            let problem =
+                column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
+            let step = TimeStepRule::Courant(0.5).step(&problem, 1.0);
+            assert!((step * speed_of(stiff) / (0.5 * 0.25) - 1.0).abs() < 1e-12, "{step:e}");
+        }
+        assert!(
+            speed_of(stiff) > 1.5 * speed_of(soft).max(formula::fastest_wave_speed(&soil, soil.porosity))
+        );
+    }
+}
