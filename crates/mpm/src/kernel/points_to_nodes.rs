@@ -384,28 +384,31 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
         if D > 1 {
             return;
         }
-        let nodes = self.first..self.first + W;
+        // Indices, and not iterators: those of two slices at once cost more than the sums.
         if MASSES {
-            for (node, share) in self.masses[nodes.clone()].iter_mut().zip(&self.line) {
+            let masses = &mut self.masses[self.first..][..W];
+            for k in 0..W {
                 for i in 0..4 {
-                    node[0][i] += share.masses[i];
+                    masses[k][0][i] += self.line[k].masses[i];
                 }
             }
         }
         if MOMENTA {
-            for (node, share) in self.momenta[nodes.clone()].iter_mut().zip(&self.line) {
+            let momenta = &mut self.momenta[self.first..][..W];
+            for k in 0..W {
                 for phase in 0..2 {
                     for d in 0..D {
-                        node[phase][d] += share.momenta[phase][d];
+                        momenta[k][phase][d] += self.line[k].momenta[phase][d];
                     }
                 }
             }
         }
         if FORCES {
-            for (node, share) in self.forces[nodes].iter_mut().zip(&self.line) {
+            let forces = &mut self.forces[self.first..][..W];
+            for k in 0..W {
                 for phase in 0..2 {
                     for d in 0..D {
-                        node[phase][d] += share.forces[phase][d];
+                        forces[k][phase][d] += self.line[k].forces[phase][d];
                     }
                 }
             }

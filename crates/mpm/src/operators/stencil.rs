@@ -6,7 +6,7 @@
 // A function that is not inlined into a loop for wide registers is compiled for narrow ones (`crate::wide`).
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
-use crate::operators::basis::Row;
+use crate::operators::row::Row;
 use crate::state::grid::{Grid, power};
 use crate::wide::wide;
 use oedometer_soil::tensor::{Tensor, Vector};
@@ -74,10 +74,11 @@ impl<const D: usize, const W: usize> Run<D, W> {
         for number in scaled.as_flattened_mut() {
             *number *= self.across[0];
         }
-        for (node, value) in sums[self.first..self.first + W].iter_mut().zip(&self.values) {
+        let nodes = &mut sums[self.first..][..W];
+        for k in 0..W {
             for i in 0..N {
                 for j in 0..M {
-                    node[i][j] += value * scaled[i][j];
+                    nodes[k][i][j] += self.values[k] * scaled[i][j];
                 }
             }
         }
@@ -92,12 +93,13 @@ impl<const D: usize, const W: usize> Run<D, W> {
                 *number *= self.across[d];
             }
         }
-        for (k, node) in sums[self.first..self.first + W].iter_mut().enumerate() {
+        let nodes = &mut sums[self.first..][..W];
+        for k in 0..W {
             for d in 0..D {
                 let along = if d == 0 { self.gradients[k] } else { self.values[k] };
                 for i in 0..N {
                     for j in 0..D {
-                        node[i][j] += along * scaled[d][i][j];
+                        nodes[k][i][j] += along * scaled[d][i][j];
                     }
                 }
             }
@@ -169,7 +171,9 @@ impl<const D: usize, const W: usize> Stencils<D, W> {
     /// Stencil of a point.
     #[inline(always)]
     pub fn of_point(&self, point: usize) -> Stencil<'_, D, W> {
-        let blocks = point * self.parts..(point + 1) * self.parts;
+        // On a line a point has one block, and the compiler knows.
+        let parts = if D == 1 { 1 } else { self.parts };
+        let blocks = point * parts..(point + 1) * parts;
         Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
     }
 
