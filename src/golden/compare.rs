@@ -81,7 +81,7 @@ impl Difference {
 
     /// The order of a list: kinds by how bad they are, then the largest relative change first.
     fn worst_first(&self, other: &Self) -> Ordering {
-        let size = |one: &Self| one.relative_change().unwrap_or(0.0);
+        let size = |difference: &Self| difference.relative_change().unwrap_or(0.0);
         self.change
             .cmp(&other.change)
             .then_with(|| size(other).total_cmp(&size(self)))
@@ -132,12 +132,12 @@ pub fn compare(golden: &GoldenFile, found: &BTreeMap<String, f64>) -> Vec<Differ
 
 /// Marks values that fell in a case in which another value moved: these do not count as improvements.
 fn tell_apart_what_is_paid_for(differences: &mut [Difference]) {
-    let case_of = |one: &Difference| parts(&one.name).0.to_owned();
-    let moved = |one: &&Difference| one.change == Change::Moved;
+    let case_of = |difference: &Difference| parts(&difference.name).0.to_owned();
+    let moved = |difference: &&Difference| difference.change == Change::Moved;
     let worse: BTreeSet<String> = differences.iter().filter(moved).map(case_of).collect();
-    for one in differences.iter_mut().filter(|one| one.change == Change::Stale) {
-        if worse.contains(parts(&one.name).0) {
-            one.change = Change::Smaller;
+    for difference in differences.iter_mut().filter(|difference| difference.change == Change::Stale) {
+        if worse.contains(parts(&difference.name).0) {
+            difference.change = Change::Smaller;
         }
     }
 }
@@ -285,8 +285,8 @@ pub fn groups_of<'a>(
     for of_kind in differences.chunk_by(|a, b| a.change == b.change) {
         let Some(worst) = of_kind.first() else { continue };
         let mut shared = words(&worst.name);
-        for one in of_kind {
-            let words = words(&one.name);
+        for difference in of_kind {
+            let words = words(&difference.name);
             shared.retain(|word| words.contains(word));
         }
         shared.retain(|word| everywhere.get(word).is_none_or(|count| *count < number));
@@ -294,7 +294,7 @@ pub fn groups_of<'a>(
         groups.push(DifferenceGroup {
             change: worst.change,
             values: of_kind.len(),
-            cases: of_kind.iter().map(|one| parts(&one.name).0).collect::<BTreeSet<_>>().len(),
+            cases: of_kind.iter().map(|difference| parts(&difference.name).0).collect::<BTreeSet<_>>().len(),
             shared_by_cases: of(NameSide::Case),
             shared_by_measures: of(NameSide::Measure),
             worst: worst.clone(),

@@ -98,17 +98,17 @@ pub struct Seconds {
 impl Seconds {
     /// Of the cases that two states timed.
     fn of_both(before: &StudyState, after: &StudyState) -> Option<[Self; 2]> {
-        let sum = |one: &StudyState, other: &StudyState| {
-            let runs = one.seconds.iter().filter(|(case, _)| other.seconds.contains_key(*case));
-            let all = runs.filter_map(|(_, runs)| spread(runs)).map(|one| Self {
-                median: one.median,
-                least: one.minimum,
-                most: one.maximum,
+        let sum = |state: &StudyState, other: &StudyState| {
+            let runs = state.seconds.iter().filter(|(case, _)| other.seconds.contains_key(*case));
+            let all = runs.filter_map(|(_, runs)| spread(runs)).map(|times| Self {
+                median: times.median,
+                least: times.minimum,
+                most: times.maximum,
             });
-            all.reduce(|sum, one| Self {
-                median: sum.median + one.median,
-                least: sum.least + one.least,
-                most: sum.most + one.most,
+            all.reduce(|sum, times| Self {
+                median: sum.median + times.median,
+                least: sum.least + times.least,
+                most: sum.most + times.most,
             })
         };
         Some([sum(before, after)?, sum(after, before)?])
@@ -148,12 +148,14 @@ impl StudyComparison {
         let differences = compare(&before, found);
         let (counters, errors): (Vec<&Difference>, Vec<&Difference>) = differences
             .iter()
-            .filter(|one| one.golden.is_some() && one.found.is_some())
-            .partition(|one| is_counter(parts(&one.name).1));
-        let grew = |one: &&Difference| one.found > one.golden;
-        let cost = Trend::of(counters.iter().any(|one| !grew(one)), counters.iter().any(grew));
-        let is_better = |one: &&Difference| matches!(one.change, Change::Stale | Change::Smaller);
-        let accuracy = Trend::of(errors.iter().any(is_better), errors.iter().any(|one| !is_better(one)));
+            .filter(|difference| difference.golden.is_some() && difference.found.is_some())
+            .partition(|difference| is_counter(parts(&difference.name).1));
+        let grew = |difference: &&Difference| difference.found > difference.golden;
+        let cost = Trend::of(counters.iter().any(|difference| !grew(difference)), counters.iter().any(grew));
+        let is_better =
+            |difference: &&Difference| matches!(difference.change, Change::Stale | Change::Smaller);
+        let accuracy =
+            Trend::of(errors.iter().any(is_better), errors.iter().any(|difference| !is_better(difference)));
         let names = before.values.keys().chain(found.keys()).map(String::as_str);
         Self {
             study: study.to_owned(),
@@ -161,7 +163,10 @@ impl StudyComparison {
             accuracy,
             cost,
             values: before.values.keys().filter(|name| found.contains_key(*name)).count(),
-            unpaired: differences.iter().filter(|one| one.golden.is_none() || one.found.is_none()).count(),
+            unpaired: differences
+                .iter()
+                .filter(|difference| difference.golden.is_none() || difference.found.is_none())
+                .count(),
             inputs: pairing.changes,
             groups: groups_of(&differences, names.collect::<BTreeSet<_>>()),
             changes: case_changes(&differences),
@@ -334,8 +339,10 @@ pub(crate) fn order_changes(
     after: &BTreeMap<String, f64>,
     differences: &[Difference],
 ) -> Vec<OrderChange> {
-    let moved = differences.iter().filter(|one| one.golden.is_some() && one.found.is_some());
-    let asked: BTreeSet<String> = moved.flat_map(|one| places(&one.name)).map(|(key, _)| key).collect();
+    let moved =
+        differences.iter().filter(|difference| difference.golden.is_some() && difference.found.is_some());
+    let asked: BTreeSet<String> =
+        moved.flat_map(|difference| places(&difference.name)).map(|(key, _)| key).collect();
     let mut after = behaviours(after, &asked);
     let change = |(series, before): (String, Behaviour)| {
         let after = after.remove(&series)?;

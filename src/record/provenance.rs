@@ -153,7 +153,7 @@ impl Origins {
 
     /// In what builds differ from one of them, and in how many records; none where they do not.
     pub fn differences_from(&self, main: &Provenance) -> Option<String> {
-        let parts: Vec<String> = OF_A_BUILD.iter().filter_map(|one| self.difference(*one, main)).collect();
+        let parts: Vec<String> = OF_A_BUILD.iter().filter_map(|part| self.difference(*part, main)).collect();
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 
@@ -183,8 +183,8 @@ mod tests {
 
     fn origins(all: &[Provenance]) -> Origins {
         let mut origins = Origins::default();
-        for one in all {
-            origins.add(one);
+        for provenance in all {
+            origins.add(provenance);
         }
         origins
     }
@@ -252,13 +252,13 @@ mod tests {
 
     /// A change of every property of an origin.
     const CHANGES: [(&str, Change); 7] = [
-        ("version", |one| one.version = "1.1.0".to_owned()),
-        ("sources", |one| one.sources = "bbbb".to_owned()),
-        ("commit", |one| one.commit = "c2".to_owned()),
-        ("dirty", |one| one.dirty = true),
-        ("compiler", |one| one.compiler = "rustc 1.90.0".to_owned()),
-        ("target", |one| one.target = "aarch64-apple-darwin".to_owned()),
-        ("profile", |one| one.profile = "quick".to_owned()),
+        ("version", |changed| changed.version = "1.1.0".to_owned()),
+        ("sources", |changed| changed.sources = "bbbb".to_owned()),
+        ("commit", |changed| changed.commit = "c2".to_owned()),
+        ("dirty", |changed| changed.dirty = true),
+        ("compiler", |changed| changed.compiler = "rustc 1.90.0".to_owned()),
+        ("target", |changed| changed.target = "aarch64-apple-darwin".to_owned()),
+        ("profile", |changed| changed.profile = "quick".to_owned()),
     ];
 
     #[test]

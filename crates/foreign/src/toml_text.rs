@@ -154,8 +154,8 @@ fn in_numbers<'a>(
     fn replace<'a>(value: &mut Spanned<DeValue<'a>>, quantities: &'a [(Range<usize>, String)]) {
         let place = value.span();
         match value.as_mut() {
-            DeValue::Table(table) => table.iter_mut().for_each(|(_, one)| replace(one, quantities)),
-            DeValue::Array(list) => list.iter_mut().for_each(|one| replace(one, quantities)),
+            DeValue::Table(table) => table.iter_mut().for_each(|(_, inner)| replace(inner, quantities)),
+            DeValue::Array(list) => list.iter_mut().for_each(|inner| replace(inner, quantities)),
             word @ DeValue::String(_) => {
                 let number = quantities.iter().find(|(span, _)| *span == place);
                 if let Some(Ok(number)) = number.map(|(_, text)| DeValue::parse(text)) {
@@ -165,7 +165,7 @@ fn in_numbers<'a>(
             _ => {}
         }
     }
-    root.as_mut().iter_mut().for_each(|(_, one)| replace(one, quantities));
+    root.as_mut().iter_mut().for_each(|(_, inner)| replace(inner, quantities));
     root
 }
 
@@ -209,8 +209,8 @@ impl Mistakes<'_> {
                 self.of_table(schema, table, value.span(), key);
             }
             DeValue::Array(list) if kind_of(schema) == "array" => {
-                for one in list {
-                    self.of_value(&schema["items"], one, key);
+                for item in list {
+                    self.of_value(&schema["items"], item, key);
                 }
             }
             DeValue::String(word) if !names_of(schema).is_empty() => {
@@ -256,7 +256,9 @@ impl Mistakes<'_> {
                     example_of(schema)
                 ),
             },
-            one if kind == "array" && fits(&schema["items"], one) => format!("write `{key} = [{written}]`"),
+            typed if kind == "array" && fits(&schema["items"], typed) => {
+                format!("write `{key} = [{written}]`")
+            }
             _ => format!("write it like `{key} = {}`", example_of(schema)),
         };
         let wanted = match kind {
@@ -349,13 +351,15 @@ pub fn plain_schema_of<T: JsonSchema>() -> Value {
 
 fn without_null(mut schema: Value) -> Value {
     if let Some(list) = schema.as_array_mut() {
-        list.retain(|one| ![json!(null), json!("null"), json!({ "type": "null" })].contains(one));
+        list.retain(|value| ![json!(null), json!("null"), json!({ "type": "null" })].contains(value));
     }
     let mut schema = each_part(schema, without_null);
     if let Some(object) = schema.as_object_mut() {
         for word in ["type", "anyOf"] {
-            let Some([one]) = object.get(word).and_then(Value::as_array).map(Vec::as_slice) else { continue };
-            match one.clone() {
+            let Some([only]) = object.get(word).and_then(Value::as_array).map(Vec::as_slice) else {
+                continue;
+            };
+            match only.clone() {
                 Value::Object(choice) => {
                     object.remove(word);
                     // The description of the key takes precedence over that of its type.

@@ -142,13 +142,17 @@ fn tell_changes(
         Some(StudyComparison::of(&study.name, &before, &StudyState::of_records(&study.name, records)))
     };
     let all: Vec<Option<StudyComparison>> = studies.iter().zip(records).zip(older).map(compared).collect();
-    let is_much = |one: &&StudyComparison| one.groups.iter().map(|group| group.values).sum::<usize>() > FEW;
+    let is_much = |comparison: &&StudyComparison| {
+        comparison.groups.iter().map(|group| group.values).sum::<usize>() > FEW
+    };
     let shown: Vec<StudyComparison> = all.iter().flatten().filter(is_much).cloned().collect();
     if !shown.is_empty() {
         print_tables(&comparison_tables(&shown, ["golden values", "now"]), TableFormat::Table)?;
     }
-    let lost = |one: Option<StudyComparison>| {
-        one.map_or(Vec::new(), |one| one.orders.into_iter().filter(OrderChange::is_loss).collect())
+    let lost = |comparison: Option<StudyComparison>| {
+        comparison.map_or(Vec::new(), |comparison| {
+            comparison.orders.into_iter().filter(OrderChange::is_loss).collect()
+        })
     };
     Ok(all.into_iter().map(lost).collect())
 }
@@ -222,10 +226,10 @@ mod tests {
             (behaviour("asymptotic", Some(2.0)), behaviour("exact", None), None),
             (behaviour("oscillatory", None), behaviour("asymptotic", Some(1.0)), None),
         ] {
-            let one = change(before, after);
-            assert_eq!(one.is_loss(), lost.is_some(), "{one:?}");
+            let changed = change(before, after);
+            assert_eq!(changed.is_loss(), lost.is_some(), "{changed:?}");
             if let Some(told) = lost {
-                assert_eq!(one.sentence(), format!("s cells=… {told}"));
+                assert_eq!(changed.sentence(), format!("s cells=… {told}"));
             }
         }
         assert_eq!(with_lost_orders("why", &[]), "why");
@@ -254,7 +258,10 @@ mod tests {
         }
         let studies = [study];
         let found = tell_changes(&studies, std::slice::from_ref(&now), &[Some(before)]).expect("compared");
-        assert!(found[0].iter().any(|one| one.series.contains("pressure points l2")), "{found:?}");
+        assert!(
+            found[0].iter().any(|comparison| comparison.series.contains("pressure points l2")),
+            "{found:?}"
+        );
         assert_eq!(tell_changes(&studies, &[now], &[None]).expect("compared"), [vec![]]);
     }
 

@@ -124,10 +124,10 @@ fn skip(skipped: &mut Vec<String>, commit: &Commit, reason: &str) -> &'static st
 
 /// Values that differ beyond their tolerance: those that got worse, or all where none did.
 fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
-    let both = |one: &Difference| one.golden.is_some() && one.found.is_some();
+    let both = |difference: &Difference| difference.golden.is_some() && difference.found.is_some();
     let moved: Vec<Difference> =
         compare(&right.golden, &wrong.golden.values).into_iter().filter(both).collect();
-    let is_worse = |one: &&Difference| one.change == Change::Moved;
+    let is_worse = |difference: &&Difference| difference.change == Change::Moved;
     let worse: Vec<Difference> = moved.iter().filter(is_worse).cloned().collect();
     if worse.is_empty() { moved } else { worse }
 }
@@ -135,13 +135,14 @@ fn moved_values(right: &StudyState, wrong: &StudyState) -> Vec<Difference> {
 /// Whether any of the values has moved from the right ones in the direction that it had gone at the bad commit, or has
 /// become no number, or one again; `None` where none of them is there.
 fn moved_like(right: &StudyState, here: &StudyState, moved: &[Difference]) -> Option<bool> {
-    let there = moved.iter().filter_map(|one| Some((one, *here.golden.values.get(&one.name)?)));
-    let has_moved = |(one, value): (&Difference, f64)| {
-        let (Some(before), Some(after)) = (one.golden, one.found) else { return false };
+    let there =
+        moved.iter().filter_map(|difference| Some((difference, *here.golden.values.get(&difference.name)?)));
+    let has_moved = |(difference, value): (&Difference, f64)| {
+        let (Some(before), Some(after)) = (difference.golden, difference.found) else { return false };
         if !(before.is_finite() && value.is_finite()) {
             return before.is_finite() != value.is_finite();
         }
-        let tolerance = right.golden.tolerance(&one.name, before.abs().max(value.abs()));
+        let tolerance = right.golden.tolerance(&difference.name, before.abs().max(value.abs()));
         after.is_finite() && (value - before).abs() > tolerance && (value > before) == (after > before)
     };
     there.map(has_moved).reduce(|any, one| any || one)
@@ -324,7 +325,7 @@ mod tests {
         let of = |values: [f64; 4]| states(values.map(Some));
         let right = [0.1, 0.2, 100.0, 200.0];
         let sought = |wrong: [f64; 4]| -> Vec<String> {
-            moved_values(&of(right), &of(wrong)).into_iter().map(|one| one.name).collect()
+            moved_values(&of(right), &of(wrong)).into_iter().map(|difference| difference.name).collect()
         };
         let mut all = sought([0.15, 0.3, 110.0, 210.0]);
         all.sort();

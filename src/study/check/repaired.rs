@@ -53,12 +53,12 @@ pub fn with_later_mistakes(mut error: StudyError, purpose: Purpose) -> StudyErro
     let Some(mended) = mended(&error) else { return error };
     let source = StudySource { name: error.name.clone(), text: mended.text.clone() };
     let Err(later) = Study::check_read(&source, purpose) else { return error };
-    let moved = later.diagnostics.into_iter().filter_map(|one| {
-        let (line, columns) = place(&source.text, one.span.as_ref()?)?;
-        let span = mended.is_sure(line, &one.message).then(|| bytes(&error.source, line, columns))??;
-        Some(Diagnostic { span: Some(span), ..one })
+    let moved = later.diagnostics.into_iter().filter_map(|mistake| {
+        let (line, columns) = place(&source.text, mistake.span.as_ref()?)?;
+        let span = mended.is_sure(line, &mistake.message).then(|| bytes(&error.source, line, columns))??;
+        Some(Diagnostic { span: Some(span), ..mistake })
     });
-    let moved: Vec<Diagnostic> = moved.filter(|one| !error.diagnostics.contains(one)).collect();
+    let moved: Vec<Diagnostic> = moved.filter(|mistake| !error.diagnostics.contains(mistake)).collect();
     error.diagnostics.extend(moved);
     error
 }
@@ -101,8 +101,8 @@ fn mended(error: &StudyError) -> Option<Mended> {
     let source: Vec<&str> = error.source.split('\n').collect();
     let mut lines: Vec<String> = source.iter().map(|&line| line.to_owned()).collect();
     let (mut numbers, mut unknown) = (BTreeSet::new(), BTreeMap::new());
-    for one in &error.diagnostics {
-        let (number, columns) = place(&error.source, one.span.as_ref()?)?;
+    for mistake in &error.diagnostics {
+        let (number, columns) = place(&error.source, mistake.span.as_ref()?)?;
         let line = lines.get_mut(number)?;
         let is_entry = line.contains('=') && !line.trim_start().starts_with(['[', '#']);
         if !is_entry || !numbers.insert(number) {
@@ -110,10 +110,10 @@ fn mended(error: &StudyError) -> Option<Mended> {
         }
         let word = line.get(columns.clone())?.to_owned();
         let quoted =
-            |words: &str| one.help.as_deref()?.split_once(words)?.1.split_once('`').map(|(text, _)| text);
+            |words: &str| mistake.help.as_deref()?.split_once(words)?.1.split_once('`').map(|(text, _)| text);
         let key = line[..line.find('=')?].trim().to_owned();
         let unknown_in = |table: String, kind| Unknown { key: key.clone(), table, kind };
-        if let Some((_, home)) = one.help.as_deref().and_then(|help| help.split_once(MISPLACED)) {
+        if let Some((_, home)) = mistake.help.as_deref().and_then(|help| help.split_once(MISPLACED)) {
             let home = home.split(':').next().unwrap_or_default().trim_matches(['[', ']']).to_owned();
             line.insert(0, '#');
             unknown.insert(number, unknown_in(home, UnknownKind::Misplaced));
@@ -138,7 +138,7 @@ fn mended(error: &StudyError) -> Option<Mended> {
             _ => {
                 line.insert(0, '#');
                 let table = table_of(&source, number);
-                if !one.message.starts_with("unknown key") {
+                if !mistake.message.starts_with("unknown key") {
                     unknown.insert(number, unknown_in(table, UnknownKind::Value));
                 } else if BODY.contains(&table.as_str()) {
                     unknown.insert(number, unknown_in(table, UnknownKind::Name));
@@ -196,7 +196,8 @@ mod tests {
                     [[expect]]\nmethod = \"GC-SRI-patch\"\nquantity = \"presure\"\nordr = { value = 2.0 }\n";
         let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
         let error = Study::check(&source).expect_err("five mistakes");
-        let at: Vec<&str> = error.diagnostics.iter().filter_map(|one| text.get(one.span.clone()?)).collect();
+        let at: Vec<&str> =
+            error.diagnostics.iter().filter_map(|mistake| text.get(mistake.span.clone()?)).collect();
         let told = error.to_string();
         for place in ["\"terzagi\"", "\"presure\"", "3.0", "\"GC-SRI-pach\""] {
             assert!(at.contains(&place), "{place}: {at:?}\n{told}");

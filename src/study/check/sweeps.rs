@@ -400,8 +400,8 @@ mod tests {
     fn a_product_has_every_combination_once() {
         let all = cases(&sweep(&[]));
         assert_eq!(all.len(), 2 * 3 * 3);
-        for (index, one) in all.iter().enumerate() {
-            assert!(!all[..index].contains(one));
+        for (index, case) in all.iter().enumerate() {
+            assert!(!all[..index].contains(case));
         }
     }
 
@@ -410,9 +410,9 @@ mod tests {
         let tied = sweep(&["cells", "time_step"]);
         assert_eq!(cases(&tied).len(), 2 * 3);
         assert_eq!(tied.count(), Some(2 * 3));
-        for one in cases(&tied) {
-            let place = [5, 10, 20].iter().position(|cells| *cells == one.cells);
-            assert_eq!(place.map(|place| TimeStepRule::Seconds(STEPS[place])), Some(one.time_step));
+        for case in cases(&tied) {
+            let place = [5, 10, 20].iter().position(|cells| *cells == case.cells);
+            assert_eq!(place.map(|place| TimeStepRule::Seconds(STEPS[place])), Some(case.time_step));
         }
     }
 

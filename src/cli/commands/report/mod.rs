@@ -216,7 +216,7 @@ fn changes(
         return None;
     }
     found.retain(StudyComparison::has_changed);
-    found.sort_by_key(|one| !one.is_regression());
+    found.sort_by_key(|comparison| !comparison.is_regression());
     Some(found)
 }
 
@@ -245,7 +245,7 @@ fn write_files(
     // Collected before the first error is taken: the same error every time.
     all.studies
         .par_iter()
-        .map(|one| write_study(&studies, one))
+        .map(|study| write_study(&studies, study))
         .collect::<Vec<_>>()
         .into_iter()
         .collect::<anyhow::Result<()>>()?;
@@ -272,19 +272,19 @@ fn write_files(
 
 /// A page whose links to pages of studies lead to their files, where both are below the current folder.
 fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> String {
-    results.iter().fold(page.to_owned(), |text, one| {
-        let Some(file) = path_from(out, &one.file) else { return text };
-        let name = slug(&one.study.name);
+    results.iter().fold(page.to_owned(), |text, result| {
+        let Some(file) = path_from(out, &result.file) else { return text };
+        let name = slug(&result.study.name);
         let text = text.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
         text.replace(&format!("](studies/{name}.md#figure-{name}-race-all)"), &format!("]({file})"))
     })
 }
 
 /// The pages of a study with their figures and tables.
-fn write_study(studies: &Path, one: &StudyFindings) -> anyhow::Result<()> {
-    let name = slug(&one.name);
-    write_both(studies, &name, &name, &study_page(one)?)?;
-    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&one.plain)?)
+fn write_study(studies: &Path, study: &StudyFindings) -> anyhow::Result<()> {
+    let name = slug(&study.name);
+    write_both(studies, &name, &name, &study_page(study)?)?;
+    write_page(&studies.join(format!("{name}.findings.json")), &json_of(&study.plain)?)
 }
 
 /// A page as HTML and Markdown, with its figures and tables as files.
@@ -410,8 +410,10 @@ mod tests {
         let report = || RunReport { records: records.clone(), ..RunReport::default() };
         let reports: Vec<RunReport> = studies.iter().map(|_| report()).collect();
         let found = changes(&studies, &reports, golden).expect("golden values");
-        let names: Vec<(&str, bool, usize)> =
-            found.iter().map(|one| (one.study.as_str(), one.is_regression(), one.unpaired)).collect();
+        let names: Vec<(&str, bool, usize)> = found
+            .iter()
+            .map(|comparison| (comparison.study.as_str(), comparison.is_regression(), comparison.unpaired))
+            .collect();
         assert_eq!(names, [("worse", true, 0), ("better", false, 0)]);
         assert!(changes(&studies, &reports, |_| None).is_none(), "no golden values");
         let none: Vec<RunReport> = studies.iter().map(|_| RunReport::default()).collect();

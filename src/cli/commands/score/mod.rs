@@ -126,9 +126,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
         _ => {
             let mut tables = Vec::new();
-            for one in &results.all {
-                let title = format!("{}: {}", arguments.scene, one.name());
-                tables.push(scores::errors_table(&one.score, &title));
+            for scored in &results.all {
+                let title = format!("{}: {}", arguments.scene, scored.name());
+                tables.push(scores::errors_table(&scored.score, &title));
             }
             if let Some((series, cells)) = &series {
                 tables.push(scores::series_table(series, cells));
@@ -139,8 +139,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     say!("{}", groups_of(case));
     let (findings, exit) = judged(&results, arguments.below, arguments.strict, comparison.references)?;
     if let Some(path) = &arguments.junit {
-        let told = results.all.iter().flat_map(|one| {
-            one.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", one.name()))
+        let told = results.all.iter().flat_map(|scored| {
+            scored.score.diagnosis.iter().map(move |sentence| format!("{}: {sentence}", scored.name()))
         });
         write_document(path, &junit_of_findings(&arguments.scene, &findings, told)?)?;
     }
@@ -152,10 +152,14 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
     let is_gate = arguments.strict || arguments.below.is_some();
     let reference = references.first().map(|kind| kind.name());
     let errors = arguments.below.map(|bound| errors_below(bound, &results.all, reference)).transpose()?;
-    let too_large = errors.into_iter().flatten().filter_map(|one| one.failure);
-    let incomplete = results.all.iter().filter(|_| is_gate).flat_map(|one| {
-        let name = one.name();
-        one.score.warnings.iter().map(move |lack| format!("{name}: {}: {}", lack.name.name(), lack.sentence))
+    let too_large = errors.into_iter().flatten().filter_map(|finding| finding.failure);
+    let incomplete = results.all.iter().filter(|_| is_gate).flat_map(|scored| {
+        let name = scored.name();
+        scored
+            .score
+            .warnings
+            .iter()
+            .map(move |lack| format!("{name}: {}: {}", lack.name.name(), lack.sentence))
     });
     let reasons: Vec<String> = too_large.chain(incomplete).collect();
     let more = match reasons.len() {
@@ -165,9 +169,10 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
     if let Some(first) = reasons.first() {
         say!("✗ {first}{more}");
     }
-    for one in &results.all {
-        let name = if is_gate || results.all.len() > 1 { format!("{}: ", one.name()) } else { String::new() };
-        for sentence in &one.score.diagnosis {
+    for scored in &results.all {
+        let name =
+            if is_gate || results.all.len() > 1 { format!("{}: ", scored.name()) } else { String::new() };
+        for sentence in &scored.score.diagnosis {
             say!("diagnosis: {name}{sentence}");
             if arguments.format == TableFormat::Markdown {
                 print_data(&format!("**Diagnosis:** {name}{sentence}\n\n"))?;
@@ -205,9 +210,9 @@ fn errors_csv(results: &Results, series: Option<&[ScoredSeries]>) -> anyhow::Res
     let of_series = series.map_or(&[][..], |_| &SERIES_COLUMNS);
     let header =
         several.then_some("result").into_iter().chain(ERROR_COLUMNS).chain(of_series.iter().copied());
-    let rows = results.all.iter().enumerate().flat_map(|(place, one)| {
-        let name = one.run.files.first().filter(|_| several).map(|file| file.display().to_string());
-        one.score.errors.iter().map(move |row| {
+    let rows = results.all.iter().enumerate().flat_map(|(place, scored)| {
+        let name = scored.run.files.first().filter(|_| several).map(|file| file.display().to_string());
+        scored.score.errors.iter().map(move |row| {
             let known = series.map(|series| series_fields(results.series_of_row(place, row, series)));
             name.clone().into_iter().chain(row.csv_fields()).chain(known.into_iter().flatten()).collect()
         })
@@ -237,10 +242,10 @@ fn judged(
     let is_gate = strict || below.is_some();
     let mut findings = Vec::new();
     let mut is_undeclared_told = false;
-    for one in &results.all {
+    for scored in &results.all {
         let is_named = is_gate || results.all.len() > 1;
-        let name = if is_named { format!("{}: ", one.name()) } else { String::new() };
-        for lack in &one.score.warnings {
+        let name = if is_named { format!("{}: ", scored.name()) } else { String::new() };
+        for lack in &scored.score.warnings {
             let word = if is_gate { "fail" } else { "warning" };
             let is_of_mapping = lack.name == Lack::Undeclared;
             if !(is_of_mapping && is_undeclared_told) {
@@ -248,13 +253,13 @@ fn judged(
                 say!("{word}: {name}{}: {}", lack.name.name(), lack.sentence);
             }
             is_undeclared_told |= is_of_mapping;
-            let subject = format!("{}/{}", one.name(), lack.name.name());
+            let subject = format!("{}/{}", scored.name(), lack.name.name());
             findings.push(Finding { subject, failure: Some(lack.sentence.clone()) });
         }
-        if is_gate && one.score.warnings.is_empty() {
-            findings.push(Finding { subject: format!("{}/complete", one.name()), failure: None });
+        if is_gate && scored.score.warnings.is_empty() {
+            findings.push(Finding { subject: format!("{}/complete", scored.name()), failure: None });
         }
-        for note in &one.run.notes {
+        for note in &scored.run.notes {
             say!("note: {name}{note}");
         }
     }
@@ -267,12 +272,12 @@ fn judged(
     if let Some(bound) = below {
         let reference = references.first().map(|kind| kind.name());
         let errors = errors_below(bound, &results.all, reference)?;
-        for failure in errors.iter().filter_map(|one| one.failure.as_ref()) {
+        for failure in errors.iter().filter_map(|finding| finding.failure.as_ref()) {
             say!("fail: {failure}");
         }
         findings.extend(errors);
     }
-    let passes = findings.iter().all(|one| one.failure.is_none());
+    let passes = findings.iter().all(|finding| finding.failure.is_none());
     Ok((findings, if passes { Exit::Pass } else { Exit::VerdictFailed }))
 }
 
@@ -284,8 +289,8 @@ fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyh
     }
     let is_judged = |of_row: &str| Some(of_row) == reference;
     let mut findings = Vec::new();
-    for one in results {
-        let rows = one
+    for scored in results {
+        let rows = scored
             .score
             .errors
             .iter()
@@ -300,9 +305,9 @@ fn errors_below(bound: f64, results: &[Scored], reference: Option<&str>) -> anyh
             let unit = if row.quantity == Quantity::Settlement { "relative error" } else { "L2 error" };
             (row.quantity, row.time_factor, row.value, unit)
         });
-        let vanished = one.score.unresolved.iter().filter(|row| is_judged(&row.reference));
+        let vanished = scored.score.unresolved.iter().filter(|row| is_judged(&row.reference));
         let vanished = vanished.map(|row| scaled(row.quantity, row.time_factor, row.absolute));
-        findings.extend(errors.chain(vanished).map(|error| finding_below(bound, &one.name(), error)));
+        findings.extend(errors.chain(vanished).map(|error| finding_below(bound, &scored.name(), error)));
     }
     if findings.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "the result has no error that can be judged"));
@@ -339,7 +344,7 @@ mod tests {
     use crate::record::ErrorRow;
 
     fn end_of(findings: &[Finding]) -> Exit {
-        let passes = findings.iter().all(|one| one.failure.is_none());
+        let passes = findings.iter().all(|finding| finding.failure.is_none());
         if passes { Exit::Pass } else { Exit::VerdictFailed }
     }
 
