@@ -3,7 +3,7 @@
 use super::*;
 use crate::campaign::runner::solved;
 use crate::judge::race::finish::{Level, reason_of};
-use crate::judge::race::situation::THRESHOLDS;
+use crate::judge::race::situation::{OtherCosts, THRESHOLDS};
 use crate::record::WallSample;
 
 /// A situation in which the contenders of a list need as many seconds for 1 % on their second mesh; nobody else runs.
@@ -148,4 +148,23 @@ fn an_operator_without_runs_changes_nothing() {
         assert_eq!((trade.situations, trade.cost_ratio), (0, None), "{}", trade.operator);
         assert!(trade.effects.iter().all(|effect| (effect.won, effect.lost) == (0, 0)), "{}", trade.operator);
     }
+}
+
+#[test]
+fn other_ends_are_of_a_quantity_alone_or_of_all_at_another_threshold() {
+    let level = |cells: usize, cost: f64, errors: [f64; 3]| Level {
+        cells,
+        cost,
+        seconds: None,
+        errors: errors.map(Some),
+    };
+    // The pressure arrives on the first mesh, stress and settlement on the second.
+    let levels = vec![level(4, 1.0, [1e-3, 0.5, 0.1]), level(8, 10.0, [1e-4, 1e-3, 1e-3])];
+    let costs = OtherCosts::new(&Entry { levels, ..Entry::default() });
+    let is_late = |cost: &Option<f64>| cost.is_some_and(|cost| cost > 1.0 && cost < 10.0);
+    assert_eq!(costs.alone[0], Some(1.0));
+    assert!(costs.alone[1..].iter().chain(&costs.thresholds).all(is_late), "{costs:?}");
+    // A smaller threshold costs more.
+    let [half, two, three] = costs.thresholds;
+    assert!(half > two && two > three, "{costs:?}");
 }
