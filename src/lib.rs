@@ -51,7 +51,7 @@
 //! | 18 | rigid plate | `crates/mpm/src/actions/rigid_plate.rs:tie`, `crates/mpm/src/direct_solver/system.rs:solve` |
 //! | 19 | own weight, free water | `crates/mpm/src/kernel/weighing_body.rs:add_weight` |
 //! | 20 | pressure as a nodal field | `crates/mpm/src/operators/recovery/nodal.rs:fit` |
-//! | 21 | domains of water points | `crates/mpm/src/integrate/double_point/water_points.rs:take_domains` |
+//! | 21 | domains of water points | `crates/mpm/src/integrate/double_point/following_water.rs:take_domains` |
 //! | 22 | balances of double-point MPM | `crates/mpm/src/integrate/double_point/mod.rs:map_water_masses`, `crates/mpm/src/integrate/double_point/mod.rs:map_forces` |
 //! | 23 | pressure along the water | `crates/mpm/src/integrate/double_point/water_pressure.rs:update_pressure` |
 //! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:of`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
