@@ -74,11 +74,10 @@ impl<const D: usize, const W: usize> Run<D, W> {
         for number in scaled.as_flattened_mut() {
             *number *= self.across[0];
         }
-        let nodes = &mut sums[self.first..][..W];
-        for k in 0..W {
+        for (node, value) in sums[self.first..self.first + W].iter_mut().zip(&self.values) {
             for i in 0..N {
                 for j in 0..M {
-                    nodes[k][i][j] += self.values[k] * scaled[i][j];
+                    node[i][j] += value * scaled[i][j];
                 }
             }
         }
@@ -93,13 +92,12 @@ impl<const D: usize, const W: usize> Run<D, W> {
                 *number *= self.across[d];
             }
         }
-        let nodes = &mut sums[self.first..][..W];
-        for k in 0..W {
+        for (k, node) in sums[self.first..self.first + W].iter_mut().enumerate() {
             for d in 0..D {
                 let along = if d == 0 { self.gradients[k] } else { self.values[k] };
                 for i in 0..N {
                     for j in 0..D {
-                        nodes[k][i][j] += along * scaled[d][i][j];
+                        node[i][j] += along * scaled[d][i][j];
                     }
                 }
             }

@@ -31,6 +31,8 @@ pub struct Cells<const D: usize> {
     reached: Vec<bool>,
     /// Whether a point's domain reaches into the lower and the upper neighbour of each occupied cell along each direction.
     reached_sides: Vec<[[bool; 2]; D]>,
+    /// Whether a neighbour of each occupied cell holds no point, where there is more than one cell in that direction.
+    is_at_edge: Vec<bool>,
     /// Occupied cells in index order.
     occupied: Vec<usize>,
     /// Current volume of each cell's points, m^D.
@@ -59,6 +61,7 @@ impl<const D: usize> Cells<D> {
             holds: vec![false; count],
             reached: vec![false; count],
             reached_sides: vec![[[false; 2]; D]; count],
+            is_at_edge: vec![false; count],
             occupied: Vec::with_capacity(count),
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
@@ -159,12 +162,15 @@ impl<const D: usize> Cells<D> {
     pub fn sum_volumes(&mut self, points: &Points<D>, soils: &[Material]) {
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
-        let volumes = points.initial_volume.iter().zip(&points.volume_ratio).zip(&points.grain_volume);
-        for (cell, ((initial, ratio), grains)) in self.of_point.iter().zip(volumes) {
-            let volume = initial * ratio;
-            self.volume[*cell] += volume;
+        let count = points.len();
+        let [initial, ratio, grains] =
+            [&points.initial_volume, &points.volume_ratio, &points.grain_volume].map(|field| &field[..count]);
+        let of_point = &self.of_point[..count];
+        for point in 0..count {
+            let (cell, volume) = (of_point[point], initial[point] * ratio[point]);
+            self.volume[cell] += volume;
             // n V = V − (1 − n_0) V_0
-            self.porosity[*cell] += volume - grains;
+            self.porosity[cell] += volume - grains[point];
         }
         self.take_means(points, soils);
     }
@@ -191,10 +197,13 @@ impl<const D: usize> Cells<D> {
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
         self.reached.clone_from(&self.holds);
         self.look_at_sides(grid);
-        let per_cell = grid.inverse_cell_size();
-        let (all_reached, mut reaches_others) = ([[true; 2]; D], false);
+        for &cell in &self.occupied {
+            let sides = &self.reached_sides[cell];
+            self.is_at_edge[cell] = (0..D).any(|d| grid.cells[d] > 1 && sides[d] != [true; 2]);
+        }
+        let (per_cell, mut reaches_others) = (grid.inverse_cell_size(), false);
         for (point, home) in self.of_point.iter().enumerate() {
-            if self.reached_sides[*home] == all_reached {
+            if !self.is_at_edge[*home] {
                 continue;
             }
             for d in 0..D {
@@ -249,11 +258,13 @@ impl<const D: usize> Cells<D> {
     /// Means of the inverse deformation gradients over each cell's points.
     pub fn average_deformation(&mut self, points: &Points<D>) {
         self.inverse_deformation.fill([[0.0; D]; D]);
-        let volumes = points.initial_volume.iter().zip(&points.volume_ratio);
-        let of_points = self.of_point.iter().zip(&points.inverse_deformation).zip(volumes);
-        for ((cell, back), (initial, ratio)) in of_points {
-            let share = initial * ratio / self.volume[*cell];
-            let sum = &mut self.inverse_deformation[*cell];
+        let count = points.len();
+        let [initial, ratio] = [&points.initial_volume, &points.volume_ratio].map(|field| &field[..count]);
+        let (of_point, inverse) = (&self.of_point[..count], &points.inverse_deformation[..count]);
+        for point in 0..count {
+            let (cell, back) = (of_point[point], &inverse[point]);
+            let share = initial[point] * ratio[point] / self.volume[cell];
+            let sum = &mut self.inverse_deformation[cell];
             for i in 0..D {
                 for j in 0..D {
                     sum[i][j] += share * back[i][j];

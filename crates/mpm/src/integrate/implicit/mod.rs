@@ -2,9 +2,9 @@
 //!
 //! - `unknowns`: displacements of the nodes and pressures of the sites, numbered along the body;
 //! - `linear_system`: the frozen body as `C ẋ + K x = g`; `linear`: SDIRK2 on it, one factorisation per step size;
-//! - `trial`: a moving or inertial body at a trial state, strained by `straining`; `residual`: what its balances leave;
-//!   `tangent`: the residual's differences; `secants`: rank-one corrections of an old tangent; `guess`: where the
-//!   iteration of a stage begins; `newton`: SDIRK2 with Newton's iteration;
+//! - `trial`: a moving or inertial body at a trial state, strained by `straining`, which `point_strain` has the memory of;
+//!   `residual`: what its balances leave; `tangent`: the residual's differences; `secants`: rank-one corrections of an old
+//!   tangent; `guess`: where the iteration of a stage begins; `newton`: SDIRK2 with Newton's iteration;
 //! - `driven`: a plate that is pushed into a frozen body which yields, by the consistent tangent of its points.
 //!
 //! SDIRK2 (Alexander 1977) has two stages with one matrix, and is L-stable and stiffly accurate. With `γ = 1 − 1/√2` the

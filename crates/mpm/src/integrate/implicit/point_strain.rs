@@ -15,6 +15,11 @@ pub(super) struct PointStrain<const D: usize> {
     pub trace: f64,
 }
 
+impl<const D: usize> PointStrain<D> {
+    /// A strain that no strain is equal to.
+    pub const UNKNOWN: Self = Self { gradient: [[f64::NAN; D]; D], trace: f64::NAN };
+}
+
 /// A stretch and its logarithm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct KnownStretch([f64; 2]);

@@ -46,7 +46,7 @@ impl<const D: usize> Trial<D> {
             let mut gradient = stencils.of_point(point).gradient(&stride, &self.displacement);
             let mut dilation = 0.0;
             let trace = traces.get(point);
-            let strained = Some(PointStrain { gradient, trace: trace.copied().unwrap_or(0.0) });
+            let strained = PointStrain { gradient, trace: trace.copied().unwrap_or(0.0) };
             if strained_for[point] == strained {
                 continue;
             }

@@ -44,8 +44,8 @@ pub struct Trial<const D: usize> {
     pub velocity: [Vec<Vector<D>>; 2],
     /// Increment of the nodal displacement since the anchor, m.
     pub(super) displacement: Vec<Vector<D>>,
-    /// Strains since the anchor for which the points have deformation and stress: their own ones, where they have any.
-    pub(super) strained: Vec<Option<PointStrain<D>>>,
+    /// Strains since the anchor for which the points have deformation and stress.
+    pub(super) strained: Vec<PointStrain<D>>,
     /// Stretches whose logarithms are known, `[point]`.
     pub(super) stretches: Vec<KnownStretch>,
 }
@@ -119,7 +119,7 @@ impl<const D: usize> Trial<D> {
     /// Forgets for which strains the points have deformation and stress.
     fn forget_strains(&mut self) {
         self.strained.clear();
-        self.strained.resize(self.anchor.len(), None);
+        self.strained.resize(self.anchor.len(), PointStrain::UNKNOWN);
     }
 
     /// Moves the body to increments of the unknowns since the anchor, but for the masses of the nodes. Whether these have to
