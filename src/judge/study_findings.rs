@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A study with everything that is found about it.
+#[expect(clippy::struct_excessive_bools, reason = "each says whether its page has a part")]
 #[derive(Clone, Debug)]
 pub struct StudyFindings {
     /// Its name.

@@ -125,7 +125,7 @@ fn changed(value: &mut Value) {
 fn lines_of(found: &StudyFindings) -> Vec<String> {
     let page = study_page(found).expect("a page");
     let figures = all_figures(&page);
-    let data = figures.iter().map(|figure| figure.chart.data_csv()).collect::<Vec<_>>().join("");
+    let data = figures.iter().map(|figure| figure.chart.data_csv()).collect::<String>();
     let text = render_markdown(&page).expect("Markdown") + &data;
     // Files of figures, anchors and the list of sections are no words.
     let is_link = |line: &&str| ["![", "<a ", "- ["].iter().any(|start| line.starts_with(start));
