@@ -129,18 +129,22 @@ impl CostTable {
         Profile { contender: self.contenders[contender].clone(), steps }
     }
 
-    /// The contenders by their score, the best first; of equals the one that arrives more often, then the one that comes
-    /// first. Shares are sums of weights: equal to round-off is equal.
+    /// The contenders by their score, the best first; of equals the one that arrives more often, then the one that is more
+    /// often the fastest, then the one that comes first. Shares are sums of weights: equal to round-off is equal.
     pub fn ranked(&self) -> Vec<Choice> {
-        let choice = |profile: Profile| Choice {
-            reached: profile.steps.last().map_or(0.0, |(_, share)| *share),
-            within_two: profile.share(NEARLY),
-            method: profile.contender,
+        let choice = |profile: Profile| {
+            let fastest = profile.share(1.0);
+            let choice = Choice {
+                reached: profile.steps.last().map_or(0.0, |(_, share)| *share),
+                within_two: profile.share(NEARLY),
+                method: profile.contender,
+            };
+            let rank = [choice.score(), choice.reached, fastest].map(|share| (1e9 * share).round());
+            (rank, choice)
         };
-        let mut all: Vec<Choice> = self.profiles().into_iter().map(choice).collect();
-        let rank = |choice: &Choice| [choice.score(), choice.reached].map(|share| (1e9 * share).round());
-        all.sort_by(|a, b| rank(b).partial_cmp(&rank(a)).unwrap_or(Ordering::Equal));
-        all
+        let mut all: Vec<([f64; 3], Choice)> = self.profiles().into_iter().map(choice).collect();
+        all.sort_by(|(a, _), (b, _)| b.partial_cmp(a).unwrap_or(Ordering::Equal));
+        all.into_iter().map(|(_, choice)| choice).collect()
     }
 
     /// The contender to take; none where nobody arrives anywhere.

@@ -242,6 +242,7 @@ fn every_point_and_every_cell_has_a_row() {
 
 #[test]
 fn a_figure_that_says_one_number_is_not_telling() {
+    use Style::{Line, LineAndMarkers, Markers, Theory};
     let telling = |series: &[(Style, &[(f64, f64)])]| {
         let mut chart = Chart::new("", ChartAxis::log10("x"), ChartAxis::linear("y"));
         chart
@@ -249,7 +250,6 @@ fn a_figure_that_says_one_number_is_not_telling() {
             .extend(series.iter().map(|(style, points)| Series::new("a", points.to_vec()).style(*style)));
         chart.is_telling()
     };
-    use Style::{Line, LineAndMarkers, Markers, Theory};
     let theory: (Style, &[(f64, f64)]) = (Theory, &[(1.0, 0.0), (2.0, 1.0), (4.0, 5.0)]);
     for (what, series, wanted) in [
         ("three values", &[theory, (LineAndMarkers, &[(1.0, 2.0), (2.0, 1.0), (4.0, 0.5)])][..], true),

@@ -82,7 +82,7 @@ fn figure(study: &str, ranked: &[Entry], quantity: RaceQuantity, words: &str) ->
     chart.series.extend(others.map(|(name, points)| Series::new(name, points).style(Style::Context)));
     chart.series.extend(named);
     chart.rules.push(Rule { at: THRESHOLD, label: "1 %".to_owned() });
-    let caption = "In colour: the six cheapest to 1 %; grey: the others. Each marker is a mesh, twice as fine as the one before. \
+    let caption = "In colour: the first six of the table; grey: the others. Each marker is a mesh, twice as fine as the one before. \
                    Counted work is in seconds of the calibration.";
     is_drawn.then(|| figure_of(study, &format!("race-{}", quantity.name()), chart, caption))
 }
