@@ -5,7 +5,7 @@ use crate::render::number;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_soil::wording::clock_time;
 
-const HEADER: &str = "> time | > T_v | > of the final one | > exact, mm | > this run, mm | > error";
+const HEADER: &str = "> time | > T_v | > share of final | > exact, mm | > this run, mm | > error";
 
 /// The tables with their headings: one per run, or, where each run has a single output, one with a row per run.
 pub fn tables_of(all: &[SettlementTable]) -> Vec<(String, Table)> {
