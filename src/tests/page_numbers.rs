@@ -14,6 +14,7 @@ use crate::{render_markdown, study_page};
 use regex_lite::Regex;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fmt::Write;
 
 /// All numbers of a JSON value, without their signs.
 fn collect(value: &Value, numbers: &mut Vec<u64>) {
@@ -177,7 +178,7 @@ fn every_number_of_a_page_is_another_with_other_findings() {
         let (count, same) = unmoved(text);
         assert!(count >= least, "{count} numbers of {name}");
         let same: Vec<String> = same.into_iter().collect();
-        told += &format!("{name}: numbers of fixed words\n  {}\n", same.join("\n  "));
+        let _ = writeln!(told, "{name}: numbers of fixed words\n  {}", same.join("\n  "));
     }
     assert_snapshot("fixed_numbers_of_pages", &told);
 }
