@@ -113,15 +113,16 @@ fn the_committed_page_says_what_its_own_table_comes_to() {
                     "take `{method}`:** it reaches 1 % of pressure, effective stress and settlement in {reached}"
                 ),
                 format!("in {nearly} at no more than twice the cost of the fastest method"),
-                format!("`{integrator}` in {count})"),
+                format!("{integrator} integrator in {count}. "),
             ],
             Question::Total => [
                 format!("take `{method}`:** it reaches 1 % in {reached}"),
                 format!("in {nearly} at no more than twice the cost of the fastest of"),
-                format!("`{integrator}` in {count} of {} situations", situations(&rows).len()),
+                format!("{} situations in ", situations(&rows).len()),
             ],
         };
-        for part in sentence {
+        let missed = table(RaceQuantity::All, THRESHOLD).missed(method).len();
+        for part in sentence.into_iter().chain([format!("`{method}` misses {missed}.")]) {
             assert!(page.contains(&part), "{part}");
         }
         for variant in variants(table) {
