@@ -113,16 +113,20 @@ fn the_committed_page_says_what_its_own_table_comes_to() {
                     "take `{method}`:** it reaches 1 % of pressure, effective stress and settlement in {reached}"
                 ),
                 format!("in {nearly} at no more than twice the cost of the fastest method"),
-                format!("{integrator} integrator in {count}. "),
+                format!("({count} {integrator})"),
             ],
             Question::Total => [
                 format!("take `{method}`:** it reaches 1 % in {reached}"),
                 format!("in {nearly} at no more than twice the cost of the fastest of"),
-                format!("{} situations in ", situations(&rows).len()),
+                format!("{} situations (", situations(&rows).len()),
             ],
         };
         let missed = table(RaceQuantity::All, THRESHOLD).missed(method).len();
-        for part in sentence.into_iter().chain([format!("`{method}` misses {missed}.")]) {
+        let misses = match question {
+            Question::Moving => format!("`{method}` misses 1 % in {missed}, "),
+            Question::Total => format!(", `{method}` in {missed}."),
+        };
+        for part in sentence.into_iter().chain([misses]) {
             assert!(page.contains(&part), "{part}");
         }
         for variant in variants(table) {

@@ -68,9 +68,16 @@ fn every_mistake_is_told_at_its_line_with_what_to_write() {
         let (at, told, right) = complaint(&SOUND.replacen(from, to, 1));
         assert_eq!((&at.to_string(), &told, &right), (line, message, help), "{to}");
     }
-    let told = refusal(&SOUND.replacen("[material]", "[[material]]", 1));
-    let parts = ["`material` takes a table", "a table that appears once has single brackets: [material]"];
-    assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    for (table, parts) in [
+        ("material", ["`material` takes a table", "single brackets: [material]"]),
+        ("layer", ["`layer` takes a table", "the layers of a column are [[column.soils]]"]),
+        ("layers", ["unknown key `layers`", "the layers of a column are [[column.soils]]"]),
+        ("soils", ["unknown key `soils`", "the layers of a column are [[column.soils]]"]),
+        ("column.layers", ["unknown key `layers`", "did you mean `soils`?"]),
+    ] {
+        let told = refusal(&SOUND.replacen("[material]", &format!("[[{table}]]"), 1));
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    }
 }
 
 /// Keys and words of other programs and of textbooks: the line that is sound, what is typed instead, and the help.

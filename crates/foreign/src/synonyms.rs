@@ -144,8 +144,12 @@ pub const KEY_NAMES: &[(&[&str], &str)] = &[
     (&["runs", "repetitions", "n_repeats"], "repeats"),
 ];
 
-/// Names of quantities that follow from keys, and how.
+/// Names of what other keys give, and how.
 const DERIVED: &[(&[&str], &str)] = &[
+    (
+        &["layer", "layers", "soils", "strata", "soil_layers"],
+        "the layers of a column are [[column.soils]], from the base up",
+    ),
     (&["e", "void_ratio", "e0", "e_0"], "give the porosity instead, n = e/(1 + e): `porosity`"),
     (
         &["oedometric_modulus", "e_oed", "eoed", "constrained_modulus", "m_v", "mv", "stiffness_modulus"],
@@ -225,17 +229,22 @@ pub(crate) fn help_for_key(name: &str, known: &[&str]) -> String {
     if let Some(key) = usual.filter(|key| known.contains(key)) {
         return format!("did you mean `{key}`?");
     }
+    if let Some(how) = derived(name) {
+        return how.to_owned();
+    }
     if let Some(near) = nearest(name, known.iter().copied()) {
         return format!("did you mean `{near}`?");
-    }
-    if let Some(how) = meant(DERIVED, name) {
-        return how.to_owned();
     }
     let elsewhere = |wanted: &str| KEYS.iter().find(|key| key.name == wanted);
     match elsewhere(name).or_else(|| elsewhere(usual?)) {
         Some(key) => belongs(key),
         None => format!("the keys here are {}", known.join(", ")),
     }
+}
+
+/// How other keys give what a name stands for.
+pub(crate) fn derived(name: &str) -> Option<&'static str> {
+    meant(DERIVED, name)
 }
 
 /// Where a key belongs.

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, StudyError, one_of};
 use crate::source::StudySource;
-use crate::synonyms::help_for_key;
+use crate::synonyms::{derived, help_for_key};
 use crate::units::{has_unit, in_si, leading_number};
 use oedometer_case::keys::Key;
 use schemars::JsonSchema;
@@ -244,7 +244,8 @@ impl Mistakes<'_> {
                 format!("a block that may be repeated has double brackets: [[{key}]]")
             }
             DeValue::Array(_) if kind == "object" => {
-                format!("a table that appears once has single brackets: [{key}]")
+                let other = derived(key).map_or_else(String::new, |how| format!("; {how}"));
+                format!("a table that appears once has single brackets: [{key}]{other}")
             }
             DeValue::Array(_) if Key::named(key, "sweep").is_some() => {
                 format!("several values belong in a [[sweep]]: `{key} = {written}`")

@@ -230,5 +230,8 @@ mod tests {
         let tied = table(&[("p", [1.0, 5.0, NEVER]), ("q", [NEVER, 5.0, 1.0])]);
         assert_eq!(tied.best(), Some(Choice { method: "b".to_owned(), reached: 1.0, within_two: 0.0 }));
         assert_eq!(half.profiles()[2].share(2.0), 0.0);
+        // Of equal scores and arrivals the faster: both within twice, b the first.
+        let close = table(&[("p", [1.5, 1.0, NEVER]), ("q", [1.5, 1.0, NEVER])]);
+        assert_eq!(close.best().map(|best| best.method), Some("b".to_owned()));
     }
 }

@@ -18,18 +18,12 @@ pub fn section(paper: &PaperFinding) -> Result<Section, RenderError> {
     let mut figures = Vec::new();
     for curves in &paper.curves {
         let PaperCurves { number, isochrones, consolidation } = curves;
-        // The second pair reads as the first.
-        let is_first = figures.is_empty();
         let pair = [
             (theory_lines::isochrones("paper", isochrones), 'a'),
             (theory_lines::consolidation("paper", consolidation), 'b'),
         ];
         for (figure, letter) in pair {
-            let mut figure = quarter(figure, &format!("{number}{letter}"), &isochrones.reference);
-            if !is_first {
-                figure.caption.clear();
-            }
-            figures.push(figure);
+            figures.push(quarter(figure, &format!("{number}{letter}"), &isochrones.reference));
         }
     }
     let mut blocks = vec![Block::Figures(figures)];

@@ -506,7 +506,7 @@ mod tests {
             "**Where points move through the mesh, take `MPM`:** it reaches 1 % of pressure, effective stress and settlement in \
              100 % of the situations, in 33 % at no more than twice the cost of the fastest method.",
             "take `TL-GC-SRI-patch`:** it reaches 1 % in 67 %, in 67 % at no more than twice the cost of the fastest of 1 total",
-            "3 situations in 3 families of equal weight, 2 methods; implicit integrator in 3. `TL-GC-SRI-patch` misses 1. Costs are",
+            "3 situations (3 implicit) in 3 families of equal weight, 2 methods. `TL-GC-SRI-patch` misses 1 % in 1. Costs are",
             "Contact, separation and flow are not tested.",
         ] {
             assert!(told.contains(part), "{part}\n{told}");
@@ -536,6 +536,10 @@ mod tests {
         let panel = panel(&findings, "layer", &situations, &named);
         assert_eq!(panel.caption, "✗ locks: `GIMP` 2/2");
         assert_eq!(strip(&situations, &named[..2]), "✓ the named methods all arrive");
+        // Each miss has its own reason.
+        let mut other = situations[1].clone();
+        other.entries[0].reason = Some(Reason::Stalls);
+        assert_eq!(strip(&[situations[0], &other], &named), "✗ locks: `GIMP` 1/2 · ✗ stalls: `GIMP` 1/2");
         let figure = profile_figure(&findings, RaceQuestion::Moving, RaceQuantity::All, &named);
         let stairs =
             &figure.chart.series.iter().find(|one| one.name == "GC-SRI-patch").expect("drawn").points;

@@ -82,19 +82,11 @@ impl Layout {
             Some(PlacedAxis::new(&ChartAxis::linear(""), ends, (top + height, top), true))
         };
         let beside = end_names_width(chart);
-        // The room for the ticks' labels, for a plot of some height.
-        let margins = |height: f64| {
-            let left = PAD + y_axis(height).label_width() + BESIDE;
-            let right = bar_axis(height).map_or(PAD + 14.0 + beside, |bar| {
-                PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE + BAR_WORDS
-            });
-            (left, right)
-        };
-        let fitting =
-            |(left, right): (f64, f64)| shape(chart, (x_ends, y_ends), (wide - left - right).max(60.0), tall);
-        // A lower plot has other ticks, with labels of another width.
-        let (left, right) = margins(fitting(margins(tall)).1);
-        let (plot_width, plot_height) = fitting((left, right));
+        let left = PAD + y_axis(tall).label_width() + BESIDE;
+        let right = bar_axis(tall)
+            .map_or(PAD + 14.0 + beside, |bar| PAD + BAR.0 + BAR.1 + bar.label_width() + BESIDE + BAR_WORDS);
+        let room = (wide - left - right).max(60.0);
+        let (plot_width, plot_height) = shape(chart, (x_ends, y_ends), room, tall);
         let plot = Frame { left, top, right: left + plot_width, bottom: top + plot_height };
         let x = PlacedAxis::new(&chart.x, x_ends, (plot.left, plot.right), false);
         let y = y_axis(plot_height);

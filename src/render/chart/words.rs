@@ -266,7 +266,7 @@ fn beside(at: Px, slope: f64, layout: &Layout) -> Vec<Offer<Triangle>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::chart::{ChartAxis, Series};
+    use crate::render::chart::{ChartAxis, PointName, Series};
 
     #[test]
     fn the_emptier_place_wins_and_the_frame_is_kept() {
@@ -284,6 +284,26 @@ mod tests {
         assert_eq!(space.take(offers(&[(50.0, 20.0), (20.0, 80.0)]), true), Some(1), "the first is taken");
         assert_eq!(space.take(offers(&[(50.0, 20.0)]), false), None);
         assert_eq!(space.take(offers(&[]), true), None);
+    }
+
+    #[test]
+    fn names_that_have_no_room_beside_their_points_are_led_to_from_them() {
+        let leaders = |count: u32| {
+            let mut chart = Chart::new("", ChartAxis::linear("x"), ChartAxis::linear("y"))
+                .with(Series::new("", vec![(0.0, 0.0), (10.0, 10.0)]));
+            let name = |place: u32| {
+                let at = (5.0 + 0.02 * f64::from(place), 5.0);
+                PointName { at, name: format!("program number {place}") }
+            };
+            chart.names = (0..count).map(name).collect();
+            let svg = chart.svg().expect("a figure");
+            let written =
+                (0..count).filter(|place| svg.contains(&format!(">program number {place}<"))).count();
+            assert_eq!(written, count as usize, "each is written");
+            svg.matches("stroke=\"#5F5F5F\" stroke-width=\"7\"").count()
+        };
+        assert_eq!(leaders(1), 0);
+        assert!(leaders(8) > 0);
     }
 
     #[test]

@@ -215,6 +215,9 @@ mod tests {
                 at("no run failed", &[0])
             ]
         );
+        let looks: Vec<_> = chart.series.iter().map(|series| (series.slot, series.marker)).collect();
+        assert_eq!(looks[1], (Some(UNTRIED.0), Some(UNTRIED.1)), "grey and hollow");
+        assert!(looks.iter().filter(|look| **look == looks[1]).count() == 1);
         assert_eq!(broken(&MapFinding::new(&soils[..1]).expect("a soil")), None);
         let table = methods_table(&map);
         let shown: Vec<Vec<String>> =

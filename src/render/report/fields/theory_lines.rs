@@ -114,10 +114,21 @@ mod tests {
     use crate::campaign::runner::solved;
     use crate::case::planned::Tier;
     use crate::case::quantity::Quantity;
+    use crate::judge::blocks::profiles::ConsolidationRun;
     use crate::judge::study_results::StudyResults;
 
     fn found_blocks(results: &StudyResults<'_>) -> Vec<Block> {
         blocks(&results.findings().expect("theory")).expect("filled")
+    }
+
+    #[test]
+    fn an_axis_of_consolidation_ends_beyond_all_that_it_shows() {
+        let end = |theory: f64, run: f64| {
+            let run = ConsolidationRun { method: "GIMP".to_owned(), points: vec![(0.1, run)] };
+            let theory = vec![(0.01, 0.5 * theory), (0.1, theory)];
+            end_of_axis(&Consolidation { reference: "terzaghi".to_owned(), theory, runs: vec![run] })
+        };
+        assert_eq!([end(0.02, 0.01), end(0.12, 0.21), end(0.34, 0.3), end(0.97, 0.9)], [0.1, 0.3, 0.4, 1.0]);
     }
 
     #[test]
