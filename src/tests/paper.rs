@@ -1,4 +1,4 @@
-//! The paper for the Journal of Open Source Software: every number of its example is one of the committed findings.
+//! The paper for the Journal of Open Source Software: its sections, and its numbers, which are those of the committed findings.
 
 use crate::render::number::{rounded_percent, short};
 use serde_json::Value;
@@ -17,6 +17,16 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
     let effect = |place: usize| short(composite["effects"][place]["error_ratio"].as_f64().expect("a ratio"));
     let method = moving["method"].as_str().expect("a name");
     assert_eq!(total["method"], format!("TL-{method}"), "its total Lagrangian form");
+    let audit = &findings["audit"];
+    let pairing = |printed: bool, law: &str, continuity: &str| {
+        let pairings = audit["pairings"].as_array().expect("pairings");
+        let mut matching =
+            pairings.iter().filter(|pairing| pairing["is_printed"] == printed && pairing["law"] == law);
+        matching.find(|pairing| pairing["continuity"] == continuity).expect("a pairing")["largest"].clone()
+    };
+    let as_printed = pairing(true, "porosity-dependent", "constant-porosity-gradient");
+    let conservative = pairing(false, "log-linear", "conservative");
+    let error = |largest: &Value| largest["error"].as_f64().expect("an error");
     for told in [
         format!("Over {} situations in {} families", moving["situations"], moving["families"]),
         format!(
@@ -31,10 +41,51 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
             effect(1),
             effect(2)
         ),
+        format!(
+            "Xie and Leo by {:+.1} % at $T_v = {}$",
+            100.0 * error(&as_printed),
+            as_printed["time_factor"]
+        ),
+        format!("agrees within {} %.", short(100.0 * error(&conservative).abs())),
     ] {
         assert!(example.contains(&told), "{told}\nis not in\n{example}");
         example = example.replace(&told, "");
     }
-    let cited: String = example.split('[').map(|part| part.rsplit(']').next().unwrap_or(part)).collect();
-    assert!(!cited.contains(|letter: char| letter.is_ascii_digit()), "a number of no finding: {cited}");
+    assert_eq!(numbers_outside_citations(&example), "", "a number of no finding");
+    // The other sections have no numbers, which nothing would keep true.
+    let (_, text) = paper.rsplit_once("---\n").expect("a head");
+    let (before, rest) = text.split_once("# Example").expect("an example");
+    let (_, after) = rest.split_once("\n# ").expect("more sections");
+    assert_eq!(numbers_outside_citations(before) + &numbers_outside_citations(after), "");
+}
+
+/// The digits of a text outside `[@…]`.
+fn numbers_outside_citations(text: &str) -> String {
+    let outside = text.split('[').map(|part| part.rsplit(']').next().unwrap_or(part));
+    outside.flat_map(str::chars).filter(char::is_ascii_digit).collect()
+}
+
+#[test]
+fn the_paper_has_the_sections_and_the_length_that_the_journal_asks() {
+    let paper = include_str!("../../paper/paper.md");
+    let (_, text) = paper.rsplit_once("---\n").expect("a head");
+    let sections: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("# ")).collect();
+    let asked = [
+        "Summary",
+        "Statement of need",
+        "State of the field",
+        "Software design",
+        "Example",
+        "Research impact statement",
+        "AI usage disclosure",
+        "Acknowledgements",
+        "References",
+    ];
+    assert_eq!(sections, asked);
+    let words = text.split_whitespace().count();
+    assert!((750..=1750).contains(&words), "{words} words");
+    let bibliography = include_str!("../../paper/paper.bib");
+    for key in text.split('@').skip(1).filter_map(|part| part.split([']', ';']).next()) {
+        assert!(bibliography.contains(&format!("{{{key},")), "{key} is not in paper.bib");
+    }
 }
