@@ -9,7 +9,7 @@ use crate::judge::race::sensitivity::Change;
 use crate::judge::race::situation::{Entry, Situation};
 use crate::judge::race::{Question as RaceQuestion, RaceFindings};
 use crate::render::answers::{Question, page_of};
-use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style, slots};
 use crate::render::number;
 use crate::render::page::{Block, Figure, Page, Section, slug};
 use crate::render::report::labels::capitalised;
@@ -136,6 +136,11 @@ fn named(findings: &RaceFindings) -> Vec<String> {
     named
 }
 
+/// The colours of the named methods.
+fn slots_of(named: &[String]) -> Vec<usize> {
+    slots(&named.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
 /// Performance profiles of one question and quantity: staircases, the named ones in colour.
 fn profile_figure(
     findings: &RaceFindings,
@@ -170,7 +175,7 @@ fn profile_figure(
     chart.series.extend(
         others.map(|one| Series::new(one.contender.clone(), staircase(&one.steps)).style(Style::Context)),
     );
-    for (slot, name) in named.iter().enumerate() {
+    for (name, slot) in named.iter().zip(slots_of(named)) {
         if let Some(one) = profiles.iter().find(|one| one.contender == *name) {
             chart.series.push(Series::new(name.clone(), staircase(&one.steps)).style(Style::Line).slot(slot));
         }
@@ -201,7 +206,7 @@ fn panel(findings: &RaceFindings, family: &str, situations: &[&Situation], named
     };
     let others = findings.curves(family).filter(|curve| !named.contains(&curve.contender));
     chart.series.extend(others.map(|curve| line(curve).style(Style::Context)));
-    for (slot, name) in named.iter().enumerate() {
+    for (name, slot) in named.iter().zip(slots_of(named)) {
         let curve = findings.curves(family).find(|curve| curve.contender == *name);
         chart.series.extend(curve.map(|curve| line(curve).style(Style::Line).slot(slot)));
     }

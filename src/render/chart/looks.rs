@@ -1,9 +1,10 @@
 //! Colours, markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
 //! the colour-blind and readers of grey paper can tell them apart.
+use crate::case::grouping::distinct;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
-use crate::render::chart::{Chart, Naming, Series, Style};
+use crate::render::chart::{Chart, Naming, Series, Style, slots};
 use crate::render::script::{width, wrap};
 use plotters::element::Circle;
 use plotters::prelude::{Color, RGBColor};
@@ -89,34 +90,40 @@ impl Look {
 /// The looks of all series, in their order. Where no number is given it is that of the name, so that a method looks
 /// the same at every time.
 pub(super) fn looks(chart: &Chart) -> Vec<Look> {
-    let mut names: [Vec<&str>; 2] = Default::default();
-    let look = |series: &'_ crate::render::chart::Series, place: usize| {
-        let is_theory = series.style == Style::Theory;
-        let slot = series.slot.unwrap_or(place);
-        Look {
-            colour: match series.style {
-                Style::Theory => DARK,
-                Style::Context => GREY,
-                _ => COLOURS[slot % COLOURS.len()],
-            },
-            is_theory,
-            has_line: series.style != Style::Markers,
-            dash: if series.style == Style::Context { "" } else { DASHES[slot % DASHES.len()] },
-            marker: matches!(series.style, Style::Markers | Style::LineAndMarkers)
-                .then_some(series.marker.unwrap_or(slot)),
-        }
+    let names = |is_theory: bool| {
+        let series = chart.series.iter().filter(|series| series.style != Style::Context);
+        distinct(
+            series.filter(|series| (series.style == Style::Theory) == is_theory).map(|series| &*series.name),
+        )
     };
-    let mut looks = Vec::new();
-    for series in &chart.series {
-        let seen = &mut names[usize::from(series.style == Style::Theory)];
-        let known = seen.iter().position(|name| *name == series.name && !name.is_empty());
-        let place = known.unwrap_or_else(|| {
-            seen.push(&series.name);
-            seen.len() - 1
-        });
-        looks.push(look(series, place));
+    let (theory, computed) = (names(true), names(false));
+    let slots = slots(&computed);
+    let look = |series: &Series| {
+        let place = |names: &[&str]| names.iter().position(|name| *name == series.name).unwrap_or_default();
+        let by_name = if series.style == Style::Theory {
+            place(&theory)
+        } else {
+            slots.get(place(&computed)).copied().unwrap_or_default()
+        };
+        look(series, series.slot.unwrap_or(by_name))
+    };
+    chart.series.iter().map(look).collect()
+}
+
+/// How a series with this number looks.
+fn look(series: &Series, slot: usize) -> Look {
+    Look {
+        colour: match series.style {
+            Style::Theory => DARK,
+            Style::Context => GREY,
+            _ => COLOURS[slot % COLOURS.len()],
+        },
+        is_theory: series.style == Style::Theory,
+        has_line: series.style != Style::Markers,
+        dash: if series.style == Style::Context { "" } else { DASHES[slot % DASHES.len()] },
+        marker: matches!(series.style, Style::Markers | Style::LineAndMarkers)
+            .then_some(series.marker.unwrap_or(slot)),
     }
-    looks
 }
 
 /// Outline of a marker of unit size; empty for a disc.

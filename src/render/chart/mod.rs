@@ -8,8 +8,11 @@ mod draw;
 mod ends;
 mod looks;
 mod multiples;
+mod slots;
 mod svg;
 mod words;
+
+pub use crate::render::chart::slots::slots;
 
 use crate::render::chart::axis::{Scale, drawable};
 use crate::render::escape::csv_field;

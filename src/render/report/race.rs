@@ -7,7 +7,7 @@ use crate::judge::race::sensitivity::THRESHOLD;
 use crate::judge::race::situation::{Entry, OtherCosts, Situation};
 use crate::judge::race::{Question, RaceFindings};
 use crate::judge::study_findings::StudyFindings;
-use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style};
+use crate::render::chart::{Chart, ChartAxis, Naming, Rule, Series, Size, Style, slots};
 use crate::render::page::{Block, Figure};
 use crate::render::report::figure_of;
 use crate::render::table::{Cell, Table, columns};
@@ -75,9 +75,13 @@ fn figure(study: &str, ranked: &[Entry], quantity: RaceQuantity, words: &str) ->
     chart.size = Size { width: 860.0, plot_height: 380.0, equal_units: false };
     chart.naming = Naming::Ends;
     let is_drawn = !drawn.is_empty();
-    let named = drawn.iter().take(NAMED).enumerate();
-    let named: Vec<Series> =
-        named.map(|(slot, (name, points))| Series::new(*name, points.clone()).slot(slot)).collect();
+    let named = &drawn[..drawn.len().min(NAMED)];
+    let slots = slots(&named.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    let named: Vec<Series> = named
+        .iter()
+        .zip(slots)
+        .map(|((name, points), slot)| Series::new(*name, points.clone()).slot(slot))
+        .collect();
     let others = drawn.into_iter().skip(NAMED);
     chart.series.extend(others.map(|(name, points)| Series::new(name, points).style(Style::Context)));
     chart.series.extend(named);

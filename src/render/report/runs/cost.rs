@@ -6,7 +6,7 @@ use crate::case::grouping::distinct;
 use crate::judge::blocks::timing::TimingFinding;
 use crate::judge::blocks::work::{NamedLine, PeerRow, PeersFinding, WallTimeFinding, WorkFinding};
 use crate::judge::study_findings::StudyFindings;
-use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size};
+use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
 use crate::render::page::Block;
 use crate::render::report::{figure_of, labels};
 use crate::render::table::{Cell, Table, columns};
@@ -119,12 +119,13 @@ pub fn chart_of(found: &WallTimeFinding) -> Chart {
     chart.size = Size { width: 1000.0, plot_height: 460.0, equal_units: false };
     chart.naming = Naming::Hover;
     let methods = distinct(found.fronts.iter().map(|front| front.method.as_str()));
+    let slots = slots(&methods);
     for front in &found.fronts {
-        let slot = methods.iter().position(|method| *method == front.method).unwrap_or_default();
+        let place = methods.iter().position(|method| *method == front.method).unwrap_or_default();
         let marker = IntegratorKind::ALL.iter().position(|kind| *kind == front.integrator);
         let name = format!("{}, {}", front.method, front.integrator.name());
         let series = Series::new(name, front.points.clone());
-        add_named(&mut chart, series.slot(slot).marker(marker.unwrap_or_default()));
+        add_named(&mut chart, series.slot(slots[place]).marker(marker.unwrap_or_default()));
     }
     for line in found.peers.iter().flat_map(|peers| &peers.lines) {
         add_named(&mut chart, Series::new(line.name.clone(), line.points.clone()).slot(PEERS_SLOT));
