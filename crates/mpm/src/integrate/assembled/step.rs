@@ -12,9 +12,13 @@ use crate::integrate::assembled::state::{
 use crate::kernel::ExplicitSettings;
 use crate::kernel::body::Body;
 use crate::kernel::volumetric::VolumetricRows;
+use crate::state::grid::{GHOST_LAYERS, Grid};
 use crate::wide::wide;
 use nalgebra::DMatrix;
 use oedometer_soil::tensor::{Vector, dot};
+
+/// The unknown that is the mirror image of another, and the sign that its value turns with.
+pub(crate) type Image = (usize, f64);
 
 /// A frozen body with its step assembled.
 #[derive(Clone, Debug)]
@@ -23,6 +27,8 @@ pub struct AssembledStep<const D: usize> {
     pub(crate) nodes: Vec<usize>,
     /// Nodes of the body.
     node_count: usize,
+    /// Row of the mirror image of each row's node across the middle of the first direction, where that is not vertical.
+    images: Vec<Option<usize>>,
     pub(crate) rows: RowStorage<D>,
     /// Constants of the rows, block by block.
     pub(crate) constants: Vec<BlockConstants<D>>,
@@ -79,6 +85,7 @@ impl<const D: usize> AssembledStep<D> {
         let (operators, fields) = (FrozenOperators::of(&body), &body.nodes);
         let count = operators.nodes.len();
         let mut step = Self {
+            images: mirrored_rows(&body.grid, &operators.nodes),
             rows: RowStorage::of(&operators),
             constants: vec![BlockConstants::zero(); count.div_ceil(LANES)],
             loaded: Vec::new(),
@@ -217,6 +224,16 @@ impl<const D: usize> AssembledStep<D> {
         body.surface_flux += body.outflow_of(&flux);
         body
     }
+}
+
+/// Row of the mirror image of each row's node; none in one dimension.
+fn mirrored_rows<const D: usize>(grid: &Grid<D>, nodes: &[usize]) -> Vec<Option<usize>> {
+    if D == 1 {
+        return vec![None; nodes.len()];
+    }
+    let (along, last) = (grid.node_stride()[1], grid.cells[0] + 2 * GHOST_LAYERS);
+    // The nodes are in order.
+    nodes.iter().map(|node| nodes.binary_search(&(node - node % along + last - node % along)).ok()).collect()
 }
 
 impl<const D: usize> BlockConstants<D> {
@@ -395,6 +412,19 @@ impl<const D: usize> AssembledStep<D> {
         components.filter(|(row, d)| is_free(*row, *d)).collect()
     }
 
+    /// The mirror image of each unknown of the step operator across the middle of the body; none at all where one has none.
+    pub(crate) fn images(&self) -> Vec<Image> {
+        let free = self.free_components();
+        let image = |(row, d): &(usize, usize)| {
+            let place = free.binary_search(&(self.images[*row]?, *d)).ok()?;
+            Some((place, if *d == 0 { -1.0 } else { 1.0 }))
+        };
+        let of_field: Option<Vec<Image>> = free.iter().map(image).collect();
+        let (images, count) = (of_field.unwrap_or_default(), free.len());
+        let of_field = |field: usize| images.iter().map(move |(place, sign)| (field * count + place, *sign));
+        (0..FIELDS).flat_map(of_field).collect()
+    }
+
     /// Number of unknowns of the step operator.
     pub fn unknowns(&self) -> usize {
         FIELDS * self.free_components().len()
@@ -424,6 +454,15 @@ impl<const D: usize> AssembledStep<D> {
             }
         }
         operator
+    }
+
+    /// Bits of all that a step maps to itself.
+    pub(crate) fn bits(&mut self) -> Vec<u64> {
+        let mut bits = Vec::new();
+        for field in 0..FIELDS {
+            bits.extend(self.state.field_mut(field).as_flattened().iter().map(|value| value.to_bits()));
+        }
+        bits
     }
 
     /// Forgets loads, stresses and displacements and sets every node in some motion: what grows from

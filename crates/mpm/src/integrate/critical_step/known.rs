@@ -24,21 +24,29 @@ const MOST_KEPT: usize = 4096;
 
 static KNOWN: LazyLock<Mutex<HashMap<Key, Limit>>> = LazyLock::new(Mutex::default);
 
-/// The key of a search from a safe step, s. The operator at two steps tells how it depends on the step.
+/// Steps after which a disturbance has felt every entry of the operator.
+const FEW_STEPS: usize = 4;
+
+/// The key of a search from a safe step, s: what becomes of a disturbance of all wavelengths, which two operators share only
+/// where they are the same. Steps of two sizes tell how the operator depends on the step.
 pub(super) fn key_of<const D: usize>(
     step: &AssembledStep<D>,
     settings: &ExplicitSettings,
     safe: f64,
     sharp: bool,
 ) -> Key {
-    let operators = [safe, 2.0 * safe].map(|dt| step.operator(dt, settings));
+    let mut disturbed = step.clone();
+    let mut bits = vec![step.unknowns() as u64];
+    for dt in [safe, 2.0 * safe] {
+        disturbed.set_step(dt, settings);
+        disturbed.disturb();
+        (0..FEW_STEPS).for_each(|_| disturbed.step(dt, settings));
+        bits.extend(disturbed.bits());
+    }
     [0_u8, 1].map(|first| {
         let mut hasher = DefaultHasher::new();
         (first, sharp, safe.to_bits(), format!("{settings:?}")).hash(&mut hasher);
-        operators
-            .iter()
-            .flat_map(|operator| operator.iter())
-            .for_each(|entry| entry.to_bits().hash(&mut hasher));
+        bits.hash(&mut hasher);
         hasher.finish()
     })
 }

@@ -2,6 +2,7 @@
 
 pub mod formula;
 mod known;
+mod parts;
 pub(crate) mod power;
 pub mod predicted;
 mod spectral_radius;
