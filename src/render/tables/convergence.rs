@@ -36,7 +36,7 @@ pub fn table_of(found: &ConvergenceTable) -> Table {
 /// What the runs share, and at which time they are compared with what.
 pub fn heading(found: &ConvergenceTable) -> String {
     let (time, clock) = (number::time_factor(found.time_factor), clock_time(found.seconds));
-    format!("{}, T_v = {time} ({clock}), against {}", found.runs, found.reference)
+    format!("{}, T_v = {time} ({clock}), against {}", found.runs, labels::solution(&found.reference))
 }
 
 /// The class of each series in words.
@@ -95,7 +95,10 @@ mod tests {
             ["20", "1.00e-1", "1.00", "4.00e-1", "-3.00"],
         ];
         assert_eq!(rows, right.map(|row| row.map(str::to_owned)));
-        assert_eq!(heading(&found), "MPM implicit, T_v = 0.25 (2 h), against terzaghi");
+        assert_eq!(
+            heading(&found),
+            "MPM implicit, T_v = 0.25 (2 h), against Terzaghi's solution with compressible water"
+        );
         assert_eq!(classes(&found), "class: pore pressure asymptotic, settlement divergent");
     }
 }

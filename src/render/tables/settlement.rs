@@ -2,6 +2,7 @@
 
 use crate::judge::findings::settlement::{SettlementRow, SettlementTable};
 use crate::render::number;
+use crate::render::report::labels;
 use crate::render::table::{Cell, Table, columns};
 use oedometer_soil::wording::clock_time;
 
@@ -34,7 +35,7 @@ fn one_table_of(all: &[SettlementTable], reference: &str) -> (String, Table) {
         of_run.rows.iter().map(with_run).collect::<Vec<_>>()
     });
     let table = Table::of("", columns(&format!("problem | {HEADER}")), rows);
-    (format!("Settlement of {}, against {reference}", shared.join(" ")), table)
+    (format!("Settlement of {}, against {}", shared.join(" "), labels::solution(reference)), table)
 }
 
 /// The parts of a label: its words, and what stands in parentheses, which commas separate.
@@ -63,7 +64,7 @@ fn cells_of(row: &SettlementRow) -> Vec<Cell> {
 
 /// What the table is of.
 pub fn heading(found: &SettlementTable) -> String {
-    format!("Settlement of {}, against {}", found.run, found.reference)
+    format!("Settlement of {}, against {}", found.run, labels::solution(&found.reference))
 }
 
 #[cfg(test)]
@@ -86,7 +87,7 @@ mod tests {
             table_of(&found).rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         assert_eq!(shown[0], ["365 days", "0.08536", "45.7 %", "33.8", "33.46", "-1.00 %"]);
         assert_eq!(shown[1], ["40 days", "0.08536", "–", "33.8", "–", "–"]);
-        assert_eq!(heading(&found), "Settlement of MPM, against terzaghi");
+        assert_eq!(heading(&found), "Settlement of MPM, against Terzaghi's solution with compressible water");
     }
 
     #[test]
@@ -106,7 +107,10 @@ mod tests {
         };
         let tables = tables_of(&[of_run("0.3", &[0.1]), of_run("0.4", &[0.1])]);
         let [(heading, table)] = &tables[..] else { panic!("{} tables", tables.len()) };
-        assert_eq!(heading, "Settlement of MPM implicit cells=16 u-p, against terzaghi");
+        assert_eq!(
+            heading,
+            "Settlement of MPM implicit cells=16 u-p, against Terzaghi's solution with compressible water"
+        );
         let shown: Vec<Vec<String>> =
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         assert_eq!(shown[0], ["ν 0.3", "1 day", "0.1", "–", "33.8", "34.14", "1.00 %"]);
@@ -118,6 +122,6 @@ mod tests {
     }
 
     fn heading_of_one() -> String {
-        "Settlement of MPM implicit cells=16 (u-p, ν 0.3), against terzaghi".to_owned()
+        "Settlement of MPM implicit cells=16 (u-p, ν 0.3), against Terzaghi's solution with compressible water".to_owned()
     }
 }
