@@ -6,6 +6,7 @@
     reason = "what `wide!` compiles for wider registers must be inlined into it"
 )]
 
+use crate::direct_solver::first_rows;
 use crate::wide::wide;
 use nalgebra::{DMatrixView, DMatrixViewMut};
 use std::array;
@@ -52,7 +53,7 @@ fn eliminate_one_by_one(matrix: &mut DMatrixViewMut<'_, f64>, pivot_rows: usize,
             }
             for mut column in later.column_iter_mut() {
                 let (own, rest) = column.as_mut_slice()[place..].split_at_mut(1);
-                subtract_columns(rest, [&*factors], [own[0]]);
+                subtract_multiple(rest, factors, own[0]);
             }
         });
     }
@@ -74,7 +75,7 @@ pub(crate) fn solve_unit_lower(lower: DMatrixView<'_, f64>, mut right: DMatrixVi
             let values = values.as_mut_slice();
             for (place, column) in columns.iter().enumerate() {
                 let (done, rest) = values.split_at_mut(place + 1);
-                subtract_columns(rest, [&column.as_slice()[place + 1..]], [done[place]]);
+                subtract_multiple(rest, &column.as_slice()[place + 1..], done[place]);
             }
         });
         return;
@@ -106,8 +107,7 @@ pub(crate) fn subtract_product(
             let rows = first_row..a.nrows().min(first_row + TILE[0]);
             let panel = &mut panel[..terms.len()];
             for (tile, term) in panel.iter_mut().zip(terms.clone()) {
-                tile.fill(0.0);
-                tile[..rows.len()].copy_from_slice(&a.column(term).as_slice()[rows.clone()]);
+                *tile = first_rows(&a.column(term).as_slice()[rows.clone()]);
             }
             let whole = c.ncols() - c.ncols() % COLUMNS;
             for first in (0..whole).step_by(COLUMNS) {
@@ -151,106 +151,20 @@ fn subtract_tile<const N: usize>(
     }
 }
 
-/// Columns of a triangle that a substitution takes together.
-const SWEEP: usize = 4;
-
-/// `rest ← rest − Σ x_k column_k`, columns at least as long as the rest.
+/// `rest ← rest − factor column`.
 #[inline(always)]
-fn subtract_columns<const N: usize>(rest: &mut [f64], columns: [&[f64]; N], factors: [f64; N]) {
-    let columns = columns.map(|column| &column[..rest.len()]);
-    for (row, value) in rest.iter_mut().enumerate() {
-        let mut sum = columns[0][row] * factors[0];
-        for n in 1..N {
-            sum += columns[n][row] * factors[n];
-        }
-        *value -= sum;
+fn subtract_multiple(rest: &mut [f64], column: &[f64], factor: f64) {
+    for (value, entry) in rest.iter_mut().zip(column) {
+        *value -= entry * factor;
     }
-}
-
-/// Columns of a column-major block with so many rows, `N` of them from one on.
-#[inline(always)]
-fn columns_of<const N: usize>(block: &[f64], rows: usize, first: usize) -> [&[f64]; N] {
-    array::from_fn(|n| &block[(first + n) * rows..][..rows])
-}
-
-/// Replaces the first values, as many as columns, by `L⁻¹` of them, and takes from those below what they are tied to: `L` is
-/// the part of a tall block below its diagonal, which is one. One sweep over the block.
-pub(crate) fn sweep_down(block: &[f64], values: &mut [f64], columns: usize) {
-    wide!({
-        let whole = columns - columns % SWEEP;
-        for first in (0..whole).step_by(SWEEP) {
-            sweep_down_columns::<SWEEP>(block, values, first);
-        }
-        for first in whole..columns {
-            sweep_down_columns::<1>(block, values, first);
-        }
-    });
-}
-
-#[inline(always)]
-fn sweep_down_columns<const N: usize>(block: &[f64], values: &mut [f64], first: usize) {
-    let columns = columns_of::<N>(block, values.len(), first);
-    let (done, rest) = values.split_at_mut(first + N);
-    let own = &mut done[first..];
-    for n in 1..N {
-        for k in 0..n {
-            own[n] -= columns[k][first + n] * own[k];
-        }
-    }
-    subtract_columns(rest, columns.map(|column| &column[first + N..]), array::from_fn(|n| own[n]));
-}
-
-/// `own ← own − B later`, `B` with a row for each of its own values.
-pub(crate) fn subtract_image(block: &[f64], later: &[f64], own: &mut [f64]) {
-    wide!({
-        let rows = own.len();
-        let whole = later.len() - later.len() % SWEEP;
-        for first in (0..whole).step_by(SWEEP) {
-            let columns = columns_of::<SWEEP>(block, rows, first);
-            subtract_columns(own, columns, array::from_fn(|n| later[first + n]));
-        }
-        for first in whole..later.len() {
-            subtract_columns(own, columns_of::<1>(block, rows, first), [later[first]]);
-        }
-    });
-}
-
-/// Replaces values by `U⁻¹` of them: `U` is the part of a block with so many rows on its diagonal and above it.
-pub(crate) fn sweep_up(block: &[f64], rows: usize, values: &mut [f64]) {
-    wide!({
-        let mut end = values.len();
-        while end >= SWEEP {
-            sweep_up_columns::<SWEEP>(block, rows, &mut values[..end]);
-            end -= SWEEP;
-        }
-        while end > 0 {
-            sweep_up_columns::<1>(block, rows, &mut values[..end]);
-            end -= 1;
-        }
-    });
-}
-
-#[inline(always)]
-fn sweep_up_columns<const N: usize>(block: &[f64], rows: usize, values: &mut [f64]) {
-    let first = values.len() - N;
-    let columns = columns_of::<N>(block, rows, first);
-    let (rest, own) = values.split_at_mut(first);
-    for n in (0..N).rev() {
-        own[n] /= columns[n][first + n];
-        for k in 0..n {
-            own[k] -= columns[n][first + k] * own[n];
-        }
-    }
-    subtract_columns(rest, columns, array::from_fn(|n| own[n]));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::wide::in_narrow_registers;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::DMatrix;
     use proptest::prelude::*;
-    use std::ops::AddAssign;
 
     proptest! {
         #[test]
@@ -277,26 +191,6 @@ mod tests {
             let mut right = swapped.clone();
             solve_unit_lower(lower.rows(0, columns), right.rows_mut(0, columns));
             prop_assert!((lower.rows(0, columns) * right.rows(0, columns) - swapped.rows(0, columns)).amax() < 1e-10);
-            // Of a vector `L⁻¹` below, `U⁻¹` above, in wide registers as in narrow ones.
-            let start: Vec<f64> = (0..rows).map(|row| (1.7 * row as f64).sin()).collect();
-            let mut values = start.clone();
-            sweep_down(factors.as_slice(), &mut values, columns);
-            let mut narrow = start.clone();
-            in_narrow_registers(|| sweep_down(factors.as_slice(), &mut narrow, columns));
-            prop_assert_eq!(&narrow, &values);
-            let own = DVector::from_column_slice(&values[..columns]);
-            let mut whole = &lower * &own;
-            whole.rows_mut(columns, below + own_below).add_assign(&DVector::from_column_slice(&values[columns..]));
-            prop_assert!((whole - DVector::from_vec(start)).amax() < 1e-9 * own.amax().max(1.0));
-            let scale = upper.diagonal().map(f64::abs).min();
-            prop_assume!(scale > 1e-3);
-            let mut solved = own.as_slice().to_vec();
-            sweep_up(factors.as_slice(), rows, &mut solved);
-            let solved = DVector::from_vec(solved);
-            prop_assert!((&upper * &solved - &own).amax() < 1e-9 * solved.amax().max(1.0));
-            let mut image = own.as_slice().to_vec();
-            subtract_image(upper.as_slice(), solved.as_slice(), &mut image);
-            prop_assert!(DVector::from_vec(image).amax() < 1e-9 * solved.amax().max(1.0));
         }
     }
 

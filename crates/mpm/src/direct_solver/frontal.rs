@@ -1,70 +1,63 @@
 //! LU factorisation of a sparse matrix, front by front (Duff & Reid 1983).
 //!
-//! Unknowns are ordered by nested dissection of their places (George 1973): a set is cut across its longest direction, and
-//! those of the lower half that touch the upper half are its separator, eliminated after both halves. So a matrix of the
-//! plane fills in as `N log N`, and its factors cost `N^1.5`. A front gathers the rows and columns of the unknowns of a
-//! separator and what its halves left there, eliminates them with pivots among themselves, and leaves a Schur complement
-//! to the front above. The order of all sums is fixed: any number of threads gives the same bits.
+//! Unknowns are eliminated in the order of nested dissection. A front gathers the rows and columns of the unknowns of a
+//! separator and what its halves left there, eliminates them with pivots among themselves, keeps their factors for
+//! solutions and leaves a Schur complement to the front above. The order of all sums is fixed: any number of threads gives
+//! the same bits.
 
 use crate::direct_solver::Singular;
-use crate::direct_solver::dense::{
-    factor_columns, solve_unit_lower, subtract_image, subtract_product, swap_rows, sweep_down, sweep_up,
-};
+use crate::direct_solver::dense::{factor_columns, solve_unit_lower, subtract_product, swap_rows};
+use crate::direct_solver::dissection::{Part, dissected};
+use crate::direct_solver::panels::Panels;
 use crate::direct_solver::sparse_matrix::SparseMatrix;
 use crate::time_limit::TimeLimit;
 use nalgebra::DMatrix;
 
-/// Unknowns of a set that is cut no further: a front of some hundred rows is as fast as two of half of them.
-const SMALLEST_SET: usize = 96;
-
 /// The factors of a sparse matrix.
 #[derive(Clone, Debug)]
 pub struct FrontalLu {
-    /// Unknown at each place in the order of elimination.
-    order: Vec<usize>,
     root: Front,
     threads: usize,
-    /// A right-hand side in the order of elimination.
-    ordered: Vec<f64>,
-    /// Room for the part of it that a front needs.
-    gathered: Vec<f64>,
 }
 
 /// Unknowns that are eliminated together, after those of the fronts below.
 #[derive(Clone, Debug)]
 struct Front {
     children: Vec<Front>,
-    /// Place of its first unknown in the order of elimination.
-    first: usize,
     /// Unknowns that it eliminates.
-    count: usize,
-    /// Later unknowns that it is tied to, as rising places in the order of elimination.
-    boundary: Vec<usize>,
-    /// Row of the front above for each unknown of the boundary.
+    unknowns: Vec<usize>,
+    /// Row of the front above for each later unknown that it is tied to: its boundary.
     in_parent: Vec<usize>,
     /// Entries of the matrix that belong to it: row and column of the front, and number in the matrix.
     entries: Vec<[u32; 3]>,
-    /// Columns that it eliminates, `[count + boundary][count]`: `L` and `U` of the pivots, below them the rest of `L`.
-    left: DMatrix<f64>,
-    /// The rest of `U`, `[count][boundary]`.
-    right: DMatrix<f64>,
+    /// Its part of `L` and `U`.
+    panels: Panels,
     /// How many rows below its own each pivot was found.
     pivots: Vec<usize>,
+    /// Part of a solution: its unknowns, and its boundary.
+    values: Vec<f64>,
+}
+
+/// The matrix of a front before and after its elimination.
+struct Dense {
+    /// Columns that it eliminates, `[own + boundary][own]`: then `L` and `U` of the pivots, below them the rest of `L`.
+    left: DMatrix<f64>,
+    /// The rest of its rows, `[own][boundary]`: then of `U`.
+    right: DMatrix<f64>,
+    /// The block of the boundary: then its Schur complement.
+    rest: DMatrix<f64>,
 }
 
 impl FrontalLu {
     /// Room for the factors of matrices of a pattern, made by so many threads.
     pub fn of_shape(shape: &SparseMatrix, threads: usize) -> Self {
-        let count = shape.positions().len();
-        let mut order = Vec::with_capacity(count);
-        let mut root = dissect((0..count).collect(), shape, &mut vec![false; count], &mut order);
-        let mut place = vec![0; count];
+        let (order, root) = dissected(shape);
+        let mut place = vec![0; order.len()];
         for (number, unknown) in order.iter().enumerate() {
             place[*unknown] = number;
         }
-        root.connect(shape, &order, &place);
-        let gathered = vec![0.0; root.largest_part()];
-        Self { order, root, threads, ordered: vec![0.0; count], gathered }
+        let (root, _) = Front::connected(root, shape, &order, &place);
+        Self { root, threads }
     }
 
     /// Factors a matrix of the pattern, unless the time ends first.
@@ -72,100 +65,39 @@ impl FrontalLu {
     /// # Errors
     /// [`Singular`] when a front has no pivot for a column, or the time is over.
     pub fn factor(&mut self, matrix: &SparseMatrix, time_limit: TimeLimit) -> Result<(), Singular> {
-        match self.root.factor(matrix.entries(), time_limit, self.threads) {
-            Ok(_) => Ok(()),
-            Err(place) => Err(Singular { row: self.order[place] }),
-        }
+        self.root.factor(matrix.entries(), time_limit, self.threads).map(|_| ())
     }
 
     /// Replaces a right-hand side by the solution; nothing is allocated.
     pub fn solve(&mut self, values: &mut [f64]) {
-        for (value, unknown) in self.ordered.iter_mut().zip(&self.order) {
-            *value = values[*unknown];
-        }
-        self.root.go_forward(&mut self.ordered, &mut self.gathered);
-        self.root.go_back(&mut self.ordered, &mut self.gathered);
-        for (value, unknown) in self.ordered.iter().zip(&self.order) {
-            values[*unknown] = *value;
-        }
+        self.root.go_forward(values);
+        self.root.go_back(&[]);
+        self.root.put(values);
     }
-}
-
-/// Orders the unknowns of a set, half by half and the separator last. `is_upper` is all false between the calls.
-fn dissect(set: Vec<usize>, matrix: &SparseMatrix, is_upper: &mut [bool], order: &mut Vec<usize>) -> Front {
-    let (mut own, mut children) = (set, Vec::new());
-    if own.len() > SMALLEST_SET {
-        let positions = matrix.positions();
-        let direction = longest_direction(&own, positions);
-        let place = |unknown: &usize| positions[*unknown][direction];
-        let mut places: Vec<f64> = own.iter().map(place).collect();
-        let middle = places.len() / 2;
-        let level = *places.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let (low, high): (Vec<usize>, Vec<usize>) = own.iter().partition(|unknown| place(unknown) < level);
-        for unknown in &high {
-            is_upper[*unknown] = true;
-        }
-        let touches =
-            |unknown: &&usize| matrix.row(**unknown).1.iter().any(|other| is_upper[*other as usize]);
-        let (separator, apart): (Vec<usize>, Vec<usize>) = low.iter().partition(touches);
-        for unknown in &high {
-            is_upper[*unknown] = false;
-        }
-        // A set that is all separator is not worth cutting.
-        if !apart.is_empty() {
-            children = [apart, high].map(|half| dissect(half, matrix, is_upper, order)).into();
-            own = separator;
-        }
-    }
-    let (first, count) = (order.len(), own.len());
-    order.extend(own);
-    Front {
-        children,
-        first,
-        count,
-        boundary: Vec::new(),
-        in_parent: Vec::new(),
-        entries: Vec::new(),
-        left: DMatrix::zeros(0, 0),
-        right: DMatrix::zeros(0, 0),
-        pivots: vec![0; count],
-    }
-}
-
-/// Direction in which a set extends furthest.
-fn longest_direction(set: &[usize], positions: &[[f64; 3]]) -> usize {
-    let extent = |direction: usize| {
-        let places = set.iter().map(|unknown| positions[*unknown][direction]);
-        let (low, high) = places
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
-        high - low
-    };
-    (0..3).max_by(|a, b| extent(*a).total_cmp(&extent(*b))).unwrap_or(0)
 }
 
 impl Front {
-    /// Finds the boundaries of the front and of those below it, and where the entries of the matrix go.
-    fn connect(&mut self, matrix: &SparseMatrix, order: &[usize], place: &[usize]) {
-        let (first, count, end) = (self.first, self.count, self.first + self.count);
-        for child in &mut self.children {
-            child.connect(matrix, order, place);
-        }
-        let unknowns = &order[first..end];
+    /// A front and those below it, and its boundary as rising places in the order of elimination.
+    fn connected(part: Part, matrix: &SparseMatrix, order: &[usize], place: &[usize]) -> (Self, Vec<usize>) {
+        let Part { first, count, .. } = part;
+        let end = first + count;
+        let connect = |child| Self::connected(child, matrix, order, place);
+        let (mut children, boundaries): (Vec<Self>, Vec<_>) = part.children.into_iter().map(connect).unzip();
+        let unknowns = order[first..end].to_vec();
         let tied = unknowns.iter().flat_map(|unknown| matrix.row(*unknown).1);
-        let of_children = self.children.iter().flat_map(|child| &child.boundary);
-        self.boundary = tied.map(|other| &place[*other as usize]).chain(of_children).copied().collect();
-        self.boundary.retain(|place| *place >= end);
-        self.boundary.sort_unstable();
-        self.boundary.dedup();
-        self.boundary.shrink_to_fit();
-        let boundary = &self.boundary;
+        let tied = tied.map(|other| place[*other as usize]);
+        let of_children = boundaries.iter().flatten().copied();
+        let mut boundary: Vec<usize> = tied.chain(of_children).filter(|place| *place >= end).collect();
+        boundary.sort_unstable();
+        boundary.dedup();
         let row_of = |place: usize| match place.checked_sub(end) {
             None => place - first,
             Some(_) => count + boundary.partition_point(|other| *other < place),
         };
-        for child in &mut self.children {
-            child.in_parent = child.boundary.iter().map(|place| row_of(*place)).collect();
+        for (child, boundary) in children.iter_mut().zip(&boundaries) {
+            child.in_parent = boundary.iter().map(|place| row_of(*place)).collect();
         }
+        let mut entries = Vec::new();
         for (row, unknown) in unknowns.iter().enumerate() {
             let (start, columns) = matrix.row(*unknown);
             for (entry, other) in (start..).zip(columns) {
@@ -173,34 +105,36 @@ impl Front {
                     earlier if earlier < first => continue,
                     place => row_of(place),
                 };
-                self.entries.push([row, column, entry].map(small));
+                entries.push([row, column, entry].map(small));
                 if column >= count {
                     let transposed = matrix.entry(*other as usize, *unknown);
-                    self.entries.push([column, row, transposed].map(small));
+                    entries.push([column, row, transposed].map(small));
                 }
             }
         }
-        self.entries.shrink_to_fit();
-        self.left = DMatrix::zeros(count + boundary.len(), count);
-        self.right = DMatrix::zeros(count, boundary.len());
-    }
-
-    /// Most unknowns that any front eliminates and has on its boundary.
-    fn largest_part(&self) -> usize {
-        let own = self.boundary.len() + self.count;
-        self.children.iter().map(Self::largest_part).fold(own, usize::max)
+        entries.shrink_to_fit();
+        let front = Self {
+            panels: Panels::of_shape(count, boundary.len()),
+            pivots: vec![0; count],
+            values: vec![0.0; count + boundary.len()],
+            in_parent: Vec::new(),
+            children,
+            unknowns,
+            entries,
+        };
+        (front, boundary)
     }
 
     /// Factors the fronts below and this one, by so many threads; the Schur complement of its boundary.
     ///
     /// # Errors
-    /// The place without a pivot, or at which the time was over.
+    /// The row without a pivot, or at which the time was over.
     fn factor(
         &mut self,
         entries: &[f64],
         time_limit: TimeLimit,
         threads: usize,
-    ) -> Result<DMatrix<f64>, usize> {
+    ) -> Result<DMatrix<f64>, Singular> {
         let left = match &mut self.children[..] {
             [low, high] if threads > 1 => {
                 let (low, high) = std::thread::scope(|scope| {
@@ -215,24 +149,25 @@ impl Front {
             }
         };
         if time_limit.is_over() {
-            return Err(self.first);
+            return Err(Singular { row: self.unknowns.first().copied().unwrap_or(0) });
         }
-        let mut rest = self.gather(entries, left);
-        self.eliminate(&mut rest)?;
-        Ok(rest)
+        let mut dense = self.gather(entries, left);
+        self.eliminate(&mut dense)?;
+        self.panels.take(&dense.left, &dense.right);
+        Ok(dense.rest)
     }
 
-    /// Fills the front with its entries of the matrix and what its children left; the block of the boundary.
-    fn gather(&mut self, entries: &[f64], schur_complements: Vec<DMatrix<f64>>) -> DMatrix<f64> {
-        let count = self.count;
-        self.left.fill(0.0);
-        self.right.fill(0.0);
-        let mut rest = DMatrix::zeros(self.boundary.len(), self.boundary.len());
+    /// The matrix of the front: its entries of the whole matrix, and what its children left.
+    fn gather(&self, entries: &[f64], schur_complements: Vec<DMatrix<f64>>) -> Dense {
+        let (count, outer) = (self.unknowns.len(), self.in_parent.len());
+        let mut left = DMatrix::zeros(count + outer, count);
+        let mut right = DMatrix::zeros(count, outer);
+        let mut rest = DMatrix::zeros(outer, outer);
         for entry in &self.entries {
             let [row, column, entry] = entry.map(|number| number as usize);
             match column.checked_sub(count) {
-                None => self.left[(row, column)] += entries[entry],
-                Some(column) => self.right[(row, column)] += entries[entry],
+                None => left[(row, column)] += entries[entry],
+                Some(column) => right[(row, column)] += entries[entry],
             }
         }
         for (child, schur_complement) in self.children.iter().zip(schur_complements) {
@@ -240,84 +175,75 @@ impl Front {
             let own_rows = rows.partition_point(|row| *row < count);
             for (column, values) in rows.iter().zip(schur_complement.column_iter()) {
                 match column.checked_sub(count) {
-                    None => add_to_rows(column_of(&mut self.left, *column), rows, 0, values.as_slice()),
+                    None => add_to_rows(column_of(&mut left, *column), rows, 0, values.as_slice()),
                     Some(column) => {
                         let (above, below) = values.as_slice().split_at(own_rows);
                         let (rows_above, rows_below) = rows.split_at(own_rows);
-                        add_to_rows(column_of(&mut self.right, column), rows_above, 0, above);
+                        add_to_rows(column_of(&mut right, column), rows_above, 0, above);
                         add_to_rows(column_of(&mut rest, column), rows_below, count, below);
                     }
                 }
             }
         }
-        rest
+        Dense { left, right, rest }
     }
 
     /// Eliminates the unknowns of the front, with pivots among its own rows, from the block of the boundary.
     ///
     /// # Errors
-    /// The place without a pivot.
-    fn eliminate(&mut self, rest: &mut DMatrix<f64>) -> Result<(), usize> {
-        let count = self.count;
+    /// The row without a pivot.
+    fn eliminate(&mut self, Dense { left, right, rest }: &mut Dense) -> Result<(), Singular> {
+        let count = self.unknowns.len();
         // Halves that do not touch each other have no separator.
         if count == 0 {
             return Ok(());
         }
-        factor_columns(self.left.as_view_mut(), count, &mut self.pivots);
+        factor_columns(left.as_view_mut(), count, &mut self.pivots);
         let is_pivot = |value: f64| value != 0.0 && value.is_finite();
-        if let Some(column) = (0..count).find(|column| !is_pivot(self.left[(*column, *column)])) {
-            return Err(self.first + column);
+        if let Some(column) = (0..count).find(|column| !is_pivot(left[(*column, *column)])) {
+            return Err(Singular { row: self.unknowns[column] });
         }
-        swap_rows(&mut self.right.as_view_mut(), &self.pivots);
-        let (own, below) = self.left.rows_range_pair(..count, count..);
-        solve_unit_lower(own, self.right.as_view_mut());
-        subtract_product(&mut rest.as_view_mut(), below, self.right.as_view());
+        swap_rows(&mut right.as_view_mut(), &self.pivots);
+        let (own, below) = left.rows_range_pair(..count, count..);
+        solve_unit_lower(own, right.as_view_mut());
+        subtract_product(&mut rest.as_view_mut(), below, right.as_view());
         Ok(())
     }
 
-    /// `b ← L⁻¹ b`.
-    fn go_forward(&self, values: &mut [f64], gathered: &mut [f64]) {
+    /// `L⁻¹ b`, into the values of the fronts.
+    fn go_forward(&mut self, right: &[f64]) {
+        self.children.iter_mut().for_each(|child| child.go_forward(right));
+        let (own, boundary) = self.values.split_at_mut(self.unknowns.len());
+        for (value, unknown) in own.iter_mut().zip(&self.unknowns) {
+            *value = right[*unknown];
+        }
+        boundary.fill(0.0);
         for child in &self.children {
-            child.go_forward(values, gathered);
+            add_to_rows(&mut self.values, &child.in_parent, 0, &child.values[child.unknowns.len()..]);
         }
-        if self.count == 0 {
-            return;
-        }
-        let own = &mut values[self.first..][..self.count];
         for (row, below) in self.pivots.iter().enumerate() {
-            own.swap(row, row + below);
+            self.values.swap(row, row + below);
         }
-        let gathered = &mut gathered[..self.count + self.boundary.len()];
-        let (solved, change) = gathered.split_at_mut(self.count);
-        solved.copy_from_slice(own);
-        change.fill(0.0);
-        sweep_down(self.left.as_slice(), gathered, self.count);
-        let (solved, change) = gathered.split_at(self.count);
-        own.copy_from_slice(solved);
-        for (place, change) in self.boundary.iter().zip(change) {
-            values[*place] += change;
+        self.panels.go_down(&mut self.values);
+    }
+
+    /// `U⁻¹ b` of the values of the fronts, by those of the front above.
+    fn go_back(&mut self, above: &[f64]) {
+        for (value, row) in self.values[self.unknowns.len()..].iter_mut().zip(&self.in_parent) {
+            *value = above[*row];
+        }
+        self.panels.go_up(&mut self.values);
+        for child in self.children.iter_mut().rev() {
+            child.go_back(&self.values);
         }
     }
 
-    /// `b ← U⁻¹ b`.
-    fn go_back(&self, values: &mut [f64], gathered: &mut [f64]) {
-        self.go_back_in_own(values, gathered);
-        for child in self.children.iter().rev() {
-            child.go_back(values, gathered);
+    /// Puts the values of the fronts to their unknowns.
+    fn put(&self, values: &mut [f64]) {
+        for (unknown, value) in self.unknowns.iter().zip(&self.values) {
+            values[*unknown] = *value;
         }
-    }
-
-    fn go_back_in_own(&self, values: &mut [f64], gathered: &mut [f64]) {
-        if self.count == 0 {
-            return;
-        }
-        let later = &mut gathered[..self.boundary.len()];
-        for (value, place) in later.iter_mut().zip(&self.boundary) {
-            *value = values[*place];
-        }
-        let own = &mut values[self.first..][..self.count];
-        subtract_image(self.right.as_slice(), later, own);
-        sweep_up(self.left.as_slice(), self.count + self.boundary.len(), own);
+        self.children.iter().for_each(|child| child.put(values));
     }
 }
 
@@ -431,23 +357,5 @@ mod tests {
                 assert_eq!(factored, Err(Singular { row: named }), "{zeros:?} on {threads} threads");
             }
         }
-    }
-
-    #[test]
-    fn halves_are_apart_and_every_unknown_is_eliminated_once() {
-        let side = 24;
-        let (matrix, _, _) = grid(side, side, 2, 1);
-        let lu = FrontalLu::of_shape(&matrix, 1);
-        let mut eliminated = lu.order.clone();
-        eliminated.sort_unstable();
-        assert_eq!(eliminated, (0..side * side).collect::<Vec<_>>());
-        let [low, high] = &lu.root.children[..] else { panic!("two halves") };
-        let places = |front: &Front, from: usize| lu.order[from..front.first + front.count].to_vec();
-        let (low_unknowns, high_unknowns) = (places(low, 0), places(high, low.first + low.count));
-        for unknown in low_unknowns {
-            let (_, tied) = matrix.row(unknown);
-            assert!(!tied.iter().any(|other| high_unknowns.contains(&(*other as usize))));
-        }
-        assert_eq!(lu.root.count, 2 * side, "two rows of the square separate its halves");
     }
 }

@@ -1,16 +1,20 @@
 //! Direct solution of the linear systems of implicit steps and of the undrained start.
 //!
 //! A column's matrix is a narrow band ([`banded`]). The matrix of a body in the plane is sparse and is factored front by
-//! front in the order of nested dissection ([`frontal`]), which costs `N^1.5` operations where a band costs `N^2`.
-//! [`system`] chooses between the two and adds the row and column of a rigid plate.
+//! front ([`frontal`]) in the order of nested dissection ([`dissection`]), which costs `N^1.5` operations where a band
+//! costs `N^2`; solutions read the factors in the order in which [`panels`] store them. [`system`] chooses between the two
+//! and adds the row and column of a rigid plate.
 
 mod banded;
 pub(crate) mod dense;
+mod dissection;
 mod frontal;
+mod panels;
 mod sparse_matrix;
 pub mod system;
 
 use crate::wide::wide;
+use std::array;
 
 /// Independent partial sums of a dot product.
 const PARTS: usize = 16;
@@ -36,6 +40,16 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
         let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(a, b)| a * b).sum();
         sums.iter().sum::<f64>() + rest
     })
+}
+
+/// The first rows of a column; zeros beyond its end.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
+fn first_rows<const N: usize>(column: &[f64]) -> [f64; N] {
+    match column.first_chunk() {
+        Some(rows) => *rows,
+        None => array::from_fn(|row| column.get(row).copied().unwrap_or(0.0)),
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+/// Entries of a row that there is room for from the start: rows of a body in the plane grow no further.
+const USUAL_ROW: usize = 64;
+
 /// A square matrix with a fixed pattern, which includes the diagonal and is symmetric: elimination fills those places in
 /// anyway.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +35,12 @@ impl SparseMatrix {
         visit: impl Fn(&mut dyn FnMut(usize, usize)),
     ) -> Self {
         let number = |unknown: usize| u32::try_from(unknown).expect("fewer than 2^32 unknowns");
-        let mut rows: Vec<Vec<u32>> = (0..positions.len()).map(|row| vec![number(row)]).collect();
+        let with_diagonal = |row: usize| {
+            let mut columns = Vec::with_capacity(USUAL_ROW);
+            columns.push(number(row));
+            columns
+        };
+        let mut rows: Vec<Vec<u32>> = (0..positions.len()).map(with_diagonal).collect();
         let mut note = |row: usize, column: usize| {
             let (row, column) = (&mut rows[row], number(column));
             if let Err(place) = row.binary_search(&column) {
