@@ -13,6 +13,7 @@ use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement, StressLaw};
 use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
 use std::array;
+use std::hint::black_box;
 
 /// What follows the deformation of the points beside their volumes.
 #[derive(Clone, Copy)]
@@ -349,6 +350,8 @@ fn rotated<const D: usize, const N: usize>(
         let per = 1.0 / (1.0 + half * half);
         (cosine[p], sine[p]) = ((1.0 - half * half) * per, 2.0 * half * per);
     }
+    // In memory: the compiler would else divide point by point.
+    let [cosine, sine] = black_box([cosine, sine]);
     // `Q σ`, and that by `Qᵀ`: `[component][point]`.
     let mut rows = [[[0.0; N]; 2]; 2];
     for j in 0..D {

@@ -309,9 +309,12 @@ impl<const D: usize, const W: usize> Stencil<'_, D, W> {
             #[inline(always)]
             |run| {
                 let nodes = &nodal[run.first..run.first + W];
-                let mut sums = [[0.0; D]; N];
                 // The vectors of a node as one row of numbers, which fills wide registers.
-                for k in 0..W {
+                let mut sums = nodes[0];
+                for number in sums.as_flattened_mut() {
+                    *number *= run.values[0];
+                }
+                for k in 1..W {
                     let numbers = nodes[k].as_flattened();
                     for (sum, number) in sums.as_flattened_mut().iter_mut().zip(numbers) {
                         *sum += run.values[k] * number;

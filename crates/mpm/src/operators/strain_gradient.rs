@@ -194,8 +194,12 @@ impl<'a, const D: usize> CompositeRows<'a, D> {
             let nodes = &field[lowest + run * stride[D - 1]..][..4];
             // The slope along the run, and the value.
             let mut sums = [[[0.0; LANES]; D]; 2];
-            for k in 0..4 {
-                for d in 0..D {
+            for d in 0..D {
+                for p in 0..LANES {
+                    sums[0][d][p] = rows[0][1][0][p] * nodes[0][d];
+                    sums[1][d][p] = rows[0][0][0][p] * nodes[0][d];
+                }
+                for k in 1..4 {
                     for p in 0..LANES {
                         sums[0][d][p] += rows[0][1][k][p] * nodes[k][d];
                     }
