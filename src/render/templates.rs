@@ -57,6 +57,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("error_percent", number::percent);
     environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
     environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
+    environment.add_filter("number", number::number);
     environment.add_filter("order", number::order);
     environment.add_filter("percent", number::rounded_percent);
     environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));

@@ -109,6 +109,9 @@ porosity = 0.3 ¦ ppc = 2 ¦ `points_per_cell` belongs to [[sweep]]: `sweep.poin
 [material] ¦ [column]⏎thickness = 5.0⏎[material] ¦ did you mean `height`?
 [material] ¦ [column]⏎surcharge = 5.0⏎[material] ¦ did you mean `load`?
 [material] ¦ [column]⏎permeability = 1e-9⏎[material] ¦ `hydraulic_conductivity` belongs to [material]: `material.hydraulic_conductivity`
+porosity = 0.3 ¦ time_factors = [0.1] ¦ `time_factors` belongs to [output]: `output.time_factors`
+porosity = 0.3 ¦ output_times = [0.1] ¦ `times` belongs to [output]: `output.times`
+porosity = 0.3 ¦ repeats = 3 ¦ `repeats` belongs to [timing]: `timing.repeats`
 [material] ¦ [output]⏎output_times = [1.0]⏎[material] ¦ did you mean `times`?
 cells = [4, 8] ¦ mesh = [4, 8] ¦ did you mean `cells`?
 cells = [4, 8] ¦ elements = [4, 8] ¦ did you mean `cells`?

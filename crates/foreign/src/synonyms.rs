@@ -6,6 +6,10 @@ use oedometer_case::keys::{KEYS, Key};
 /// Keys of earlier versions, and what they are called now.
 const RENAMED: [(&str, &str); 2] = [("layers", "sets"), ("one_layer_within", "one_set_within")];
 
+/// Keys of the tables that hold no input of a case.
+const TABLE_KEYS: [(&str, &[&str]); 2] =
+    [("output", &["time_factors", "times", "references"]), ("timing", &["repeats"])];
+
 /// Other names of a key, and the key. Single letters are case-sensitive.
 pub const KEY_NAMES: &[(&[&str], &str)] = &[
     // The study.
@@ -234,6 +238,10 @@ pub(crate) fn help_for_key(name: &str, known: &[&str]) -> String {
     }
     if let Some(near) = nearest(name, known.iter().copied()) {
         return format!("did you mean `{near}`?");
+    }
+    if let Some((table, _)) = TABLE_KEYS.iter().find(|(_, keys)| keys.contains(&usual.unwrap_or(name))) {
+        let key = usual.unwrap_or(name);
+        return format!("`{key}` belongs to [{table}]: `{table}.{key}`");
     }
     let elsewhere = |wanted: &str| KEYS.iter().find(|key| key.name == wanted);
     match elsewhere(name).or_else(|| elsewhere(usual?)) {

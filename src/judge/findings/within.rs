@@ -1,6 +1,7 @@
 //! What reaches a bound: for each quantity the cheapest choice of method, mesh and step whose error stays within it at every
 //! output, in every problem of the study.
 
+use crate::case::grouping::distinct;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::grouped;
 use crate::record::calibration::cost_of;
@@ -48,6 +49,19 @@ pub struct BoundWithin {
     pub choice: Option<WithinFinding>,
     /// Other methods that stay within it too, on any mesh.
     pub others: Vec<String>,
+    /// What the other integrators of the study take; empty where no choice stays within it, or work is not counted.
+    pub integrators: Vec<IntegratorWithin>,
+}
+
+/// What another integrator takes for the same bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct IntegratorWithin {
+    /// Integrator.
+    pub integrator: String,
+    /// Its cheapest choice within the bound.
+    pub choice: Option<WithinFinding>,
+    /// Counted work of that choice over that of the cheapest one.
+    pub cost_ratio: Option<f64>,
 }
 
 /// Method, mesh and step, with the largest error over all outputs and problems.
@@ -126,21 +140,36 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
     let best = choices.iter().min_by(|a, b| a.error.total_cmp(&b.error))?.clone();
     // Beside another program, whose work is not counted, the coarsest mesh stands first.
     let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
-    let bounds = BOUNDS.map(|bound| {
-        let fits = choices.iter().filter(|choice| choice.error <= bound);
-        let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
-        let cheapest = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)));
-        let passing = choices.iter().filter(|choice| choice.error <= bound).map(|choice| &choice.method);
-        let mut others: Vec<String> = Vec::new();
-        for method in passing.filter(|method| cheapest.is_some_and(|choice| choice.method != **method)) {
-            if !others.contains(method) {
-                others.push(method.clone());
-            }
-        }
-        BoundWithin { bound, choice: cheapest.cloned(), others }
-    });
+    let bounds = BOUNDS.map(|bound| bound_within(bound, &choices, is_counted));
     let reference = reference.to_owned();
     Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best })
+}
+
+fn bound_within(bound: f64, choices: &[WithinFinding], is_counted: bool) -> BoundWithin {
+    let fits: Vec<&WithinFinding> = choices.iter().filter(|choice| choice.error <= bound).collect();
+    let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
+    let cheapest_of = |integrator: Option<&str>| {
+        let of = fits.iter().filter(|choice| integrator.is_none_or(|name| choice.integrator == name));
+        of.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells))).copied()
+    };
+    let Some(cheapest) = cheapest_of(None) else {
+        return BoundWithin { bound, choice: None, others: Vec::new(), integrators: Vec::new() };
+    };
+    let methods = distinct(fits.iter().map(|choice| choice.method.as_str()));
+    let others = methods.into_iter().filter(|method| *method != cheapest.method).map(str::to_owned);
+    let integrators = distinct(choices.iter().map(|choice| choice.integrator.as_str()));
+    let integrators = integrators.into_iter().filter(|name| is_counted && *name != cheapest.integrator);
+    let integrators = integrators.map(|name| {
+        let choice = cheapest_of(Some(name));
+        let cost_ratio = choice.map(|choice| choice.cost / cheapest.cost);
+        IntegratorWithin { integrator: name.to_owned(), choice: choice.cloned(), cost_ratio }
+    });
+    BoundWithin {
+        bound,
+        choice: Some(cheapest.clone()),
+        others: others.collect(),
+        integrators: integrators.collect(),
+    }
 }
 
 impl WithinFinding {
@@ -251,6 +280,36 @@ mod tests {
             change(record);
         }
         within(&study, &records)[0].bounds[0].choice.as_ref().map(|choice| choice.cells)
+    }
+
+    /// Half a per cent everywhere, or 5 % for explicit steps on four cells: then eight are what explicit takes.
+    #[test]
+    fn what_the_other_integrator_takes_is_a_ratio_of_work() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                    integrator = ['implicit', 'explicit']\ncells = [4, 8]\n";
+        let (study, mut records) = solved("s", text);
+        for (explicit, expected) in
+            [([0.005, 0.005], Some(4)), ([0.05, 0.005], Some(8)), ([0.05, 0.05], None)]
+        {
+            for record in &mut records {
+                let is_explicit = record.case.integrator.name() == "explicit";
+                let error = if is_explicit { explicit[usize::from(record.case.cells == 8)] } else { 0.005 };
+                record.errors.iter_mut().for_each(|row| row.value = error);
+            }
+            let [percent, promille] = &within(&study, &records)[0].bounds[..] else { panic!("two bounds") };
+            let choice = percent.choice.as_ref().expect("a choice");
+            let [other] = &percent.integrators[..] else { panic!("{percent:?}") };
+            assert_eq!((&*choice.integrator, choice.cells, &*other.integrator), ("implicit", 4, "explicit"));
+            assert_eq!(other.choice.as_ref().map(|choice| choice.cells), expected);
+            let cost = |cells: usize| {
+                let is_it = |record: &&Record| {
+                    record.case.cells == cells && record.case.integrator.name() == "explicit"
+                };
+                cost_of(records.iter().find(is_it).expect("a run"))
+            };
+            assert_eq!(other.cost_ratio, expected.map(|cells| cost(cells) / choice.cost));
+            assert_eq!(promille.integrators, [], "no choice is within 0.1 %");
+        }
     }
 
     /// Four cells with 5 % of growth, eight with 5 and 10 %; MPM and GIMP are both within.

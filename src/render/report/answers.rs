@@ -87,6 +87,7 @@ mod tests {
                 bound,
                 choice: error.map(|error| choice(error, step)),
                 others: Vec::new(),
+                integrators: Vec::new(),
             });
             let quantity = QuantityWithin {
                 quantity: Quantity::Settlement,
