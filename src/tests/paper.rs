@@ -27,7 +27,7 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
     let as_printed = pairing(true, "porosity-dependent", "constant-porosity-gradient");
     let conservative = pairing(false, "log-linear", "conservative");
     let error = |largest: &Value| largest["error"].as_f64().expect("an error");
-    for told in [
+    for sentence in [
         format!("Over {} situations in {} families", moving["situations"], moving["families"]),
         format!(
             "(`{method}`) arrives in {} of the situations, and in {} at no more than twice the cost of the fastest of {} methods",
@@ -48,8 +48,8 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
         ),
         format!("agrees within {} %.", short(100.0 * error(&conservative).abs())),
     ] {
-        assert!(example.contains(&told), "{told}\nis not in\n{example}");
-        example = example.replace(&told, "");
+        assert!(example.contains(&sentence), "{sentence}\nis not in\n{example}");
+        example = example.replace(&sentence, "");
     }
     assert_eq!(numbers_outside_citations(&example), "", "a number of no finding");
     // The other sections have no numbers, which nothing would keep true.
