@@ -44,15 +44,15 @@ struct Dissection<'a> {
 impl Dissection<'_> {
     /// Orders the unknowns of a set, half by half and the separator last.
     fn ordered(&mut self, set: Vec<usize>) -> Part {
-        let (mut own, mut children) = (set, Vec::new());
-        if own.len() > SMALLEST_SET
-            && let Some(Halves { low, high, separator }) = self.cut(&own)
+        let (mut rest, mut children) = (set, Vec::new());
+        if rest.len() > SMALLEST_SET
+            && let Some(Halves { low, high, separator }) = self.cut(&rest)
         {
             children = [low, high].map(|half| self.ordered(half)).into();
-            own = separator;
+            rest = separator;
         }
-        let (first, count) = (self.order.len(), own.len());
-        self.order.extend(own);
+        let (first, count) = (self.order.len(), rest.len());
+        self.order.extend(rest);
         Part { children, first, count }
     }
 

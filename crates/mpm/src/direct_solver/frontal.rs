@@ -40,9 +40,9 @@ struct Front {
 
 /// The matrix of a front before and after its elimination.
 struct Dense {
-    /// Columns that it eliminates, `[own + boundary][own]`: then `L` and `U` of the pivots, below them the rest of `L`.
+    /// Columns that it eliminates, `[count + boundary][count]`: then `L` and `U` of the pivots, below them the rest of `L`.
     left: DMatrix<f64>,
-    /// The rest of its rows, `[own][boundary]`: then of `U`.
+    /// The rest of its rows, `[count][boundary]`: then of `U`.
     right: DMatrix<f64>,
     /// The block of the boundary: then its Schur complement.
     rest: DMatrix<f64>,
@@ -204,8 +204,8 @@ impl Front {
             return Err(Singular { row: self.unknowns[column] });
         }
         swap_rows(&mut right.as_view_mut(), &self.pivots);
-        let (own, below) = left.rows_range_pair(..count, count..);
-        solve_unit_lower(own, right.as_view_mut());
+        let (square, below) = left.rows_range_pair(..count, count..);
+        solve_unit_lower(square, right.as_view_mut());
         subtract_product(&mut rest.as_view_mut(), below, right.as_view());
         Ok(())
     }
@@ -213,8 +213,8 @@ impl Front {
     /// `L⁻¹ b`, into the values of the fronts.
     fn go_forward(&mut self, right: &[f64]) {
         self.children.iter_mut().for_each(|child| child.go_forward(right));
-        let (own, boundary) = self.values.split_at_mut(self.unknowns.len());
-        for (value, unknown) in own.iter_mut().zip(&self.unknowns) {
+        let (eliminated, boundary) = self.values.split_at_mut(self.unknowns.len());
+        for (value, unknown) in eliminated.iter_mut().zip(&self.unknowns) {
             *value = right[*unknown];
         }
         boundary.fill(0.0);

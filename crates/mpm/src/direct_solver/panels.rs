@@ -26,7 +26,7 @@ type Triangle = [Rows; WIDTH];
 #[derive(Clone, Debug)]
 pub(crate) struct Panels {
     /// Unknowns that the front eliminates.
-    own: usize,
+    count: usize,
     /// Those and the unknowns of its boundary.
     height: usize,
     /// `L` from the first panel to the last: the columns before the panel's rows.
@@ -39,28 +39,28 @@ pub(crate) struct Panels {
 
 impl Panels {
     /// Room for the factors of a front that eliminates so many unknowns before so many of its boundary.
-    pub fn of_shape(own: usize, boundary: usize) -> Self {
-        let height = own + boundary;
-        let lower = (0..height).step_by(WIDTH).map(|first| own.min(first)).sum();
-        let upper = (0..own).step_by(WIDTH).map(|first| height - own.min(first + WIDTH)).sum();
+    pub fn of_shape(count: usize, boundary: usize) -> Self {
+        let height = count + boundary;
+        let lower = (0..height).step_by(WIDTH).map(|first| count.min(first)).sum();
+        let upper = (0..count).step_by(WIDTH).map(|first| height - count.min(first + WIDTH)).sum();
         let [lower, upper] = [lower, upper].map(Vec::with_capacity);
-        let triangles = vec![[Triangle::default(); 2]; own.div_ceil(WIDTH)];
-        Self { own, height, lower, upper, triangles }
+        let triangles = vec![[Triangle::default(); 2]; count.div_ceil(WIDTH)];
+        Self { count, height, lower, upper, triangles }
     }
 
-    /// Takes the factors of a front: `left`, `[own + boundary][own]`, holds `L` below its diagonal and `U` on and above it;
-    /// `right`, `[own][boundary]`, the rest of `U`.
+    /// Takes the factors of a front: `left`, `[count + boundary][count]`, holds `L` below its diagonal and `U` on and above
+    /// it; `right`, `[count][boundary]`, the rest of `U`.
     pub fn take(&mut self, left: &DMatrix<f64>, right: &DMatrix<f64>) {
-        let (own, height) = (self.own, self.height);
+        let (count, height) = (self.count, self.height);
         self.lower.clear();
         for first in (0..height).step_by(WIDTH) {
-            self.lower.extend((0..own.min(first)).map(|column| rows_of(left, column, first..height)));
+            self.lower.extend((0..count.min(first)).map(|column| rows_of(left, column, first..height)));
         }
         self.upper.clear();
-        for first in (0..own).step_by(WIDTH).rev() {
-            let end = own.min(first + WIDTH);
-            self.upper.extend((end..own).map(|column| rows_of(left, column, first..end)));
-            self.upper.extend((0..height - own).map(|column| rows_of(right, column, first..end)));
+        for first in (0..count).step_by(WIDTH).rev() {
+            let end = count.min(first + WIDTH);
+            self.upper.extend((end..count).map(|column| rows_of(left, column, first..end)));
+            self.upper.extend((0..height - count).map(|column| rows_of(right, column, first..end)));
             let [lower, upper] = &mut self.triangles[first / WIDTH];
             for (place, column) in (first..end).enumerate() {
                 lower[place] = rows_of(left, column, first..height);
@@ -77,7 +77,7 @@ impl Panels {
             let mut left = &self.lower[..];
             for (panel, first) in (0..self.height).step_by(WIDTH).enumerate() {
                 let (solved, rest) = values.split_at_mut(first);
-                let (columns, later) = left.split_at(self.own.min(first));
+                let (columns, later) = left.split_at(self.count.min(first));
                 let mut rows = less_product(rest, columns, solved);
                 if let Some([triangle, _]) = self.triangles.get(panel) {
                     for n in 0..WIDTH {
@@ -98,7 +98,7 @@ impl Panels {
             let mut left = &self.upper[..];
             for (panel, [_, triangle]) in self.triangles.iter().enumerate().rev() {
                 let first = panel * WIDTH;
-                let (rest, solved) = values.split_at_mut(self.own.min(first + WIDTH));
+                let (rest, solved) = values.split_at_mut(self.count.min(first + WIDTH));
                 let rest = &mut rest[first..];
                 let (columns, later) = left.split_at(solved.len());
                 let mut rows = less_product(rest, columns, solved);
@@ -166,19 +166,19 @@ mod tests {
     proptest! {
         #[test]
         fn solutions_are_those_of_the_dense_triangles(
-            own in 0..23usize, boundary in 0..23usize, seed in 1..1_000_000_u32,
+            count in 0..23usize, boundary in 0..23usize, seed in 1..1_000_000_u32,
         ) {
             let mut state = seed;
             let mut random = || {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 f64::from(state >> 8) / f64::from(1 << 23) - 1.0
             };
-            let left = DMatrix::from_fn(own + boundary, own, |row, column| {
+            let left = DMatrix::from_fn(count + boundary, count, |row, column| {
                 random() / 4.0 + if row == column { 2.0 } else { 0.0 }
             });
-            let right = DMatrix::from_fn(own, boundary, |_, _| random());
-            let start = DVector::from_fn(own + boundary, |_, _| random());
-            let mut panels = Panels::of_shape(own, boundary);
+            let right = DMatrix::from_fn(count, boundary, |_, _| random());
+            let start = DVector::from_fn(count + boundary, |_, _| random());
+            let mut panels = Panels::of_shape(count, boundary);
             panels.take(&left, &right);
             let solved = |solve: fn(&Panels, &mut [f64])| {
                 let mut values = start.clone();
@@ -188,14 +188,14 @@ mod tests {
                 assert_eq!(narrow, values, "the same bits on every processor");
                 values
             };
-            let mut lower = DMatrix::identity(own + boundary, own + boundary);
+            let mut lower = DMatrix::identity(count + boundary, count + boundary);
             let mut upper = lower.clone();
-            for column in 0..own {
-                lower.view_mut((column + 1, column), (own + boundary - column - 1, 1))
-                    .copy_from(&left.view((column + 1, column), (own + boundary - column - 1, 1)));
+            for column in 0..count {
+                lower.view_mut((column + 1, column), (count + boundary - column - 1, 1))
+                    .copy_from(&left.view((column + 1, column), (count + boundary - column - 1, 1)));
                 upper.view_mut((0, column), (column + 1, 1)).copy_from(&left.view((0, column), (column + 1, 1)));
             }
-            upper.view_mut((0, own), (own, boundary)).copy_from(&right);
+            upper.view_mut((0, count), (count, boundary)).copy_from(&right);
             prop_assert!((lower * solved(Panels::go_down) - &start).amax() < 1e-12);
             prop_assert!((upper * solved(Panels::go_up) - &start).amax() < 1e-12);
         }

@@ -145,7 +145,6 @@ pub struct Factors {
 }
 
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one per system, whose matrices are far larger")]
 enum CoreFactors {
     Banded(BandedLu),
     Frontal(FrontalLu),
