@@ -19,7 +19,7 @@ const LARGEST_SHARE: f64 = 0.8;
 /// Why no limit of the step is known.
 #[derive(Clone, Copy, Debug)]
 pub enum UnknownLimit {
-    /// Something grows under any explicit step.
+    /// Something grows under any explicit step, too far within the run.
     Growing(GrowingMode),
     /// The limit of an explicit skeleton is a formula for points on the lattice of the cells.
     OffLattice,
@@ -72,9 +72,11 @@ impl<'a> Plan<'a> {
     /// explicit, of the explicit integrator's where there is none.
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
+        let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
             (StepBound::AllWaves, None) => {
                 let (critical, growing) = predict_for_run(problem, settings);
+                let growing = growing.filter(|mode| !mode.stays_small_for(end));
                 (critical, growing.map(UnknownLimit::Growing))
             }
             (StepBound::AllWaves, Some(known)) => (known, None),

@@ -109,10 +109,10 @@ fn little_drag_shows_on_more_cells() {
 }
 
 #[test]
-fn a_share_of_a_limit_that_nobody_knows_is_refused() {
+fn a_share_of_a_limit_that_nobody_knows_is_refused_where_growth_spoils_the_result() {
     let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
-    let schedule = |rule| Schedule {
-        outputs: vec![1e-6],
+    let schedule = |end, rule| Schedule {
+        outputs: vec![end],
         history: Vec::new(),
         rule,
         settings,
@@ -124,11 +124,17 @@ fn a_share_of_a_limit_that_nobody_knows_is_refused() {
         time_limit: oedometer_mpm::time_limit::TimeLimit::default(),
     };
     let problem = || plane("GC-SRI-patch", "rough", 6, 0.1);
-    let RunStatus::Failed(failure) = run(problem(), &schedule(TimeStepRule::Stable(0.5))).status else {
+    let step = problem().predicted_critical_step(&settings);
+    let rate = problem().growth_under(&settings, step).expect("a small plane").ln() / step;
+    // The time in which the mode grows by a hundred times.
+    let end = 100.0_f64.ln() / rate;
+    let share = TimeStepRule::Stable(0.5);
+    let RunStatus::Failed(failure) = run(problem(), &schedule(1.05 * end, share)).status else {
         panic!("it ran");
     };
-    assert!(failure.reason.starts_with("no limit is known: "), "{}", failure.reason);
-    assert_eq!(run(problem(), &schedule(TimeStepRule::Seconds(1e-7))).status, RunStatus::Ok);
+    assert!(failure.step == 0 && failure.reason.starts_with("no limit is known: "), "{}", failure.reason);
+    assert_eq!(run(problem(), &schedule(0.5 * end, share)).status, RunStatus::Ok);
+    assert_eq!(run(problem(), &schedule(1e-6, TimeStepRule::Seconds(1e-7))).status, RunStatus::Ok);
 }
 
 #[test]

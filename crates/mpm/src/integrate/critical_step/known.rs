@@ -10,9 +10,9 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 /// What a search comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
-    /// Largest stable step, s; none where something grows under any step.
+    /// Largest stable step, s; where something grows under any step, the largest under which nothing grows much faster.
     pub step: Option<f64>,
-    /// Growth per step, far below the formula's step, of what grows then.
+    /// Growth per such step of what grows under any step.
     pub growth: Option<f64>,
 }
 

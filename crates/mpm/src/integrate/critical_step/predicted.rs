@@ -8,6 +8,7 @@ use crate::kernel::ExplicitSettings;
 use crate::kernel::body::{Body, Problem};
 use crate::method::{PressureIntegration, Recovery};
 use crate::state::grid::Grid;
+use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use std::fmt;
 
@@ -18,12 +19,18 @@ const MOST_ACROSS: usize = 8;
 /// Share of the formula's step at which the growth of a mode that grows under any step is reported.
 const FAR_BELOW: f64 = 0.1;
 
+/// Growth of a mode over a whole run from which on the run is not made: from a hundredth of the solution to all of it.
+const MOST_GROWTH: f64 = 100.0;
+/// Rate at which anything may grow at the critical step, over that of what grows under any step.
+const FASTER: f64 = 2.0;
+
 /// A predicted critical step, with what it was predicted from.
 #[derive(Clone, Debug)]
 pub struct Prediction<const D: usize> {
-    /// Largest stable step, s; that of the formula where none is known.
+    /// Largest stable step, s. Where a mode grows under any step, the largest under which nothing grows much faster; that of
+    /// the formula where there is none.
     pub critical_step: f64,
-    /// A mode that grows under any step, where there is one: then no limit is known.
+    /// A mode that grows under any step, where there is one: then no limit is known for runs in which it grows far.
     pub growing: Option<GrowingMode>,
     assembled: AssembledStep<D>,
     settings: ExplicitSettings,
@@ -32,10 +39,18 @@ pub struct Prediction<const D: usize> {
 /// A mode that grows under any step that was tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowingMode {
-    /// A step, s, far below the formula's.
+    /// The critical step of the prediction, s; one far below the formula's where nothing is slow enough for it.
     pub step: f64,
     /// Growth per such step.
     pub growth: f64,
+}
+
+impl GrowingMode {
+    /// Whether the mode stays small in a run of so many seconds. It is a short wave, at the start a small part of what moves;
+    /// where it is more than that, the energy that it gains without work ends the run.
+    pub fn stays_small_for(&self, seconds: f64) -> bool {
+        elementary::ln(self.growth) / self.step * seconds <= elementary::ln(MOST_GROWTH)
+    }
 }
 
 impl fmt::Display for GrowingMode {
@@ -113,22 +128,30 @@ pub fn predict<const D: usize>(
     };
     let assembled = AssembledStep::new(&Body::new(problem));
     let sharp = most_cells > FEW_CELLS;
-    let step = FAR_BELOW * safe;
+    let far_below = FAR_BELOW * safe;
+    // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
+    let is_slow = |growth: f64| growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
     let search = || {
         let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
-        let growth = || spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN);
-        Limit { step: found, growth: found.is_none().then(growth) }
+        if found.is_some() {
+            return Limit { step: found, growth: None };
+        }
+        let growth = |step: f64| spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN);
+        let slow = growth(far_below);
+        if is_slow(slow) {
+            return Limit { step: None, growth: None };
+        }
+        let rate = FASTER * elementary::ln(slow) / far_below;
+        let critical = spectral_radius::step_of_growth(&assembled, settings, safe, rate);
+        Limit { step: critical, growth: Some(critical.map_or(slow, growth)) }
     };
-    let Limit { step: found, growth } = if D > 1 && assembled.unknowns() <= spectral_radius::MOST_SQUARED {
+    let Limit { step: critical, growth } = if D > 1 && assembled.unknowns() <= spectral_radius::MOST_SQUARED {
         known_or(key_of(&assembled, settings, safe, sharp), search)
     } else {
         search()
     };
-    let growing = growth.map(|growth| GrowingMode { step, growth });
-    // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
-    let is_slow = |mode: &GrowingMode| mode.growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
-    let growing = growing.filter(|mode| !is_slow(mode));
-    Prediction { critical_step: found.unwrap_or(safe), growing, assembled, settings: *settings }
+    let growing = growth.map(|growth| GrowingMode { step: critical.unwrap_or(far_below), growth });
+    Prediction { critical_step: critical.unwrap_or(safe), growing, assembled, settings: *settings }
 }
 
 /// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
@@ -237,6 +260,37 @@ mod tests {
         assert!(moving("GIMP-SRI-patch", 1) > 1.04 * moving("GIMP-SRI", 1));
         let frozen = |name, layers| limit(name, SceneKind::Terzaghi, layers);
         assert_eq!(frozen("GIMP-SRI-patch", 2), frozen("GIMP-SRI-patch", 1));
+    }
+
+    #[test]
+    fn a_mode_stays_small_while_it_grows_by_less_than_a_hundred_times() {
+        // ln 100/r = 0.921 s at r = 5 1/s.
+        let mode = GrowingMode { step: 2e-3, growth: 0.01_f64.exp() };
+        for (seconds, is_small) in [(0.0, true), (0.921, true), (0.922, false), (1e3, false)] {
+            assert_eq!(mode.stays_small_for(seconds), is_small, "{seconds} s");
+        }
+        let unknown = GrowingMode { growth: f64::NAN, ..mode };
+        assert!(!unknown.stays_small_for(1e-9), "no number is no small growth");
+    }
+
+    #[test]
+    fn where_a_mode_grows_under_any_step_the_critical_one_makes_nothing_grow_much_faster() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let soil = Material { hydraulic_conductivity: 0.1, ..Material::default() };
+        let method = Method::named("GC-SRI-patch").expect("a known method");
+        let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 6, 2)
+            .expect("a layer");
+        let prediction = predict(&problem, &settings, FEW_CELLS);
+        let mode = prediction.growing.expect("patch rates grow with next to no drag");
+        let rate = |step: f64| (prediction.growth(step).expect("a small plane")).ln() / step;
+        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+        let slow = rate(0.1 * safe);
+        assert!(slow > 0.0 && rate(mode.step) <= 2.0 * slow * (1.0 + 1e-6));
+        assert_eq!(
+            [Some(mode.growth), Some(mode.step)],
+            [prediction.growth(mode.step), Some(prediction.critical_step)]
+        );
+        assert!(rate(4.0 * mode.step) > 2.0 * slow, "beyond the limit of waves");
     }
 
     #[test]

@@ -146,6 +146,21 @@ pub fn critical_step<const D: usize>(
     }
 }
 
+/// Largest step, s, not beyond `safe`, under which nothing grows faster than `rate`, 1/s. None where the operator is too large
+/// to be squared or everything grows faster.
+pub fn step_of_growth<const D: usize>(
+    step: &AssembledStep<D>,
+    settings: &ExplicitSettings,
+    safe: f64,
+    rate: f64,
+) -> Option<f64> {
+    if step.unknowns() > MOST_SQUARED || !rate.is_finite() {
+        return None;
+    }
+    let grows_slowly = |dt: f64| is_within(&step.operator(dt, settings), elementary::exp(rate * dt));
+    bracketed([safe, 1.0, 1e-2], &mut { grows_slowly })
+}
+
 /// The limit between stable and unstable steps, by bisection from a safe step to a relative tolerance; a search upwards goes
 /// by `factor`. None where no step down to a hundredth of the first is stable.
 fn bracketed([safe, factor, tolerance]: [f64; 3], is_stable: &mut dyn FnMut(f64) -> bool) -> Option<f64> {
