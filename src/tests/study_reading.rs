@@ -45,10 +45,10 @@ porosity = 0.3 ¦ law = 3 ¦ 4 ¦ `law` takes a word in quotes, not `3` ¦ write
 [material] ¦ output.references = "terzaghi"⏎[material] ¦ 3 ¦ `references` takes a list, not `"terzaghi"` ¦ write `references = ["terzaghi"]`
 [4, 8] ¦ 4 ¦ 7 ¦ `cells` takes a list, not `4` ¦ write `cells = [4]`
 [4, 8] ¦ 4, 8 ¦ 7 ¦ `4, 8` is neither a number nor a list ¦ write `cells = [4, 8]`
-[4, 8] ¦ [4.5] ¦ 7 ¦ `cells` takes a whole number, not `4.5` ¦ write it like `cells = 10`
-[4, 8] ¦ ["8"] ¦ 7 ¦ `cells` takes a whole number, not `"8"` ¦ write it without quotes: `cells = 8`
+[4, 8] ¦ [4.5] ¦ 7 ¦ `cells` takes a whole number, not `4.5` ¦ write it like `cells = [10]`
+[4, 8] ¦ ["8"] ¦ 7 ¦ `cells` takes a whole number, not `"8"` ¦ write it without quotes: `cells = [8]`
 [4, 8] ¦ "four" ¦ 7 ¦ `cells` takes a list, not `"four"` ¦ write it like `cells = [10]`
-[4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = { courant = 0.1, growth = 0.1 }`
+[4, 8] ¦ [4, 8]⏎time_step = [0.1] ¦ 8 ¦ `time_step` takes a table, not `0.1` ¦ write it like `time_step = [{ courant = 0.1 }]`
 [[sweep]] ¦ [sweep] ¦ 5 ¦ `sweep` takes a list, not `[sweep]` ¦ a block that may be repeated has double brackets: [[sweep]]
 title = "t"⏎ ¦  ¦ 1 ¦ `title` is missing in the study ¦ add `title = "..."`
 ["GIMP"] ¦ ["TL-PPP-step"] ¦ 6 ¦ no method is called `TL-PPP-step` ¦ version 0.3 removed it: take `TL-PPP`

@@ -139,11 +139,20 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
     } else if value.starts_with(char::is_alphabetic) {
         let quoted = write(&format!("\"{}\"", value.trim_end_matches(['"', '\''])));
         (Some(format!("`{shown}` needs quotes")), quoted)
+    } else if let Some((whole, decimals)) = value.split_once(',').filter(|_| is_decimal_comma(value)) {
+        let shown = format!("`{shown}` has a decimal comma, or is a list without brackets");
+        (Some(shown), format!("write `{key} = {whole}.{decimals}`, or `{key} = [{whole}, {decimals}]`"))
     } else if value.contains(',') && !value.contains(['[', '{']) {
         (Some(format!("`{shown}` is neither a number nor a list")), write(&format!("[{value}]")))
     } else {
         (None, A_LINE.to_owned())
     }
+}
+
+/// Whether a text is two groups of digits with a comma and no blank between them.
+fn is_decimal_comma(value: &str) -> bool {
+    let is_digits = |part: &str| !part.is_empty() && part.chars().all(|letter| letter.is_ascii_digit());
+    value.split_once(',').is_some_and(|(whole, decimals)| is_digits(whole) && is_digits(decimals))
 }
 
 /// A text with the numbers of quantities in place of the words that stand there.
@@ -239,6 +248,9 @@ impl Mistakes<'_> {
         let kind = kind_of(schema);
         let is_block = schema["items"]["properties"].is_object();
         let is_number = ["number", "integer"].contains(&kind);
+        // A value inside a list is shown inside a list.
+        let before = self.text.get(..value.span().start).unwrap_or_default().trim_end();
+        let in_list = |right: String| if before.ends_with(['[', ',']) { format!("[{right}]") } else { right };
         let help = match value.get_ref() {
             DeValue::Table(_) if is_block => {
                 format!("a block that may be repeated has double brackets: [[{key}]]")
@@ -251,7 +263,7 @@ impl Mistakes<'_> {
                 format!("several values belong in a [[sweep]]: `{key} = {written}`")
             }
             DeValue::String(word) if is_number => match word.trim().parse::<f64>() {
-                Ok(_) => format!("write it without quotes: `{key} = {word}`"),
+                Ok(_) => format!("write it without quotes: `{key} = {}`", in_list(word.to_string())),
                 Err(_) => format!(
                     "it has no unit: write it as a plain number without quotes, like `{key} = {}`",
                     example_of(schema)
@@ -260,7 +272,7 @@ impl Mistakes<'_> {
             typed if kind == "array" && fits(&schema["items"], typed) => {
                 format!("write `{key} = [{written}]`")
             }
-            _ => format!("write it like `{key} = {}`", example_of(schema)),
+            _ => format!("write it like `{key} = {}`", in_list(example_of(schema))),
         };
         let wanted = match kind {
             "integer" => "a whole number",
@@ -325,8 +337,10 @@ fn example_of(schema: &Value) -> String {
             let of_properties = schema["properties"].as_object().into_iter().flatten();
             let shown =
                 of_properties.filter(|(name, _)| required.is_empty() || required.contains(&name.as_str()));
-            let shown: Vec<String> =
-                shown.take(2).map(|(name, inner)| format!("{name} = {}", example_of(inner))).collect();
+            let shown: Vec<String> = shown
+                .take(required.len().max(1))
+                .map(|(name, inner)| format!("{name} = {}", example_of(inner)))
+                .collect();
             format!("{{ {} }}", shown.join(", "))
         }
         _ => "\"...\"".to_owned(),
@@ -406,6 +420,11 @@ mod tests {
             ("load = 5kpa", Some("`5kpa` is not a plain number"), plain),
             ("n = 30%", Some("`30%` is not a plain number"), plain),
             ("law = linear\"", Some("`linear\"` needs quotes"), "write `law = \"linear\"`"),
+            (
+                "porosity = 0,3",
+                Some("`0,3` has a decimal comma, or is a list without brackets"),
+                "write `porosity = 0.3`, or `porosity = [0, 3]`",
+            ),
             ("cells = 4, 8 # two", Some("`4, 8` is neither a number nor a list"), "write `cells = [4, 8]`"),
         ] {
             assert_eq!(line_mistake(line), (message.map(str::to_owned), help.to_owned()), "{line}");

@@ -111,6 +111,14 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
             usual.join(", ")
         )
     };
+    if let Some(decimals) =
+        symbol.strip_prefix(',').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    {
+        return Err((
+            format!("`{text}` has a decimal comma"),
+            format!("write a decimal point: \"{number}.{decimals}\""),
+        ));
+    }
     if number.is_empty() || symbol.is_empty() {
         return Err((format!("`{text}` is not a number with a unit"), help(example)));
     }
@@ -197,6 +205,7 @@ mod tests {
         for (text, si, message, help) in [
             ("5 m", "Pa", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""),
             ("5 kpa", "Pa", "the unit `kpa` is not known", "\"10 kPa\""),
+            ("1,5 kPa", "Pa", "has a decimal comma", "\"1.5 kPa\""),
             ("5 mPa", "Pa", "the unit `mPa` is not known", "\"10 MPa\""),
             ("5 m/s2", "m/s", "`m/s2` is not a unit of what is measured in m/s", "\"10 m/s\""),
             ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),

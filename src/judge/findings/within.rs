@@ -2,7 +2,7 @@
 //! output, in every problem of the study.
 
 use crate::case::grouping::distinct;
-use crate::case::{Case, Quantity, Sample};
+use crate::case::{Case, Quantity, Sample, step_label};
 use crate::judge::paths::grouped;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 
 /// Bounds for which the cheapest choice is looked for.
 const BOUNDS: [f64; 2] = [0.01, 0.001];
+
+/// Error on the finest mesh beyond which a method is far off.
+const FAR: f64 = 0.1;
 
 /// The quantities that a user asks for, in their order; a displacement only where nothing settles.
 const ASKED: [Quantity; 5] = [
@@ -38,6 +41,8 @@ pub struct QuantityWithin {
     pub bounds: Vec<BoundWithin>,
     /// The choice with the least error.
     pub best: WithinFinding,
+    /// Methods that are off by more than a tenth on their finest mesh, the worst first.
+    pub far: Vec<FarMethod>,
 }
 
 /// A bound and the cheapest choice within it.
@@ -47,10 +52,30 @@ pub struct BoundWithin {
     pub bound: f64,
     /// `None` where no choice stays within it.
     pub choice: Option<WithinFinding>,
-    /// Other methods that stay within it too, on any mesh.
-    pub others: Vec<String>,
+    /// Other methods that stay within it too, each on the coarsest mesh on which it does.
+    pub others: Vec<OtherMethod>,
     /// What the other integrators of the study take; empty where no choice stays within it, or work is not counted.
     pub integrators: Vec<IntegratorWithin>,
+}
+
+/// Another method within the bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OtherMethod {
+    /// Method, or name of another solver.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+}
+
+/// A method that stays far from the exact solution on its finest mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FarMethod {
+    /// Method, or name of another solver.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Its least error there, over integrators and steps.
+    pub error: f64,
 }
 
 /// What another integrator takes for the same bound.
@@ -75,7 +100,9 @@ pub struct WithinFinding {
     pub cells: usize,
     /// Points in a cell.
     pub points_per_cell: usize,
-    /// Largest step of the run with the largest error, s; 0 where another solver does not tell it.
+    /// Rule of its steps, `growth=0.02`; empty where another program solved.
+    pub step_rule: String,
+    /// Largest step of the run with the largest error, s; 0 where another program solved.
     pub largest_step: f64,
     /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
     pub is_longest_tried: bool,
@@ -141,8 +168,25 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
     // Beside another program, whose work is not counted, the coarsest mesh stands first.
     let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
     let bounds = BOUNDS.map(|bound| bound_within(bound, &choices, is_counted));
-    let reference = reference.to_owned();
-    Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best })
+    let (reference, far) = (reference.to_owned(), far_methods(&choices));
+    Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best, far })
+}
+
+/// The methods that are far off on their finest mesh, the worst first.
+fn far_methods(choices: &[WithinFinding]) -> Vec<FarMethod> {
+    let methods = distinct(choices.iter().map(|choice| choice.method.as_str()));
+    let mut far: Vec<FarMethod> = methods
+        .into_iter()
+        .filter_map(|method| {
+            let of = || choices.iter().filter(|choice| choice.method == method);
+            let cells = of().map(|choice| choice.cells).max()?;
+            let errors = of().filter(|choice| choice.cells == cells).map(|choice| choice.error);
+            let error = errors.min_by(f64::total_cmp).filter(|error| *error > FAR)?;
+            Some(FarMethod { method: method.to_owned(), cells, error })
+        })
+        .collect();
+    far.sort_by(|a, b| b.error.total_cmp(&a.error));
+    far
 }
 
 fn bound_within(bound: f64, choices: &[WithinFinding], is_counted: bool) -> BoundWithin {
@@ -156,7 +200,10 @@ fn bound_within(bound: f64, choices: &[WithinFinding], is_counted: bool) -> Boun
         return BoundWithin { bound, choice: None, others: Vec::new(), integrators: Vec::new() };
     };
     let methods = distinct(fits.iter().map(|choice| choice.method.as_str()));
-    let others = methods.into_iter().filter(|method| *method != cheapest.method).map(str::to_owned);
+    let others = methods.into_iter().filter(|method| *method != cheapest.method).filter_map(|method| {
+        let cells = fits.iter().filter(|choice| choice.method == method).map(|choice| choice.cells).min()?;
+        Some(OtherMethod { method: method.to_owned(), cells })
+    });
     let integrators = distinct(choices.iter().map(|choice| choice.integrator.as_str()));
     let integrators = integrators.into_iter().filter(|name| is_counted && *name != cheapest.integrator);
     let integrators = integrators.map(|name| {
@@ -175,12 +222,15 @@ fn bound_within(bound: f64, choices: &[WithinFinding], is_counted: bool) -> Boun
 impl WithinFinding {
     fn new(record: &Record, row: &ErrorRow) -> Self {
         let case = &record.case;
+        // What only a run of this program has.
+        let here = |words: String| if case.counts_work() { words } else { String::new() };
         Self {
             method: case.method.to_string(),
-            integrator: if case.counts_work() { case.integrator.name().to_owned() } else { String::new() },
+            integrator: here(case.integrator.name().to_owned()),
+            step_rule: here(step_label(&case.time_step)),
             cells: case.cells,
             points_per_cell: case.points_per_cell,
-            largest_step: record.step_sizes.largest,
+            largest_step: if case.counts_work() { record.step_sizes.largest } else { 0.0 },
             is_longest_tried: false,
             error: row.value.abs(),
             time_factor: row.time_factor,
@@ -312,6 +362,25 @@ mod tests {
         }
     }
 
+    /// MPM within 1 % on any mesh; GIMP on 8 and 16 cells, and VP nowhere.
+    #[test]
+    fn another_method_has_its_coarsest_mesh_within_the_bound_and_a_far_one_its_finest() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM', 'GIMP', 'VP']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16]\n";
+        let (study, mut records) = solved("s", text);
+        for record in &mut records {
+            let error = match (&*record.case.method.to_string(), record.case.cells) {
+                ("MPM", _) | ("GIMP", 8 | 16) => 0.005,
+                ("VP", 16) => 0.3,
+                _ => 0.5,
+            };
+            record.errors.iter_mut().for_each(|row| row.value = error);
+        }
+        let answer = &within(&study, &records)[0];
+        assert_eq!(answer.bounds[0].others, [OtherMethod { method: "GIMP".to_owned(), cells: 8 }]);
+        assert_eq!(answer.far, [FarMethod { method: "VP".to_owned(), cells: 16, error: 0.3 }]);
+    }
+
     /// Four cells with 5 % of growth, eight with 5 and 10 %; MPM and GIMP are both within.
     #[test]
     fn other_methods_within_the_bound_are_named_and_so_is_the_longest_step_tried() {
@@ -327,8 +396,10 @@ mod tests {
             let answer = &within(&study, &records)[0];
             let [percent, promille] = &answer.bounds[..] else { panic!("{answer:?}") };
             let choice = percent.choice.as_ref().expect("within");
-            let all: Vec<&str> =
-                std::iter::once(&choice.method).chain(&percent.others).map(String::as_str).collect();
+            let all: Vec<&str> = std::iter::once(&choice.method)
+                .chain(percent.others.iter().map(|other| &other.method))
+                .map(String::as_str)
+                .collect();
             assert!(all.len() == 2 && all.contains(&"MPM") && all.contains(&"GIMP"), "{all:?}");
             assert_eq!((choice.is_longest_tried, answer.problems), (is_longest, 1));
             assert_eq!((promille.choice.as_ref(), promille.others.len()), (None, 0));

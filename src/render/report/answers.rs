@@ -73,6 +73,7 @@ mod tests {
             integrator: "implicit".to_owned(),
             cells: 10,
             points_per_cell: 2,
+            step_rule: "growth=0.02".to_owned(),
             largest_step,
             is_longest_tried: false,
             error,
@@ -96,6 +97,7 @@ mod tests {
                 problems: 1,
                 bounds: bounds.collect(),
                 best: choice(0.02, step),
+                far: Vec::new(),
             };
             within(&[quantity]).expect("filled").trim().to_owned()
         };
@@ -103,12 +105,12 @@ mod tests {
         let largest = "(largest 0.40 %, at T_v = 0.1522, 180 days)";
         assert_eq!(
             told([Some(0.004), None], 864_000.0),
-            format!("{within}, steps up to 10 days {largest}; no run reaches 0.1 %.")
+            format!("{within}, steps of `growth=0.02` up to 10 days {largest}; no run reaches 0.1 %.")
         );
         assert_eq!(told([Some(0.004), None], 0.0), format!("{within} {largest}; no run reaches 0.1 %."));
         assert_eq!(
             told([None, None], 0.0),
-            "**Settlement**: no run reaches 1 %; no run reaches 0.1 %. The smallest error is 2.00 %, of `GC-SRI-patch`, implicit, \
+            "**Settlement**: no run reaches 1 %. The smallest error is 2.00 %, of `GC-SRI-patch`, implicit, \
              on 10 cells."
         );
     }

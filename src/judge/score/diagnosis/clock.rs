@@ -311,6 +311,15 @@ fn names(given: &Given<'_>) -> Vec<(f64, String)> {
         all.push((factor, format!("is k in m/{word} taken for m/s?")));
         all.push((1.0 / factor, format!("is k in m/s taken for m/{word}?")));
     }
+    // With a porosity of a half both mistakes look alike.
+    let [divided, multiplied] = if (soil.porosity - 0.5).abs() < 0.01 {
+        [
+            "is k twice too large, or divided by the porosity?",
+            "is k half as large, or multiplied by the porosity?",
+        ]
+    } else {
+        ["is k divided by the porosity?", "is k multiplied by the porosity?"]
+    };
     let others = [
         (gravity, "is γ_w taken as ρ_w, without g?"),
         (1.0 / gravity, "is γ_w multiplied by g once too often?"),
@@ -318,8 +327,8 @@ fn names(given: &Given<'_>) -> Vec<(f64, String)> {
         (VISCOSITY, "is k divided by μ where it should not be?"),
         (weight, "is k taken for k/γ_w?"),
         (1.0 / weight, "is k/γ_w, or k/μ in place of it, taken for the hydraulic conductivity k?"),
-        (1.0 / soil.porosity, "is k divided by the porosity?"),
-        (soil.porosity, "is k multiplied by the porosity?"),
+        (1.0 / soil.porosity, divided),
+        (soil.porosity, multiplied),
     ];
     all.extend(others.map(|(factor, asked)| (factor, asked.to_owned())));
     if !given.moves() {

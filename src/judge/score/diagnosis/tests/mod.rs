@@ -329,6 +329,21 @@ fn another_stiffness_and_another_permeability_are_named() {
 }
 
 #[test]
+fn with_a_porosity_of_a_half_a_factor_of_two_has_both_causes() {
+    let mut column = ColumnParameters::default();
+    column.soil.porosity = 0.5;
+    for (factor, words) in [
+        (2.0, "is k twice too large, or divided by the porosity?"),
+        (0.5, "is k half as large, or multiplied by the porosity?"),
+    ] {
+        let states = states(&TIMES.map(|time| factor * time), |time| time / factor, 1e-3);
+        let told =
+            diagnosis(&column, ReferenceKind::Terzaghi, &states, &mapping(CONVENTION)).expect("a column");
+        assert!(told.len() == 1 && told[0].contains(words), "{factor}: {told:?}");
+    }
+}
+
+#[test]
 fn times_that_are_off_by_a_factor_or_from_another_moment_are_named() {
     for (factor, said) in
         [(1.1, "at 1.1 × the time"), (0.9, "at 0.9 × the time"), (0.5, "at 0.5 × the time"), (2.5, "2.5 ×")]
