@@ -368,7 +368,7 @@ fn figures_in_the_text_are_what_their_commands_print() {
     assert_eq!(told.code, 3);
     let step = between(&text, "`unstable` at step ", " (`solve terzaghi --time-step seconds=1e-4`");
     assert!(told.err.contains(&format!("(unstable) at step {step}, ")), "step {step}: {}", told.err);
-    let share = between(&text, "A step of 10⁻⁴ s is reported as ", " of the predicted critical one");
+    let share = between(&text, "A step of 10⁻⁴ s is reported as ", " times the predicted critical one");
     let found = between(&told.err, "1.0000e-4 s is ", " of the predicted critical one");
     assert!(is_equal(share, found), "{share}: {}", told.err);
     let text = on_one_line(text_of("docs/methods.md"));
