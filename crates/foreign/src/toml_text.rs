@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, StudyError, one_of};
 use crate::source::StudySource;
 use crate::synonyms::{derived, help_for_key};
-use crate::units::{has_unit, in_si, leading_number};
+use crate::units::{has_unit, in_si, is_thousands, leading_number};
 use oedometer_case::keys::Key;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -140,8 +140,13 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
         let quoted = write(&format!("\"{}\"", value.trim_end_matches(['"', '\''])));
         (Some(format!("`{shown}` needs quotes")), quoted)
     } else if let Some((whole, decimals)) = value.split_once(',').filter(|_| is_decimal_comma(value)) {
-        let shown = format!("`{shown}` has a decimal comma, or is a list without brackets");
-        (Some(shown), format!("write `{key} = {whole}.{decimals}`, or `{key} = [{whole}, {decimals}]`"))
+        let shown = format!("`{shown}` has a comma in its number, or is a list without brackets");
+        let thousands =
+            is_thousands(decimals).then(|| format!(", `{key} = {whole}{decimals}`")).unwrap_or_default();
+        (
+            Some(shown),
+            format!("write `{key} = {whole}.{decimals}`{thousands}, or `{key} = [{whole}, {decimals}]`"),
+        )
     } else if value.contains(',') && !value.contains(['[', '{']) {
         (Some(format!("`{shown}` is neither a number nor a list")), write(&format!("[{value}]")))
     } else {
@@ -422,8 +427,13 @@ mod tests {
             ("law = linear\"", Some("`linear\"` needs quotes"), "write `law = \"linear\"`"),
             (
                 "porosity = 0,3",
-                Some("`0,3` has a decimal comma, or is a list without brackets"),
+                Some("`0,3` has a comma in its number, or is a list without brackets"),
                 "write `porosity = 0.3`, or `porosity = [0, 3]`",
+            ),
+            (
+                "load = 1,500",
+                Some("`1,500` has a comma in its number, or is a list without brackets"),
+                "write `load = 1.500`, `load = 1500`, or `load = [1, 500]`",
             ),
             ("cells = 4, 8 # two", Some("`4, 8` is neither a number nor a list"), "write `cells = [4, 8]`"),
         ] {

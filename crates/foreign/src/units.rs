@@ -88,6 +88,11 @@ impl Unit {
     }
 }
 
+/// Whether a comma before these words may separate thousands.
+pub(crate) fn is_thousands(after: &str) -> bool {
+    after.chars().take_while(char::is_ascii_digit).count() == 3
+}
+
 /// The number in SI units of a text like `50 kPa`, for a key with this SI unit; or what is wrong and what would be
 /// right.
 ///
@@ -114,9 +119,10 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
     if let Some(decimals) =
         symbol.strip_prefix(',').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     {
+        let thousands = is_thousands(decimals).then(|| format!(", or no separator: \"{number}{decimals}\""));
         return Err((
-            format!("`{text}` has a decimal comma"),
-            format!("write a decimal point: \"{number}.{decimals}\""),
+            format!("`{text}` has a comma in its number"),
+            format!("write a decimal point: \"{number}.{decimals}\"{}", thousands.unwrap_or_default()),
         ));
     }
     if number.is_empty() || symbol.is_empty() {
@@ -205,7 +211,8 @@ mod tests {
         for (text, si, message, help) in [
             ("5 m", "Pa", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""),
             ("5 kpa", "Pa", "the unit `kpa` is not known", "\"10 kPa\""),
-            ("1,5 kPa", "Pa", "has a decimal comma", "\"1.5 kPa\""),
+            ("1,5 kPa", "Pa", "has a comma in its number", "write a decimal point: \"1.5 kPa\""),
+            ("1,500 kPa", "Pa", "has a comma in its number", "\"1.500 kPa\", or no separator: \"1500 kPa\""),
             ("5 mPa", "Pa", "the unit `mPa` is not known", "\"10 MPa\""),
             ("5 m/s2", "m/s", "`m/s2` is not a unit of what is measured in m/s", "\"10 m/s\""),
             ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),

@@ -323,13 +323,13 @@ mod tests {
     }
 
     /// Errors of half a per cent everywhere; four cells are the cheapest.
-    fn cells_within_one_percent(text: &str, change: impl Fn(&mut Record)) -> Option<usize> {
+    fn within_one_percent(text: &str, change: impl Fn(&mut Record)) -> Option<WithinFinding> {
         let (study, mut records) = solved("s", text);
         for record in &mut records {
             record.errors.iter_mut().for_each(|row| row.value = 0.005);
             change(record);
         }
-        within(&study, &records)[0].bounds[0].choice.as_ref().map(|choice| choice.cells)
+        within(&study, &records)[0].bounds[0].choice.clone()
     }
 
     /// Half a per cent everywhere, or 5 % for explicit steps on four cells: then eight are what explicit takes.
@@ -418,8 +418,8 @@ mod tests {
             sweep(4, "youngs_modulus = [1e6]") + &sweep(4, &again)
         };
         for (modulus, cells) in [("1e6", 8), ("1e7", 4)] {
-            let found = cells_within_one_percent(&format!("{head}{both}{}", twice(modulus)), |_| ());
-            assert_eq!(found, Some(cells), "{modulus}");
+            let found = within_one_percent(&format!("{head}{both}{}", twice(modulus)), |_| ());
+            assert_eq!(found.map(|choice| choice.cells), Some(cells), "{modulus}");
         }
     }
 
@@ -429,12 +429,16 @@ mod tests {
                     integrator = ['implicit']\ncells = [4, 8, 16]\n";
         let other = crate::case::solver::Attached::new("other", "0123456789abcdef").expect("a name");
         for outside in [4, 8, 16] {
-            let found = cells_within_one_percent(text, |record| {
+            let found = within_one_percent(text, |record| {
                 if record.case.cells == outside {
                     record.case.method = crate::case::SolverName::Attached(other);
                 }
             });
-            assert_eq!(found, Some(4), "{outside} cells are another program's");
+            let found = found.expect("a choice");
+            assert_eq!(found.cells, 4, "{outside} cells are another program's");
+            // The steps of another program are not known.
+            let has = [found.largest_step > 0.0, !found.step_rule.is_empty()];
+            assert_eq!(has, [outside != 4; 2], "{outside} cells are another program's");
         }
     }
 }

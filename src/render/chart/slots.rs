@@ -7,9 +7,9 @@ const METHODS: [&str; 6] =
 /// As many names as this can be told apart by colour.
 const COLOURS: usize = 7;
 
-/// The slot of each of these different names; a name may go on after its method, `GC-SRI-patch, implicit`,
-/// and the total Lagrangian form of a method looks like it. Names without
-/// a slot of their own take the free ones in their order, and many names all do.
+/// The slot of each of these names, which are all different. A name may go on after its method, `GC-SRI-patch, implicit`; the
+/// total Lagrangian form of a method looks like the method. Names without a slot of their own take the free ones in their
+/// order; where there are more names than colours, all of them do.
 pub fn slots(names: &[&str]) -> Vec<usize> {
     if names.len() > COLOURS {
         return (0..names.len()).collect();
@@ -29,6 +29,16 @@ mod tests {
     use super::slots;
 
     #[test]
+    fn the_methods_with_a_colour_are_those_that_the_front_page_names() {
+        let profile = include_str!("../../../report/figures/race-profile-moving-all.svg");
+        for method in super::METHODS {
+            assert!(profile.contains(&format!(">{method}<")), "{method}");
+        }
+        // And the title.
+        assert_eq!(profile.matches("font-weight=\"bold\"").count(), super::METHODS.len() + 1);
+    }
+
+    #[test]
     fn a_method_of_the_front_page_has_its_colour_in_any_company() {
         let many: Vec<String> = (0..8).map(|place| format!("MPM, {place} cells")).collect();
         let many: Vec<&str> = many.iter().map(String::as_str).collect();
@@ -38,7 +48,7 @@ mod tests {
             (&["10 cells", "20 cells", "40 cells"], &[0, 1, 2]),
             (&["GIMP-SRI", "GC-Bbar-patch", "PPP"], &[1, 0, 2]),
             (&["MPM, explicit", "MPM, implicit", "MPM-cells"], &[5, 0, 1]),
-            (&["MPM", "TL-MPM", "TL-GC-SRI-patch"], &[5, 0, 1]),
+            (&["TL-GC-SRI-patch", "MPM", "TL-MPM"], &[1, 5, 0]),
             (&many, &[0, 1, 2, 3, 4, 5, 6, 7]),
         ];
         for (names, expected) in cases {

@@ -199,8 +199,8 @@ impl Front {
             return Ok(());
         }
         factor_columns(left.as_view_mut(), count, &mut self.pivots);
-        let is_pivot = |value: f64| value != 0.0 && value.is_finite();
-        if let Some(column) = (0..count).find(|column| !is_pivot(left[(*column, *column)])) {
+        // Of a normal number the inverse, by which solutions multiply, is finite.
+        if let Some(column) = (0..count).find(|column| !left[(*column, *column)].is_normal()) {
             return Err(Singular { row: self.unknowns[column] });
         }
         swap_rows(&mut right.as_view_mut(), &self.pivots);
@@ -344,17 +344,20 @@ mod tests {
     }
 
     #[test]
-    fn a_row_of_zeros_is_named() {
+    fn a_row_without_a_pivot_is_named() {
         let positions: Vec<[f64; 2]> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
-        for (zeros, named) in [(&[123][..], 123), (&[290], 290), (&[123, 290], 123)] {
+        // One over the last of these values is infinite.
+        for (rows, value, named) in
+            [(&[123][..], 0.0, 123), (&[290], 0.0, 290), (&[123, 290], 0.0, 123), (&[290], 1e-310, 290)]
+        {
             let mut matrix = SparseMatrix::spanning(&positions, |_| ());
-            for row in (0..400).filter(|row| !zeros.contains(row)) {
-                matrix.add(row, row, 1.0);
+            for row in 0..400 {
+                matrix.add(row, row, if rows.contains(&row) { value } else { 1.0 });
             }
             for threads in 1..4 {
                 let mut lu = FrontalLu::of_shape(&matrix, threads);
                 let factored = lu.factor(&matrix, TimeLimit::default());
-                assert_eq!(factored, Err(Singular { row: named }), "{zeros:?} on {threads} threads");
+                assert_eq!(factored, Err(Singular { row: named }), "{rows:?} on {threads} threads");
             }
         }
     }

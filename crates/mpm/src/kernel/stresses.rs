@@ -350,7 +350,7 @@ fn rotated<const D: usize, const N: usize>(
         let per = 1.0 / (1.0 + half * half);
         (cosine[p], sine[p]) = ((1.0 - half * half) * per, 2.0 * half * per);
     }
-    // In memory: the compiler would else divide point by point.
+    // In memory: otherwise the compiler divides point by point.
     let [cosine, sine] = black_box([cosine, sine]);
     // `Q σ`, and that by `Qᵀ`: `[component][point]`.
     let mut rows = [[[0.0; N]; 2]; 2];

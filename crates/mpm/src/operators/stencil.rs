@@ -325,7 +325,7 @@ impl<const D: usize, const W: usize> Stencil<'_, D, W> {
                 }
             },
         );
-        // In memory: the compiler would else sum by vectors, which fill half a wide register.
+        // In memory: otherwise the compiler sums by vectors, which fill half a wide register.
         black_box(values)
     }
 

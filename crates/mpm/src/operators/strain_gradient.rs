@@ -220,7 +220,7 @@ impl<'a, const D: usize> CompositeRows<'a, D> {
                 }
             }
         }
-        // In memory point beside point: the compiler would else sum tensor by tensor, and shuffle every factor.
+        // In memory point beside point: otherwise the compiler sums tensor by tensor, and shuffles every factor.
         let slopes = black_box(slopes);
         let mut gradients = [[[0.0; D]; D]; LANES];
         for p in 0..LANES {
