@@ -276,21 +276,26 @@ mod tests {
     #[test]
     fn where_a_mode_grows_under_any_step_the_critical_one_makes_nothing_grow_much_faster() {
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
-        let soil = Material { hydraulic_conductivity: 0.1, ..Material::default() };
         let method = Method::named("GC-SRI-patch").expect("a known method");
-        let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 6, 2)
-            .expect("a layer");
-        let prediction = predict(&problem, &settings, FEW_CELLS);
-        let mode = prediction.growing.expect("patch rates grow with next to no drag");
-        let rate = |step: f64| (prediction.growth(step).expect("a small plane")).ln() / step;
-        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
-        let slow = rate(0.1 * safe);
-        assert!(slow > 0.0 && rate(mode.step) <= 2.0 * slow * (1.0 + 1e-6));
-        assert_eq!(
-            [Some(mode.growth), Some(mode.step)],
-            [prediction.growth(mode.step), Some(prediction.critical_step)]
-        );
-        assert!(rate(4.0 * mode.step) > 2.0 * slow, "beyond the limit of waves");
+        // With more drag the growth rises with the step, and ends it before the waves do.
+        for (conductivity, ends_early) in [(0.1, false), (0.01, true)] {
+            let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
+            let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 6, 2)
+                .expect("a layer");
+            let prediction = predict(&problem, &settings, FEW_CELLS);
+            let mode = prediction.growing.expect("patch rates grow with little drag");
+            let rate = |step: f64| (prediction.growth(step).expect("a small plane")).ln() / step;
+            let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+            let most = 2.0 * rate(0.1 * safe);
+            assert!(most > 0.0 && rate(mode.step) <= most * (1.0 + 1e-6), "{conductivity}");
+            assert_eq!(
+                [Some(mode.growth), Some(mode.step)],
+                [prediction.growth(mode.step), Some(prediction.critical_step)]
+            );
+            assert_eq!(mode.step < safe, ends_early, "{conductivity}");
+            let beyond = if ends_early { 1.02 } else { 4.0 };
+            assert!(rate(beyond * mode.step) > most, "{conductivity}: beyond the limit");
+        }
     }
 
     #[test]
