@@ -142,7 +142,7 @@ fn line_mistake(line: &str) -> (Option<String>, String) {
     } else if let Some((whole, decimals)) = value.split_once(',').filter(|_| is_decimal_comma(value)) {
         let shown = format!("`{shown}` has a comma in its number, or is a list without brackets");
         let thousands =
-            is_thousands(decimals).then(|| format!(", `{key} = {whole}{decimals}`")).unwrap_or_default();
+            if is_thousands(decimals) { format!(", `{key} = {whole}{decimals}`") } else { String::new() };
         (
             Some(shown),
             format!("write `{key} = {whole}.{decimals}`{thousands}, or `{key} = [{whole}, {decimals}]`"),

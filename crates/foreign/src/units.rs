@@ -119,10 +119,14 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
     if let Some(decimals) =
         symbol.strip_prefix(',').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     {
-        let thousands = is_thousands(decimals).then(|| format!(", or no separator: \"{number}{decimals}\""));
+        let thousands = if is_thousands(decimals) {
+            format!(", or no separator: \"{number}{decimals}\"")
+        } else {
+            String::new()
+        };
         return Err((
             format!("`{text}` has a comma in its number"),
-            format!("write a decimal point: \"{number}.{decimals}\"{}", thousands.unwrap_or_default()),
+            format!("write a decimal point: \"{number}.{decimals}\"{thousands}"),
         ));
     }
     if number.is_empty() || symbol.is_empty() {
