@@ -116,7 +116,7 @@ const ORDER: &str = "order = { value = 2.0 }";
 const CASE: &str = "status = \"ok\"";
 
 /// Edits of the column.
-const OF_COLUMNS: &[(&str, &str)] = &[
+const FOR_COLUMNS: &[(&str, &str)] = &[
     // The head.
     ("title = \"a column\"\n", ""),
     ("summary = \"why\"\n", "sumary = \"why\"\n"),
@@ -328,7 +328,7 @@ fn studies_of_columns_with_one_edit() {
         .replace("column = { height = 2.5, load = 40.0 }\n", "")
         .replace(ORDER, "reference = \"none\"\nquantity = \"settlement\"\nuncertainty = { below = 0.1 }");
     let layered = layered + "\n[column]\nheight = 2.5\nload = 40.0\n" + soils;
-    edits(&mut text, "t.toml", COLUMN, OF_COLUMNS);
+    edits(&mut text, "t.toml", COLUMN, FOR_COLUMNS);
     edits(&mut text, "t.toml", &layered, OF_SOIL_LAYERS);
     assert_snapshot("study_columns", &text);
 }

@@ -31,15 +31,15 @@ impl Law {
         }
     }
 
-    /// `κ(J) = k/J` over the initial conductivity: what a gradient of the pressure over the initial place
-    /// drives.
+    /// `κ(J) = k/J` over the initial conductivity: the flux that a pressure gradient with respect to the initial
+    /// coordinates drives.
     #[inline]
     pub fn mobility_ratio(self, volume_ratio: f64) -> f64 {
         self.conductivity(1.0, volume_ratio) / volume_ratio
     }
 
     /// Kirchhoff's potential `Φ` at the engineering strain `J − 1`, `dΦ = κ dσ'` over `k_0 E_oed`, zero in the
-    /// initial state; in closed form for every law of columns, not a number for others.
+    /// initial state; in closed form for every law for columns, NaN for others.
     #[inline]
     pub fn flow_potential(self, strain: f64) -> f64 {
         match self {
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn the_potential_is_the_integral_of_the_mobility_over_the_stress() {
-        for law in Law::OF_COLUMNS {
+        for law in Law::FOR_COLUMNS {
             for compression in [-0.2, 1e-6, 0.1, 0.7] {
                 let strain = law.strain_under(compression);
                 assert!((law.uniaxial_stress_ratio(strain) + compression).abs() < 1e-15, "{law:?}");

@@ -26,7 +26,7 @@ pub fn powi(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / power } else { power }
 }
 
-/// [`ln`] of some numbers side by side, to the same bits: where all are positive and normal, without a branch for each.
+/// [`ln`] of `N` numbers at once, with the same bits; without a branch for each if all are positive and normal.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "what runs in wide registers is inlined there")]
 pub fn ln_of_each<const N: usize>(numbers: &[f64; N]) -> [f64; N] {
@@ -57,7 +57,7 @@ fn ln_of_normal(x: f64) -> f64 {
         f64::from_bits(0x3fcc_71c5_1d8e_78af),
         f64::from_bits(0x3fc3_9a09_d078_c69f),
     ];
-    /// High half of `√½`, and what takes it to that of one.
+    /// High half of `√½`, and the difference from that of 1.
     const ROOT_HALF: u64 = 0x3fe6_a09e_0000_0000;
     const TO_ONE: u64 = 0x3ff0_0000_0000_0000 - ROOT_HALF;
     /// `2⁵²`, whose last bits count in ones.
@@ -96,8 +96,8 @@ pub fn exp_m1_complex(z: Complex<f64>) -> Complex<f64> {
     Complex::new(exp_m1(z.re) * cos(z.im) - 2.0 * half * half, exp(z.re) * sin(z.im))
 }
 
-/// The square root with a positive real part; along the negative real axis the limit from the side
-/// that the sign of zero tells.
+/// The square root with a positive real part; on the negative real axis the sign of the zero imaginary part selects the
+/// side of the cut.
 pub fn sqrt_complex(z: Complex<f64>) -> Complex<f64> {
     if z.re == 0.0 && z.im == 0.0 {
         return Complex::new(0.0, z.im);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn logarithms_side_by_side_are_those_one_by_one_to_the_bit() {
+    fn logarithms_of_several_numbers_have_the_bits_of_single_logarithms() {
         let special = [1.0, 0.0, -0.0, -1.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, f64::NAN];
         for x in special {
             let [a, b] = ln_of_each(&[x, 0.7]);
@@ -145,7 +145,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_logarithm_side_by_side_is_that_of_one(bits in any::<[u64; 8]>()) {
+        fn logarithms_of_random_numbers_have_the_bits_of_single_logarithms(bits in any::<[u64; 8]>()) {
             let numbers = bits.map(|bits| f64::from_bits(bits >> 1));
             for (x, got) in numbers.iter().zip(ln_of_each(&numbers)) {
                 prop_assert!(got.to_bits() == ln(*x).to_bits() || got.is_nan() && x.is_nan(), "{:e}", x);

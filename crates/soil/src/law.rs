@@ -2,8 +2,10 @@
 //! configuration. Every integrator updates stresses by [`StressLaw::update`].
 
 use crate::elementary;
-use crate::plasticity::{Components, PointLaw, PointState, Tangent, VonMises};
-use crate::tensor::{Tensor, product_with_transpose};
+use crate::plasticity::{Components, PointLaw, PointState, Tangent};
+use crate::stiffness::Stiffness;
+use crate::tensor::Tensor;
+use crate::von_mises::VonMises;
 use crate::wording::words;
 use std::array;
 
@@ -41,7 +43,7 @@ words!(
 impl Law {
     /// The laws of columns: a rate against the logarithmic strain, which a uniaxial compression integrates in closed
     /// form.
-    pub const OF_COLUMNS: [Self; 4] =
+    pub const FOR_COLUMNS: [Self; 4] =
         [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering];
 
     /// Whether the stress is a function of the deformation gradient, and no rate is integrated.
@@ -58,8 +60,8 @@ impl Law {
     }
 
     /// Modulus over the initial one against the logarithmic strain `dJ/J` of the rate form, over
-    /// a step from one volume ratio to another: at their geometric mean, of second order. Of a hyperelastic law,
-    /// which no rate is integrated of, that of the start.
+    /// a step from one volume ratio to another: at their geometric mean, of second order. For a hyperelastic law,
+    /// whose stress is not integrated from a rate, it is 1.
     #[inline]
     pub fn modulus_ratio(self, before: f64, after: f64) -> f64 {
         match self {
@@ -75,8 +77,8 @@ impl Law {
     }
 
     /// Vertical effective stress over the oedometric modulus of a uniaxial compression to the
-    /// engineering strain `J − 1`, which may be tiny: the integral of the rate form. Not a number for laws that are
-    /// not [of columns](Self::OF_COLUMNS), which depend on Poisson's ratio too.
+    /// engineering strain `J − 1`, which may be tiny: the integral of the rate form. NaN for laws that are not
+    /// [for columns](Self::FOR_COLUMNS), because their stress depends on Poisson's ratio too.
     #[inline]
     pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
         match self {
@@ -86,8 +88,8 @@ impl Law {
         }
     }
 
-    /// What a uniaxial compression `−σ'/E_oed` takes of the volume, `1 − J`; the linear law's at small
-    /// strain. Not a number for laws that are not of columns.
+    /// Loss of volume `1 − J` under a uniaxial compression `−σ'/E_oed`; for the linear law its small-strain value.
+    /// NaN for laws that are not for columns.
     #[inline]
     pub fn shrinkage(self, compression: f64) -> f64 {
         match self {
@@ -99,60 +101,7 @@ impl Law {
     }
 }
 
-/// Isotropic elastic stiffness.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stiffness {
-    /// Lamé's first parameter `λ`, Pa.
-    pub lame: f64,
-    /// Shear modulus `G`, Pa.
-    pub shear: f64,
-}
-
-impl Stiffness {
-    /// Stress of a small strain whose lateral parts vanish in the directions left out:
-    /// `λ tr(ε) I + 2 G ε` with `ε = sym` of the given displacement gradient.
-    #[inline]
-    pub fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D> {
-        let volumetric: f64 = (0..D).map(|d| gradient[d][d]).sum();
-        let mut stress = [[0.0; D]; D];
-        for i in 0..D {
-            for j in 0..D {
-                stress[i][j] = self.shear * (gradient[i][j] + gradient[j][i]);
-            }
-            stress[i][i] += self.lame * volumetric;
-        }
-        stress
-    }
-
-    /// Neo-Hookean Cauchy stress `[μ (F Fᵀ − I) + λ ln J I]/J` of a deformation gradient, its determinant and the
-    /// determinant's logarithm, in plane strain (docs/theory.md, Eq. 28).
-    #[inline]
-    pub fn neo_hookean_stress<const D: usize>(
-        &self,
-        deformation: &Tensor<D>,
-        volume_ratio: f64,
-        log_volume: f64,
-    ) -> Tensor<D> {
-        let left = product_with_transpose(deformation, deformation);
-        let volumetric = self.lame * log_volume - self.shear;
-        std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let whole = self.shear * left[i][j] + if i == j { volumetric } else { 0.0 };
-                whole / volume_ratio
-            })
-        })
-    }
-
-    /// Normal stress that the gradient `(b/D) I` of B-bar lacks: the volume `b` that B-bar adds to a
-    /// strain is shared by three directions, `b/3` each (Hughes 1980, Eq. 12), in whatever dimension
-    /// the problem is solved.
-    #[inline]
-    pub fn shared_dilation_stress<const D: usize>(&self, dilation: f64) -> f64 {
-        2.0 * self.shear * dilation * (1.0 / 3.0 - 1.0 / D as f64)
-    }
-}
-
-/// What a step does to the skeleton at a point.
+/// Deformation of the skeleton at a point over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainIncrement<const D: usize> {
     /// Displacement gradient whose symmetric part is the strain, with the volume of B-bar shared by its diagonal.
@@ -164,8 +113,8 @@ pub struct StrainIncrement<const D: usize> {
 }
 
 impl<const D: usize> StrainIncrement<D> {
-    /// Its components `xx, yy, zz, xy`. The volume that B-bar adds is shared by three directions, also by those in which
-    /// nothing is displaced (Hughes 1980, Eq. 12).
+    /// Components `xx, yy, zz, xy` of the strain. The volume that B-bar adds is shared by all three directions, including
+    /// those without displacement (Hughes 1980, Eq. 12).
     #[inline]
     pub fn components(&self) -> Components {
         let (gradient, third) = (&self.gradient, self.dilation / 3.0);
@@ -177,31 +126,31 @@ impl<const D: usize> StrainIncrement<D> {
     }
 }
 
-/// What a soil keeps at a point beside the stresses in the plane of the problem, of laws that
-/// [have one](Law::has_history).
+/// History variables of a point beside its stresses in the plane of the problem, for laws that
+/// [have a history](Law::has_history).
 ///
-/// Whoever updates a stress starts from the history of an accepted state and writes the new one beside the new stress:
-/// an implicit stage from its anchored points, an explicit step from the points themselves. A trial that is given up is
-/// forgotten with its points.
+/// A stress update starts from the history of an accepted state and stores the new history with the new stress: an
+/// implicit stage starts from its anchored points, an explicit step from the points themselves. A rejected trial is
+/// discarded together with its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct History {
-    /// Effective stress normal to the plane of the problem, Pa, tension positive: of [`Law::VonMises`] alone.
+    /// Effective stress normal to the plane of the problem, Pa, tension positive; only [`Law::VonMises`] has it.
     pub lateral_stress: f64,
-    /// Stress at which the soil yields now, Pa: of [`Law::Preconsolidated`] the largest vertical effective stress so far,
-    /// compression positive.
+    /// Present yield stress, Pa: for [`Law::Preconsolidated`] the largest vertical effective stress so far, compression
+    /// positive.
     pub yield_stress: f64,
-    /// Equivalent plastic strain: of [`Law::VonMises`] alone.
+    /// Equivalent plastic strain; only [`Law::VonMises`] has it.
     pub plastic_strain: f64,
 }
 
-/// A law with the stiffness of a soil: what an effective stress follows from.
+/// A law with the parameters of a soil from which effective stresses are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressLaw {
     /// The law.
     pub law: Law,
     /// Stiffness in the initial state.
     pub stiffness: Stiffness,
-    /// Modulus of first loading over that of the initial state, at most 1; 1 where they are one.
+    /// Modulus of first loading over that of the initial state: 1 if they are equal, less otherwise.
     pub virgin_share: f64,
     /// Shear strength, Pa, of [`Law::VonMises`].
     pub strength: f64,
@@ -220,9 +169,8 @@ impl StressLaw {
         stress
     }
 
-    /// Takes the state of the soil at a point through a step: the effective stress, Pa, and of laws that have one the
-    /// history; others leave it alone. `deformation` is the deformation gradient since the start, which hyperelastic laws
-    /// ask for.
+    /// Updates the effective stress, Pa, at a point over a step, and the history if the law has one. `deformation` returns
+    /// the deformation gradient since the start; only hyperelastic laws call it.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
     pub fn update<const D: usize>(
@@ -236,7 +184,7 @@ impl StressLaw {
         self.update_each(stresses, histories, array::from_ref(strain), |_| deformation());
     }
 
-    /// The same at some points of one soil, side by side; `deformation` is that of a point by its place among them.
+    /// [`update`](Self::update) for `N` points of the same soil at once; `deformation` takes the index of a point.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the innermost loops of every integrator")]
     pub fn update_each<const D: usize, const N: usize>(
@@ -292,8 +240,8 @@ impl StressLaw {
 }
 
 impl StressLaw {
-    /// Takes a point of [`Law::VonMises`] through a strain increment `xx, yy, zz, xy`; the derivative of its stress by the
-    /// increment, Pa, the consistent tangent.
+    /// Updates stress and history of a [`Law::VonMises`] point for a strain increment `xx, yy, zz, xy`, and returns the
+    /// consistent tangent, Pa.
     pub fn update_plastic<const D: usize>(
         &self,
         stress: &mut Tensor<D>,
@@ -319,9 +267,9 @@ impl StressLaw {
         tangent
     }
 
-    /// Secant modulus over the initial one of a step from a vertical compression, Pa, that would grow by `elastic` at the
-    /// initial modulus. What of it goes beyond the yield stress goes at the modulus of first loading, and takes the yield
-    /// stress along: exact for a step of any size.
+    /// Secant modulus of a step over the initial modulus. The step starts at a vertical compression, Pa, that would grow by
+    /// `elastic` at the initial modulus; the part beyond the yield stress follows the modulus of first loading and raises
+    /// the yield stress with it. Exact for steps of any size.
     #[inline]
     fn preconsolidated_share(&self, compression: f64, elastic: f64, yield_stress: &mut f64) -> f64 {
         let beyond = elastic.min(compression + elastic - *yield_stress);
@@ -366,38 +314,6 @@ mod tests {
     }
 
     #[test]
-    fn a_uniaxial_strain_meets_the_oedometric_modulus() {
-        let soil = Material { poissons_ratio: 0.31, ..Material::default() };
-        let expected = soil.oedometric_modulus() * 1e-3;
-        assert!((soil.stiffness().stress(&[[1e-3]])[0][0] / expected - 1.0).abs() < 1e-14);
-        let plane = soil.stiffness().stress(&[[0.0, 0.0], [0.0, 1e-3]]);
-        assert!((plane[1][1] / expected - 1.0).abs() < 1e-14);
-        let lateral = plane[0][0] / plane[1][1];
-        assert!((lateral - 0.31 / 0.69).abs() < 1e-14, "earth pressure at rest ν/(1−ν)");
-    }
-
-    #[test]
-    fn a_neo_hookean_stress_turns_with_the_body_and_is_hookes_at_small_strain() {
-        let stiffness = Stiffness { lame: 0.7, shear: 0.4 };
-        // Uniaxial: σ_yy = [μ (J² − 1) + λ ln J]/J and σ_xx = λ ln J/J.
-        let ratio = 0.8_f64;
-        let stress = stiffness.neo_hookean_stress(&[[1.0, 0.0], [0.0, ratio]], ratio, ratio.ln());
-        assert!((stress[1][1] - (0.4 * (ratio * ratio - 1.0) + 0.7 * ratio.ln()) / ratio).abs() < 1e-15);
-        assert!((stress[0][0] - 0.7 * ratio.ln() / ratio).abs() < 1e-15);
-        // Turned by 90° after the stretch, the stresses change places.
-        let turned = stiffness.neo_hookean_stress(&[[0.0, -ratio], [1.0, 0.0]], ratio, ratio.ln());
-        assert!((turned[0][0] - stress[1][1]).abs() < 1e-15 && (turned[1][1] - stress[0][0]).abs() < 1e-15);
-        let small = [[1e-7, 3e-7], [-1e-7, 2e-7]];
-        let whole = [[1.0 + 1e-7, 3e-7], [-1e-7, 1.0 + 2e-7]];
-        let determinant = whole[0][0] * whole[1][1] - whole[0][1] * whole[1][0];
-        let (finite, hookes) =
-            (stiffness.neo_hookean_stress(&whole, determinant, determinant.ln()), stiffness.stress(&small));
-        for (finite, hookes) in finite.iter().flatten().zip(hookes.iter().flatten()) {
-            assert!((finite - hookes).abs() < 1e-12, "{finite} for {hookes}");
-        }
-    }
-
-    #[test]
     fn the_published_modulus_belongs_to_engineering_strain() {
         // Under q/E_oed = 1/6 the two readings of Eq. 8 end apart: docs/theory.md, section 2.
         let end = |law: Law| {
@@ -421,7 +337,7 @@ mod tests {
         fn the_rate_form_integrates_to_the_closed_form(end in 0.6..1.4_f64) {
             let steps = 20_000;
             let strain = end.ln() / f64::from(steps);
-            for law in Law::OF_COLUMNS {
+            for law in Law::FOR_COLUMNS {
                 let (mut ratio, mut stress) = (1.0, 0.0);
                 for _ in 0..steps {
                     let before = ratio;

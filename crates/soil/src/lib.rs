@@ -10,5 +10,7 @@ pub mod elementary;
 pub mod law;
 pub mod material;
 pub mod plasticity;
+pub mod stiffness;
 pub mod tensor;
+pub mod von_mises;
 pub mod wording;

@@ -3,7 +3,8 @@
 use crate::conductivity::ConductivityMean;
 use crate::continuity::Continuity;
 use crate::elementary;
-use crate::law::{Law, Stiffness, StressLaw};
+use crate::law::{Law, StressLaw};
+use crate::stiffness::Stiffness;
 use crate::wording::is_default;
 use serde::{Deserialize, Serialize};
 
@@ -136,7 +137,7 @@ impl Material {
         }
     }
 
-    /// Oedometric modulus of the initial state, Pa, the stiffest that the soil has: that of reloading where it is
+    /// Oedometric modulus of the initial state, Pa, the largest that the soil has: that of reloading if the soil is
     /// preconsolidated.
     #[inline]
     pub fn initial_modulus(&self) -> f64 {

@@ -1,4 +1,4 @@
-//! Vectors and tensors of a dimension, and their small algebra: the last component is the vertical one.
+//! Vectors and tensors in `D` dimensions and their algebra; the last component is the vertical one.
 
 /// A vector, `[component]`.
 pub type Vector<const D: usize> = [f64; D];
@@ -50,8 +50,8 @@ pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
     sum
 }
 
-/// Solution `x` of `A x = b` for a symmetric matrix that is not indefinite, by elimination without
-/// pivoting; a component whose pivot `is_left_out` is zero.
+/// Solution `x` of `A x = b` for a symmetric positive semi-definite matrix, by elimination without pivoting; a component
+/// is zero if its pivot `is_left_out`.
 #[inline]
 pub fn solve_symmetric<const D: usize>(
     matrix: &Tensor<D>,
@@ -85,8 +85,8 @@ pub fn solve_symmetric<const D: usize>(
     solution
 }
 
-/// Inverse and determinant of a deformation gradient: in the plane whatever it turns, elsewhere near enough to the
-/// unit tensor to need no pivoting. Where it is singular, the numbers are not finite.
+/// Inverse and determinant of a deformation gradient: in the plane for any rotation, otherwise for gradients close
+/// enough to the unit tensor to need no pivoting. Not finite if the gradient is singular.
 #[inline]
 pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
     if D == 2 {
@@ -116,7 +116,7 @@ pub fn inverse<const D: usize>(tensor: &Tensor<D>) -> (Tensor<D>, f64) {
 }
 
 /// Logarithm of the deformation `F₁ F₀⁻¹` between two deformation gradients in one dimension or the plane, whose symmetric
-/// part is the strain: exact where the stretch keeps its axes, so that a column strains alike in both.
+/// part is the strain: exact if the stretch keeps its axes, so that a column has the same strain in both dimensions.
 ///
 /// From the Cayley transform `X = (F₁ − F₀)(F₁ + F₀)⁻¹` of Hughes & Winget (1980), which is half the logarithm to third
 /// order: `ln F₁ F₀⁻¹ = 2 artanh X`. The trace of it is the logarithm of the volume ratio; for the rest, `Y = X − tr(X)/2`,

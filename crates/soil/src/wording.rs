@@ -19,7 +19,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A number as a person typed it; one that would take a line of zeros, with a power of ten.
+/// A number as a person types it; with a power of ten if it would need a line of zeros.
 pub fn typed(value: f64) -> String {
     let text = format!("{}", value + 0.0);
     if text.len() > LONGEST { format!("{value:e}") } else { text }
@@ -53,21 +53,21 @@ pub fn clock_time(seconds: f64) -> String {
         (3600.0, "h", "h"),
         (60.0, "min", "min"),
     ];
-    for (unit, one, several) in UNITS {
+    for (unit, singular, plural) in UNITS {
         let count = (seconds / unit).round();
         if (1.0..1e4).contains(&count) && (seconds / (count * unit) - 1.0).abs() < 1e-9 {
-            return format!("{} {}", short(count), if count == 1.0 { one } else { several });
+            return format!("{} {}", short(count), if count == 1.0 { singular } else { plural });
         }
     }
     match UNITS.into_iter().find(|(unit, ..)| seconds >= 2.0 * unit) {
-        Some((unit, _, several)) => format!("{} {several}", short(seconds / unit)),
+        Some((unit, _, plural)) => format!("{} {plural}", short(seconds / unit)),
         None => format!("{} s", short(seconds)),
     }
 }
 
 /// A number of things: `1 case`, `3 cases`.
-pub fn count_of(count: usize, one: &str, several: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { several })
+pub fn count_of(count: usize, singular: &str, plural: &str) -> String {
+    format!("{count} {}", if count == 1 { singular } else { plural })
 }
 
 /// An order of convergence with two decimals; -0.00 is written 0.00.
@@ -86,14 +86,14 @@ pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Names the choices of an enumeration, once for all: `ALL` and `NAMES` in the order of tables, `name` and `named`, and
+/// Names the choices of an enumeration in one place: `ALL` and `NAMES` in the order of tables, `name` and `named`, and
 /// the same names in files (serde) and in their JSON Schemas.
 #[macro_export]
 macro_rules! words {
     ($kind:ident: $($variant:ident $word:literal),+ $(,)?) => {
         #[allow(dead_code, reason = "few enumerations need all of them")]
         impl $kind {
-            /// Every one, in the order of tables.
+            /// All choices, in the order of tables.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
 
             /// The names of all, in the order of tables.
@@ -105,9 +105,9 @@ macro_rules! words {
                 match self { $(Self::$variant => $word),+ }
             }
 
-            /// The one of a name.
+            /// The choice with a name.
             pub fn named(name: &str) -> Option<Self> {
-                Self::ALL.into_iter().find(|one| one.name() == name)
+                Self::ALL.into_iter().find(|choice| choice.name() == name)
             }
         }
 

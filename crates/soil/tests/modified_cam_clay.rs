@@ -8,8 +8,8 @@
 //! q²/M² + p (p − p_c) = 0,   dp = v p/κ dε_v^e,   dp_c = v p_c/(λ − κ) dε_v^p,   G = 3 (1 − 2ν)/(2 (1 + ν)) v p/κ
 //! ```
 
-use oedometer_soil::law::Stiffness;
 use oedometer_soil::plasticity::{Components, PointLaw, PointState, Tangent, contraction, deviator, mean};
+use oedometer_soil::stiffness::Stiffness;
 
 const UNIT: Components = [1.0, 1.0, 1.0, 0.0];
 /// Strains by which the tangent is taken by differences.
@@ -131,8 +131,8 @@ fn invariants(state: &PointState) -> [f64; 2] {
 }
 
 /// Takes a state through many equal increments.
-fn strain(law: &impl PointLaw, state: PointState, whole: Components, steps: u32) -> PointState {
-    let part = whole.map(|component| component / f64::from(steps));
+fn strain(law: &impl PointLaw, state: PointState, total: Components, steps: u32) -> PointState {
+    let part = total.map(|component| component / f64::from(steps));
     (0..steps).fold(state, |state, _| law.update(&state, &part).0)
 }
 

@@ -48,7 +48,7 @@ impl Diffusion {
     /// When the parameters are impossible or the load would close the pores.
     pub fn new(model: LargeStrainModel, column: &ColumnParameters, share: f64) -> Result<Self, ExactError> {
         column.validate()?;
-        if !Law::OF_COLUMNS.contains(&model.law) {
+        if !Law::FOR_COLUMNS.contains(&model.law) {
             return Err(ExactError::LawOfColumn { law: model.law.name() });
         }
         let load = positive(
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn coefficients_are_the_laws_derivatives() {
         // −dJ/dr = d(shrinkage)/dr must be −q/(dσ'/dJ), which storage at compliance 0 holds.
-        for law in Law::OF_COLUMNS {
+        for law in Law::FOR_COLUMNS {
             let diffusion = Diffusion { compliance: 0.0, ..diffusion(law) };
             let step = 1e-6;
             let slope = (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn undrained_start_is_nearly_the_storage_ratio() {
         let column = ColumnParameters::default();
-        for law in Law::OF_COLUMNS {
+        for law in Law::FOR_COLUMNS {
             let ratio = diffusion(law).undrained_ratio();
             assert!((ratio - column.storage_ratio()).abs() < 1e-4, "{ratio}");
         }

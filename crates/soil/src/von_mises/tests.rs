@@ -24,15 +24,15 @@ fn a_uniaxial_strain_yields_where_the_closed_form_says_and_goes_on_with_the_bulk
     // s_yy = 4/3 G ε, s_xx = s_zz = −s_yy/2: |s| = √(3/2) s_yy = √2 k at s_yy = 2k/√3.
     let at_yield = 2.0 / 3.0_f64.sqrt() * law.strength;
     for (strain, steps) in [(1e-3, 1), (5e-3, 1), (5e-3, 13), (2e-2, 40)] {
-        let found = along(&law, &[[0.0, -strain, 0.0, 0.0]], steps);
+        let state = along(&law, &[[0.0, -strain, 0.0, 0.0]], steps);
         let shear_stress = (4.0 / 3.0 * shear * strain).min(at_yield);
         let expected = [0.5, -1.0, 0.5, 0.0].map(|share| share * shear_stress);
         for (i, expected) in expected.into_iter().enumerate() {
             let expected = expected - bulk * strain * UNIT[i];
-            assert!((found.stress[i] - expected).abs() < 1e-9 * law.strength, "{strain} {steps}: {found:?}");
+            assert!((state.stress[i] - expected).abs() < 1e-9 * law.strength, "{strain} {steps}: {state:?}");
         }
         let plastic = (2.0 / 3.0 * strain - at_yield / (2.0 * shear)).max(0.0);
-        assert!((found.plastic_strain - plastic).abs() < 1e-12, "{found:?} for {plastic}");
+        assert!((state.plastic_strain - plastic).abs() < 1e-12, "{state:?} for {plastic}");
     }
 }
 
@@ -58,9 +58,9 @@ fn a_simple_shear_ends_at_the_strength_and_unloads_elastically() {
 fn a_flow_in_the_plane_ends_as_tresca_has_it() {
     let law = clay();
     // Plane strain that keeps the volume, from a start whose s_zz is not zero.
-    let found = along(&law, &[[0.0, -2e-3, 0.0, 0.0], [4e-2, -4e-2, 0.0, 0.0]], 200);
-    assert!(deviator(&found.stress)[2].abs() < 1e-6 * law.strength, "{found:?}");
-    assert!((found.stress[0] - found.stress[1] - 2.0 * law.strength).abs() < 1e-6 * law.strength);
+    let state = along(&law, &[[0.0, -2e-3, 0.0, 0.0], [4e-2, -4e-2, 0.0, 0.0]], 200);
+    assert!(deviator(&state.stress)[2].abs() < 1e-6 * law.strength, "{state:?}");
+    assert!((state.stress[0] - state.stress[1] - 2.0 * law.strength).abs() < 1e-6 * law.strength);
 }
 
 /// Checks a law's tangent by central differences.
