@@ -195,7 +195,7 @@ pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, E
     let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
         return Ok(None);
     };
-    let reference = known_reference(case, kind.of_soil(&case.material), &[row.time_factor])?;
+    let reference = known_reference(case, kind.for_soil(&case.material), &[row.time_factor])?;
     let exact = exact_samples(case, &reference, row.time_factor, samples)?;
     let fields = row.quantity.field(samples).zip(row.quantity.field(&exact));
     Ok(fields.and_then(|(computed, exact)| {

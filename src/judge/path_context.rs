@@ -149,7 +149,7 @@ pub(crate) fn oscillation_of(record: &Record, measure: &Measure) -> Option<f64> 
     }
     let case = &record.case;
     let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
-    let kind = measure.reference.parse::<ReferenceKind>().ok()?.of_soil(&case.material);
+    let kind = measure.reference.parse::<ReferenceKind>().ok()?.for_soil(&case.material);
     let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
     let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
     reversal(measure.quantity.field(samples)?, measure.quantity.field(&exact)?)
@@ -206,7 +206,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
     let kind: ReferenceKind = measure.reference.parse().ok()?;
     let difference = case.scene.model_difference(kind, &case.material)?;
     let of = |kind: ReferenceKind| known_reference(case, kind, &[measure.time_factor]).ok();
-    let (own, other) = (of(case.scene.references()[0].of_soil(&case.material))?, of(kind)?);
+    let (own, other) = (of(case.scene.references()[0].for_soil(&case.material))?, of(kind)?);
     let magnitude = if measure.quantity == Quantity::Settlement {
         let settlement = |reference: &Reference| reference.settlement(measure.time_factor).ok();
         Some((settlement(&own)? / settlement(&other)? - 1.0).abs()).filter(|ratio| ratio.is_finite())?

@@ -107,7 +107,7 @@ impl Results<'_> {
         }
         let references: Vec<Arc<Reference>> = kinds
             .iter()
-            .map(|kind| known_reference(case, kind.of_soil(&case.material), &prepared))
+            .map(|kind| known_reference(case, kind.for_soil(&case.material), &prepared))
             .collect::<Result<_, _>>()?;
         let own = references.first().map(|own| &**own);
         let mut errors = Vec::new();

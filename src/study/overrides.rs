@@ -334,7 +334,7 @@ impl Asked {
         let is_requested = lines.has("output.time_factors");
         let study = lines.theory_study()?;
         let case = &study.planned[0].case;
-        let own = study.references.iter().map(|kind| kind.of_soil(&case.material)).collect();
+        let own = study.references.iter().map(|kind| kind.for_soil(&case.material)).collect();
         Ok(Self {
             parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
             references: on_shelf.map_or(own, |kind| vec![kind]),
@@ -366,7 +366,7 @@ impl Asked {
         }
         Ok(Self {
             parameters: ColumnParameters { shelf, ..column_parameters(&case.column, &case.material) },
-            references: vec![kind.of_soil(&case.material)],
+            references: vec![kind.for_soil(&case.material)],
             requested: Vec::new(),
             study,
         })
@@ -466,7 +466,10 @@ mod tests {
             ReferenceKind::LargeStrain(LargeStrainModel { law, continuity, water: Water::Compressible })
         };
         let swirl = |law| {
-            ReferenceKind::Manufactured(ManufacturedModel { law, ..ManufacturedModel::of(Motion::Vortex) })
+            ReferenceKind::Manufactured(ManufacturedModel {
+                law,
+                ..ManufacturedModel::with_default_law(Motion::Vortex)
+            })
         };
         let [dropped, other_law] =
             ["material.continuity=constant-porosity-gradient", "material.law=porosity-dependent"];

@@ -277,7 +277,7 @@ mod tests {
 
     fn in_layers(case: &mut Case, mean: ConductivityMean) {
         let layer = SoilLayer { thickness: 0.5, ..SoilLayer::default() };
-        case.column.soils = SoilLayers::of(&[layer; 2]).expect("two are few");
+        case.column.soils = SoilLayers::from_slice(&[layer; 2]).expect("two are few");
         case.material.conductivity_mean = mean;
     }
 

@@ -226,7 +226,7 @@ pub enum ExactError {
     },
 }
 
-/// A number without its hundreds of zeros.
+/// A number without long runs of zeros.
 fn short(value: f64) -> String {
     let is_plain = value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs());
     if is_plain { value.to_string() } else { format!("{value:e}") }
@@ -266,13 +266,12 @@ pub(crate) fn checked_time_factor(time_factor: f64) -> Result<f64, ExactError> {
 /// product of a cell's size loses half of its last bit.
 const EDGE_TOLERANCE: f64 = 1e-12;
 
-/// Passes a relative depth `0 ≤ zeta ≤ 1` on, and one beside it by round-off as the edge that it is meant to be;
-/// refuses any other.
+/// Passes a relative depth `0 ≤ zeta ≤ 1` on, moves a depth outside by round-off to the edge, and refuses any other.
 pub(crate) fn checked_depth(zeta: f64) -> Result<f64, ExactError> {
     held_within(zeta, 1.0).ok_or(ExactError::Depth(zeta))
 }
 
-/// A place between 0 and a height; one outside of it by round-off is on the edge, any other none.
+/// A place between 0 and a height; a place outside by round-off is moved to the edge, any other gives `None`.
 pub(crate) fn held_within(place: f64, height: f64) -> Option<f64> {
     let tolerance = EDGE_TOLERANCE * height;
     (-tolerance..=height + tolerance).contains(&place).then(|| place.clamp(0.0, height))

@@ -11,12 +11,12 @@
 //! yielding (Shield 1954; Bishop 1953), so that bounds from both sides meet. The fields under it are not unique.
 
 use crate::exact_error::{ExactError, checked_time_factor, positive};
-use crate::inputs::LAW;
+use crate::inputs::LAW_KEY;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[LAW, &["plate_width"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[LAW_KEY, &["plate_width"]];
 
 /// `F/(B c_u)` at collapse.
 pub const LOAD_FACTOR: f64 = 2.0 + std::f64::consts::PI;
@@ -50,13 +50,13 @@ impl Solution for Footing {
         checked_time_factor(time_factor).map(|factor| factor * self.width)
     }
 
-    /// Its width, by which settlements are measured: it sinks without end.
+    /// Width of the plate as the scale of settlements: a footing at collapse settles without limit.
     fn final_settlement(&self) -> Result<f64, ExactError> {
         Ok(self.width)
     }
 
     /// Exact.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        checked_time_factor(time_factor).map(|_| Accuracy::of(0, 0.0))
+        checked_time_factor(time_factor).map(|_| Accuracy::new(0, 0.0))
     }
 }

@@ -1,12 +1,12 @@
-//! Which keys of a study file each problem reads: what it does not read changes nothing, and is refused.
+//! Which keys of a study file each problem reads. Other keys would have no effect and are refused.
 //!
-//! Each problem lists its own as `INPUTS`, of the sets below and of what is its alone; [`ReferenceKind::inputs`]
-//! (`crate::reference::ReferenceKind::inputs`) joins them.
+//! Each problem lists its keys as `INPUTS`, from the sets below and keys that no other problem has;
+//! [`ReferenceKind::inputs`] (`crate::reference::ReferenceKind::inputs`) joins them.
 
 use crate::parameters::ShelfParameters;
 
-/// The body, its load and what makes a time of a time factor.
-pub(crate) const OF_COLUMN: &[&str] = &[
+/// The body, its load and the parameters that convert a time factor to a time.
+pub(crate) const COLUMN_KEYS: &[&str] = &[
     "height",
     "load",
     "youngs_modulus",
@@ -15,32 +15,32 @@ pub(crate) const OF_COLUMN: &[&str] = &[
     "water_density",
     "gravity",
 ];
-/// Water that can be compressed.
-pub(crate) const OF_WATER: &[&str] = &["porosity", "water_bulk_modulus"];
+/// Compressible water.
+pub(crate) const WATER_KEYS: &[&str] = &["porosity", "water_bulk_modulus"];
 /// A soil of Biot's full equations.
-pub(crate) const OF_BIOT: &[&str] =
+pub(crate) const BIOT_KEYS: &[&str] =
     &["porosity", "water_bulk_modulus", "biot_coefficient", "grain_bulk_modulus"];
-/// The law, where scenes take that of the solution alone: the checker of studies refuses others.
-pub(crate) const LAW: &[&str] = &["law"];
+/// The law; scenes whose solution holds for a single law accept no other.
+pub(crate) const LAW_KEY: &[&str] = &["law"];
 /// Whether skeleton and water have weight.
-pub(crate) const WEIGHT: &[&str] = &["self_weight"];
-/// What the stresses of weight follow from.
-pub(crate) const OF_WEIGHT: &[&str] =
+pub(crate) const WEIGHT_KEY: &[&str] = &["self_weight"];
+/// Parameters of the stresses due to self-weight.
+pub(crate) const WEIGHT_STRESS_KEYS: &[&str] =
     &["height", "load", "porosity", "grain_density", "water_density", "gravity"];
 
-/// A key of a problem's own input that no scene has, for command lines.
+/// A command-line key for an input of a problem that no scene has.
 #[derive(Clone, Copy, Debug)]
 pub struct AddedKey {
-    /// Dotted, as other keys are.
+    /// Dotted name, as for other keys.
     pub key: &'static str,
-    /// SI unit, empty where it has none.
+    /// SI unit, empty if dimensionless.
     pub unit: &'static str,
-    /// Sets it.
+    /// Sets the value.
     pub set: fn(&mut ShelfParameters, f64),
 }
 
 impl AddedKey {
-    /// All of them.
+    /// All added keys.
     pub const ALL: [Self; 5] = [
         Self {
             key: "material.biot_coefficient",
@@ -61,7 +61,7 @@ impl AddedKey {
         },
     ];
 
-    /// Its name in the lists of inputs.
+    /// Name in the lists of inputs, without the table.
     pub fn name(&self) -> &'static str {
         self.key.rsplit('.').next().unwrap_or(self.key)
     }

@@ -6,16 +6,16 @@
 //! S ∂p/∂t = ∂/∂y (κ ∂p/∂y)     p and κ ∂p/∂y continuous     p(y, 0) = q/(E_oed S)
 //! ```
 //!
-//! Two independent ways: the eigenfunctions of the whole column (Schiffman & Stein 1970), and the Laplace transform
-//! with the admittances of the layers, inverted on Talbot's contour. The series serves from the time on at which
-//! [`MOST_MODES`] modes hold the rest below round-off, the transform before that; tests hold the two to each other.
+//! Two independent methods: the eigenfunctions of the whole column (Schiffman & Stein 1970), and the Laplace transform
+//! with the admittances of the layers, inverted on Talbot's contour. The series is used once the modes beyond
+//! [`MOST_MODES`] are below round-off, the transform before that; tests compare the two.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Complex;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, normal, positive};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
@@ -23,14 +23,14 @@ use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["soils"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["soils"]];
 
 /// Modes beyond which the transform takes over.
 const MOST_MODES: usize = 1000;
-/// What the modes left out may add to the pressure over the load.
+/// Bound on the contribution of omitted modes to the pressure over the load.
 const NEGLIGIBLE: f64 = 1e-17;
-/// What the inversion of the transform may be off by, over the load: more than twice the worst seen beside the series.
+/// Error of the inverted transform over the load: more than twice the largest difference from the series.
 const INVERSION_ERROR: f64 = 1e-12;
 
 /// A layer of soil, from the base up one of several.
@@ -95,11 +95,11 @@ pub struct LayeredColumn {
 }
 
 impl LayeredColumn {
-    /// The layers of a column, by whose soil time factors are counted; one layer where it has none.
+    /// The layers of a column, whose own soil defines the time factor; a single layer if the column has none.
     ///
     /// # Errors
     /// When a parameter is impossible, or the layers do not fill the column.
-    pub fn of(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+    pub fn from_parameters(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
         let height = parameters.height;
         if let Some(sum) = parameters.soils.misses(height) {
@@ -151,7 +151,7 @@ impl LayeredColumn {
 
     /// Pressure, effective stress and displacement at the height `y` above the base, `seconds` after the load.
     ///
-    /// On a face between two layers it is the fields of the lower one; only the start's pressure jumps there.
+    /// On an interface these are the fields of the lower layer; only the initial pressure jumps there.
     ///
     /// # Errors
     /// When `seconds` is negative or not finite, or `y` outside of the column.
@@ -179,22 +179,22 @@ impl LayeredColumn {
         Ok(self.load * self.at(seconds)?.shortening(self.height))
     }
 
-    /// Terms used at a time, and what the others may add to the pressure over the load.
+    /// Number of terms used at a time, and a bound on the contribution of the others to the pressure over the load.
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
     pub fn accuracy_after(&self, seconds: f64) -> Result<Accuracy, ExactError> {
         Ok(match self.at(seconds)?.form {
-            Form::Start => Accuracy::of(0, 0.0),
+            Form::Start => Accuracy::new(0, 0.0),
             Form::Series { terms, .. } => Accuracy {
                 phase_bound: self.round_off(seconds, terms),
-                ..Accuracy::of(terms, self.tail(seconds, terms))
+                ..Accuracy::new(terms, self.tail(seconds, terms))
             },
-            Form::Transform(_) => Accuracy::of(NODES / 2, INVERSION_ERROR),
+            Form::Transform(_) => Accuracy::new(NODES / 2, INVERSION_ERROR),
         })
     }
 
-    /// The column at one time, by the way that is exact there.
+    /// The column at one time, by the method that is accurate there.
     fn at(&self, seconds: f64) -> Result<State<'_>, ExactError> {
         if !(seconds.is_finite() && seconds >= 0.0) {
             return Err(ExactError::TimeFactor(seconds));
@@ -220,7 +220,7 @@ impl LayeredColumn {
     /// `∫ κ Z'² = λ ‖Z‖²`, norms with the weight `S`. Root `m` is at least `(m + 1 − n/2)π/Σ t√(S/κ)` in a stack of `n`
     /// layers: a face moves the phase by less than a right angle.
     fn tail(&self, seconds: f64, terms: usize) -> f64 {
-        let sum = |of: fn(&Layer) -> f64| self.layers.iter().map(of).sum::<f64>();
+        let sum = |quantity: fn(&Layer) -> f64| self.layers.iter().map(quantity).sum::<f64>();
         let resistance = sum(|layer| layer.thickness / layer.mobility);
         let span = sum(|layer| layer.thickness * layer.slowness());
         let energy = sum(|layer| layer.storage * layer.thickness * layer.undrained() * layer.undrained());
@@ -235,7 +235,7 @@ impl LayeredColumn {
         (resistance * energy).sqrt() * (first_term + rest)
     }
 
-    /// What round-off leaves of the sum of modes over the load: a phase is known to its own round-off only.
+    /// Round-off error of the sum of modes over the load: each phase has a round-off error of its own.
     fn round_off(&self, seconds: f64, terms: usize) -> f64 {
         let of_mode = |(index, mode): (usize, &Mode)| {
             let amplitude = mode.waves.iter().fold(0.0_f64, |most, wave| most.max(wave.0));
@@ -297,7 +297,7 @@ impl LayeredColumn {
     /// The transform of the pressure over the load on Talbot's contour for one time.
     fn transform(&self, seconds: f64) -> Vec<Image> {
         talbot_contour(NODES)
-            .map(|(z, weight)| Image::of(&self.layers, z / seconds, weight / seconds))
+            .map(|(z, weight)| Image::new(&self.layers, z / seconds, weight / seconds))
             .collect()
     }
 
@@ -351,7 +351,7 @@ struct State<'a> {
     form: Form,
 }
 
-/// How the state is known.
+/// How the state is computed.
 enum Form {
     /// The undrained start.
     Start,
@@ -413,17 +413,19 @@ impl State<'_> {
         total
     }
 
-    /// Sum over the modes of what `of` gives for each and its root, with its share and its decay; the small ones first.
-    fn over_modes(&self, terms: usize, seconds: f64, of: impl Fn(&Mode, f64) -> f64) -> f64 {
+    /// Sum over the modes of `term(mode, √λ)`, weighted by the coefficient and the decay of the mode, smallest first.
+    fn over_modes(&self, terms: usize, seconds: f64, term: impl Fn(&Mode, f64) -> f64) -> f64 {
         let modes = self.column.modes[..terms].iter().rev();
         modes
-            .map(|mode| mode.coefficient * elementary::exp(-mode.rate * seconds) * of(mode, mode.rate.sqrt()))
+            .map(|mode| {
+                mode.coefficient * elementary::exp(-mode.rate * seconds) * term(mode, mode.rate.sqrt())
+            })
             .sum()
     }
 }
 
 /// The transform of the pressure over the load at one node of the contour: in layer `i` it is `1/(E_oed S s)` and a
-/// part that is known by its values on both faces.
+/// part that its values on both faces determine.
 struct Image {
     /// Laplace variable `s`, 1/s.
     s: Complex<f64>,
@@ -434,9 +436,9 @@ struct Image {
 }
 
 impl Image {
-    /// Upward the flux is `Y w + j` of the part `w` (`Y = j = 0` at the base), downward the values follow from `p = 0`
-    /// at the top.
-    fn of(layers: &[Layer], s: Complex<f64>, weight: Complex<f64>) -> Self {
+    /// An upward sweep finds the flux `Y w + j` of the part `w` (`Y = j = 0` at the base), a downward sweep the values from
+    /// `p = 0` at the top.
+    fn new(layers: &[Layer], s: Complex<f64>, weight: Complex<f64>) -> Self {
         let zero = Complex::new(0.0, 0.0);
         let root = elementary::sqrt_complex(s);
         let (mut admittance, mut flux, mut steady_below) = (zero, zero, zero);
@@ -448,9 +450,9 @@ impl Image {
             flux += admittance * (steady - steady_below);
             steady_below = steady;
             below.push((admittance, flux));
-            let [own, tangent, secant] = Self::of_layer(layer, root);
-            let share = (own + admittance * tangent).inv() * own;
-            let next = (own * tangent + admittance) * share;
+            let [layer_admittance, tangent, secant] = Self::layer_functions(layer, root);
+            let share = (layer_admittance + admittance * tangent).inv() * layer_admittance;
+            let next = (layer_admittance * tangent + admittance) * share;
             flux = flux * secant * share;
             admittance = next;
         }
@@ -459,10 +461,11 @@ impl Image {
         let mut pressure_above = zero;
         for (at, layer) in layers.iter().enumerate().rev() {
             let steady = Complex::new(layer.undrained(), 0.0) / s;
-            let [own, tangent, secant] = Self::of_layer(layer, root);
+            let [layer_admittance, tangent, secant] = Self::layer_functions(layer, root);
             let (admittance, flux) = below[at];
             let top = pressure_above - steady;
-            let bottom = (top * secant - flux * tangent / own) * own / (own + admittance * tangent);
+            let bottom = (top * secant - flux * tangent / layer_admittance) * layer_admittance
+                / (layer_admittance + admittance * tangent);
             faces[at] = [bottom, top];
             pressure_above = bottom + steady;
         }
@@ -470,16 +473,16 @@ impl Image {
     }
 
     /// `κμ`, `tanh μt` and `1/cosh μt` of a layer.
-    fn of_layer(layer: &Layer, root: Complex<f64>) -> [Complex<f64>; 3] {
+    fn layer_functions(layer: &Layer, root: Complex<f64>) -> [Complex<f64>; 3] {
         let turned = root * (layer.slowness() * layer.thickness);
         let fall = elementary::exp_complex(-turned);
-        let one = Complex::new(1.0, 0.0);
-        let under = (one + fall * fall).inv();
+        let unit = Complex::new(1.0, 0.0);
+        let under = (unit + fall * fall).inv();
         [root * layer.admittance(), -elementary::exp_m1_complex(-2.0 * turned) * under, 2.0 * fall * under]
     }
 
-    /// What this node adds to the pressure over the load, beyond that of the start, at distances in m above the
-    /// bottom and below the top of layer `at`.
+    /// Contribution of this node to the pressure over the load, beyond the initial one, at distances in m above the bottom
+    /// and below the top of layer `at`.
     fn pressure(&self, layer: &Layer, at: usize, [above, below]: [f64; 2]) -> f64 {
         let [bottom, top] = self.faces[at];
         let number = self.number(layer);
@@ -487,7 +490,7 @@ impl Image {
             .re
     }
 
-    /// What this node adds to that part's integral from the bottom of layer `at` to `above` m over it.
+    /// Contribution of this node to the integral of that part from the bottom of layer `at` to `above` m over it.
     fn integral(&self, layer: &Layer, at: usize, above: f64) -> f64 {
         let [bottom, top] = self.faces[at];
         let number = self.number(layer);
@@ -512,8 +515,8 @@ fn sinh_ratio(number: Complex<f64>, a: f64, rest: f64) -> Complex<f64> {
 
 /// `cosh μa/sinh μb` for `0 ≤ a ≤ b`.
 fn cosh_ratio(number: Complex<f64>, a: f64, b: f64) -> Complex<f64> {
-    let one = Complex::new(1.0, 0.0);
-    elementary::exp_complex(number * (a - b)) * (one + elementary::exp_complex(-2.0 * a * number))
+    let unit = Complex::new(1.0, 0.0);
+    elementary::exp_complex(number * (a - b)) * (unit + elementary::exp_complex(-2.0 * a * number))
         / -elementary::exp_m1_complex(-2.0 * b * number)
 }
 
@@ -556,10 +559,10 @@ mod tests {
                 let [time_factor, y, pressure, settlement] =
                     [1, 2, 3, 4].map(|cell| row[cell].parse::<f64>().unwrap());
                 let seconds = time_factor * seconds_per_time_factor;
-                let found = column.fields_after(seconds, y).unwrap().pressure;
-                assert!((found - pressure).abs() < 1e-13, "{row:?}: {found}");
-                let found = column.settlement_after(seconds).unwrap() / column.final_settlement().unwrap();
-                assert!((found - settlement).abs() < 1e-13, "{row:?}: {found}");
+                let computed = column.fields_after(seconds, y).unwrap().pressure;
+                assert!((computed - pressure).abs() < 1e-13, "{row:?}: {computed}");
+                let computed = column.settlement_after(seconds).unwrap() / column.final_settlement().unwrap();
+                assert!((computed - settlement).abs() < 1e-13, "{row:?}: {computed}");
                 assert!(column.accuracy_after(seconds).unwrap().bound() < 1e-12);
             }
         }
@@ -618,10 +621,10 @@ mod tests {
             let seconds = seed.time(time_factor);
             for y in [0.0, 0.1, 0.2, 0.69, 0.9, 0.999, 1.0] {
                 let expected = terzaghi.fields(time_factor, 1.0 - y).unwrap();
-                let found = column.fields_after(seconds, y).unwrap();
-                let difference = (found.pressure - expected.pressure) / 3e3;
+                let computed = column.fields_after(seconds, y).unwrap();
+                let difference = (computed.pressure - expected.pressure) / 3e3;
                 assert!(difference.abs() < 1e-12, "{time_factor} {y}: {difference:e}");
-                let difference = (found.displacement - expected.displacement) / seed.final_settlement();
+                let difference = (computed.displacement - expected.displacement) / seed.final_settlement();
                 assert!(difference.abs() < 1e-12, "{time_factor} {y}: {difference:e}");
             }
         }
@@ -634,8 +637,8 @@ mod tests {
         let column = LayeredColumn::new(1.0, &[(0.025, Material::default()); 40]).unwrap();
         for time_factor in [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0] {
             let expected = terzaghi.fields(time_factor, 0.5).unwrap().pressure;
-            let found = column.fields_after(seed.time(time_factor), 0.5).unwrap().pressure;
-            assert!((found - expected).abs() < 1e-12, "{time_factor}: {found} {expected}");
+            let computed = column.fields_after(seed.time(time_factor), 0.5).unwrap().pressure;
+            assert!((computed - expected).abs() < 1e-12, "{time_factor}: {computed} {expected}");
             assert!(column.accuracy_after(seed.time(time_factor)).unwrap().bound() >= 0.0);
         }
     }

@@ -27,7 +27,7 @@ pub enum Water {
     Incompressible,
 }
 
-/// What problems without a scene ask beyond a column, and the slab; each reads what its `INPUTS` name.
+/// Parameters beyond those of a column, for problems without a scene and the slab; each reads those in its `INPUTS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShelfParameters {
     /// Biot coefficient `α`; without it `1 − K/K_s`, and 1 without both.

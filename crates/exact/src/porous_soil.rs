@@ -1,4 +1,4 @@
-//! What Biot's full equations take of a soil: its moduli, a Biot coefficient and grains of finite stiffness.
+//! Parameters of a soil in Biot's full equations: its moduli, a Biot coefficient and grains of finite stiffness.
 
 use crate::exact_error::{ExactError, normal, positive};
 use crate::parameters::ColumnParameters;
@@ -7,7 +7,7 @@ use oedometer_soil::material::Material;
 /// Name in messages.
 const GRAINS: &str = "bulk modulus of the grains";
 
-/// What Biot's equations take of a soil (Biot 1941; Detournay & Cheng 1993, section 3).
+/// Parameters of a soil in Biot's equations (Biot 1941; Detournay & Cheng 1993, section 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PorousSoil {
     /// Oedometric modulus `E_oed`, drained, Pa.
@@ -25,11 +25,11 @@ pub struct PorousSoil {
 }
 
 impl PorousSoil {
-    /// The soil of a column with what the shelf adds.
+    /// The soil of a column with its shelf parameters.
     ///
     /// # Errors
     /// When `α` lies outside `[n, 1]` or `K_s` is not positive.
-    pub fn of(parameters: &ColumnParameters) -> Result<Self, ExactError> {
+    pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         let ColumnParameters { soil, shelf, .. } = *parameters;
         let Material { youngs_modulus, poissons_ratio, porosity, .. } = soil;
         let shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
@@ -53,7 +53,7 @@ impl PorousSoil {
     }
 
     /// Diffusivity `c = k/(γ_w S)` over the drained coefficient of consolidation `c_v`.
-    pub fn slowed(&self) -> f64 {
+    pub fn diffusivity_ratio(&self) -> f64 {
         1.0 / (self.modulus * self.storage)
     }
 }

@@ -8,7 +8,7 @@ use crate::cosine_layer::{self, CosineLayer, LayerState};
 use crate::dynamic_column::{self, DynamicColumn, Start};
 use crate::exact_error::{ExactError, checked_time_factor};
 use crate::footing::{self, Footing};
-use crate::inputs::{AddedKey, OF_WEIGHT};
+use crate::inputs::{AddedKey, WEIGHT_STRESS_KEYS};
 use crate::large_strain::diffusion::LargeStrainModel;
 use crate::large_strain::{self, LargeStrain};
 use crate::layered::{self, LayeredColumn};
@@ -87,12 +87,12 @@ impl ReferenceKind {
         Self::YieldFront,
         Self::SealedElement,
         Self::Footing,
-        Self::Manufactured(ManufacturedModel::of(Motion::Box)),
-        Self::Manufactured(ManufacturedModel::of(Motion::Shear)),
-        Self::Manufactured(ManufacturedModel::of(Motion::Vortex)),
+        Self::Manufactured(ManufacturedModel::with_default_law(Motion::Box)),
+        Self::Manufactured(ManufacturedModel::with_default_law(Motion::Shear)),
+        Self::Manufactured(ManufacturedModel::with_default_law(Motion::Vortex)),
     ];
 
-    /// Name in study files and tables; that of large strain says nothing of its model.
+    /// Name in study files and tables; the same for large strain with any model.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Terzaghi => "terzaghi",
@@ -116,7 +116,7 @@ impl ReferenceKind {
         }
     }
 
-    /// Keys of a study file that change what it gives, by their names without tables; some of them only under weight.
+    /// Study keys that affect the solution, by their names without tables; some only with self-weight.
     pub fn inputs(self, has_weight: bool) -> Vec<&'static str> {
         let sets = match self {
             Self::Terzaghi => terzaghi::INPUTS,
@@ -137,11 +137,11 @@ impl ReferenceKind {
             Self::Manufactured(_) => manufactured::INPUTS,
             Self::Shelf(problem) => problem.inputs(),
         };
-        let of_weight = if has_weight { OF_WEIGHT } else { &[] };
+        let of_weight = if has_weight { WEIGHT_STRESS_KEYS } else { &[] };
         sets.iter().copied().flatten().chain(of_weight).copied().collect()
     }
 
-    /// Whether it reads a key that no scene has.
+    /// Whether the solution reads a key that no scene has.
     pub fn takes(self, added: &AddedKey) -> bool {
         matches!(self, Self::Shelf(_) | Self::Mandel) && self.inputs(false).contains(&added.name())
     }
@@ -156,12 +156,12 @@ impl ReferenceKind {
         Self::ALL.into_iter().chain(ShelfProblem::ALL.map(Self::Shelf))
     }
 
-    /// Whether it is a motion that was chosen, and no body under a load.
+    /// Whether the solution is a prescribed motion instead of a body under a load.
     pub const fn is_manufactured(self) -> bool {
         matches!(self, Self::Manufactured(_))
     }
 
-    /// Whether it is computed in advance for the times that it is asked at, which costs.
+    /// Whether the solution must be computed in advance for its output times, which is expensive.
     pub const fn is_prepared(self) -> bool {
         matches!(
             self,
@@ -169,10 +169,10 @@ impl ReferenceKind {
         )
     }
 
-    /// The reference as it holds for a soil: large strain takes the soil's own law and continuity, and is of
-    /// the equations that the solver solves; a motion takes the law.
+    /// The reference for a soil: large strain takes the law and the continuity of the soil, so that it solves the equations
+    /// of the solver; a motion takes the law.
     #[must_use]
-    pub fn of_soil(self, soil: &Material) -> Self {
+    pub fn for_soil(self, soil: &Material) -> Self {
         let Material { law, continuity, .. } = *soil;
         match self {
             Self::LargeStrain(model) => Self::LargeStrain(LargeStrainModel { law, continuity, ..model }),
@@ -217,8 +217,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The reference `kind` of a column; those that must be computed in advance are, for
-    /// `time_factors`.
+    /// The reference `kind` of a column; references that must be computed in advance are computed for `time_factors`.
     ///
     /// # Errors
     /// When the parameters are impossible or outside the solution's range, or a time factor is
@@ -254,7 +253,7 @@ impl Reference {
             ReferenceKind::CosineLayerIncompressible => layer(Water::Incompressible)?,
             ReferenceKind::Mandel => Arc::new(Mandel::new(parameters)?),
             ReferenceKind::AtRest => Arc::new(Unchanging::at_rest(parameters)?),
-            ReferenceKind::Layered => Arc::new(LayeredColumn::of(parameters)?),
+            ReferenceKind::Layered => Arc::new(LayeredColumn::from_parameters(parameters)?),
             ReferenceKind::YieldFront => Arc::new(YieldFront::new(parameters)?),
             ReferenceKind::SealedElement => Arc::new(Unchanging::sealed(parameters)?),
             ReferenceKind::Footing => Arc::new(Footing::new(parameters)?),
@@ -268,7 +267,7 @@ impl Reference {
         Ok(Self { kind, solution, plane, initial_stress: parameters.initial_stress(1.0) })
     }
 
-    /// The reference as accurate as a line in a figure needs it: to a millionth of the load where that costs much less.
+    /// The reference with the accuracy of a line in a figure: a millionth of the load if that is much cheaper.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -289,7 +288,7 @@ impl Reference {
         self.kind
     }
 
-    /// Its name in study files and tables.
+    /// Name in study files and tables.
     pub fn name(&self) -> &'static str {
         self.kind.name()
     }
@@ -312,7 +311,7 @@ impl Reference {
         self.plane.is_some()
     }
 
-    /// The motion, where it is one that was chosen: its fields vary along both directions.
+    /// The manufactured solution, if the reference is a prescribed motion; its fields vary in both directions.
     pub fn manufactured(&self) -> Option<&Manufactured> {
         if let Some(Plane::Motion(motion)) = &self.plane { Some(motion) } else { None }
     }
@@ -341,7 +340,7 @@ impl Reference {
         self.solution.settlement(time_factor)
     }
 
-    /// What displacements are measured by, m, as [`Solution::displacement_scale`].
+    /// Scale of displacements, m, as [`Solution::displacement_scale`].
     ///
     /// # Errors
     /// When the solution has no end.
@@ -362,7 +361,7 @@ impl Reference {
         self.solution.least_porosity()
     }
 
-    /// Whether that degree means anything, as [`Solution::has_degree`].
+    /// Whether the degree of consolidation is meaningful, as [`Solution::has_degree`].
     pub fn has_degree(&self) -> bool {
         self.solution.has_degree()
     }
@@ -432,8 +431,8 @@ mod tests {
         let column = ColumnParameters { height: 2.0, load: 1.0e5, ..ColumnParameters::default() };
         let reference = Reference::new(ReferenceKind::Terzaghi, &column, &[0.1]).unwrap();
         let expected = column.load / column.soil.oedometric_modulus() * column.height;
-        let found = reference.displacement_scale().unwrap();
-        assert!((found / expected - 1.0).abs() < 1e-9, "{found:e} for {expected:e}");
+        let computed = reference.displacement_scale().unwrap();
+        assert!((computed / expected - 1.0).abs() < 1e-9, "{computed:e} for {expected:e}");
     }
 
     #[test]

@@ -3,13 +3,13 @@
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY];
 
 /// Decay of `p = σ' = p_0 sin(M_0 ζ)`, `M_0 = π/2`, without any load.
 ///
@@ -93,7 +93,7 @@ impl Solution for SingleMode {
     /// One term, no tail.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy::of(1, 0.0))
+        Ok(Accuracy::new(1, 0.0))
     }
 }
 

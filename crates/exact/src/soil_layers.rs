@@ -34,20 +34,20 @@ pub struct SoilLayer {
 }
 
 impl SoilLayer {
-    /// Its soil, with the values of the column's where it has none.
-    pub fn soil(&self, of_column: &Material) -> Material {
+    /// Soil of the layer, with the values of the column's soil for those that the layer does not set.
+    pub fn soil(&self, column_soil: &Material) -> Material {
         Material {
-            youngs_modulus: self.youngs_modulus.unwrap_or(of_column.youngs_modulus),
-            poissons_ratio: self.poissons_ratio.unwrap_or(of_column.poissons_ratio),
-            porosity: self.porosity.unwrap_or(of_column.porosity),
-            water_bulk_modulus: self.water_bulk_modulus.unwrap_or(of_column.water_bulk_modulus),
-            hydraulic_conductivity: self.hydraulic_conductivity.unwrap_or(of_column.hydraulic_conductivity),
-            ..*of_column
+            youngs_modulus: self.youngs_modulus.unwrap_or(column_soil.youngs_modulus),
+            poissons_ratio: self.poissons_ratio.unwrap_or(column_soil.poissons_ratio),
+            porosity: self.porosity.unwrap_or(column_soil.porosity),
+            water_bulk_modulus: self.water_bulk_modulus.unwrap_or(column_soil.water_bulk_modulus),
+            hydraulic_conductivity: self.hydraulic_conductivity.unwrap_or(column_soil.hydraulic_conductivity),
+            ..*column_soil
         }
     }
 }
 
-/// A few layers, as plain data; none at all for a column of one soil.
+/// The layers of a column, as plain data; empty for a homogeneous column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(into = "Vec<SoilLayer>", try_from = "Vec<SoilLayer>")]
 pub struct SoilLayers {
@@ -56,21 +56,21 @@ pub struct SoilLayers {
 }
 
 impl SoilLayers {
-    /// The layers of a list, from the base up; none where there are more than [`MOST_LAYERS`].
-    pub fn of(list: &[SoilLayer]) -> Option<Self> {
+    /// The layers of a slice, from the base up; `None` if there are more than [`MOST_LAYERS`].
+    pub fn from_slice(list: &[SoilLayer]) -> Option<Self> {
         let mut layers = Self { count: list.len(), ..Self::default() };
         layers.layers.get_mut(..list.len())?.copy_from_slice(list);
         Some(layers)
     }
 
-    /// Sum of the thicknesses, m, where it is not the height of a column.
+    /// Sum of the thicknesses, m, if it differs from the height of a column.
     pub fn misses(&self, height: f64) -> Option<f64> {
         let sum: f64 = self.iter().map(|layer| layer.thickness).sum();
         let fills = self.is_empty() || (sum - height).abs() <= GAP * height;
         (!fills).then_some(sum)
     }
 
-    /// Number of the layer at a height, m, over the base; the lower one on a face.
+    /// Index of the layer at a height, m, over the base; of the lower layer on an interface.
     pub fn number_at(&self, height: f64) -> usize {
         let mut top = 0.0;
         let below = |layer: &&SoilLayer| {
@@ -102,7 +102,7 @@ pub struct TooManyLayers(pub usize);
 impl TryFrom<Vec<SoilLayer>> for SoilLayers {
     type Error = TooManyLayers;
     fn try_from(list: Vec<SoilLayer>) -> Result<Self, TooManyLayers> {
-        Self::of(&list).ok_or(TooManyLayers(list.len()))
+        Self::from_slice(&list).ok_or(TooManyLayers(list.len()))
     }
 }
 
@@ -113,12 +113,12 @@ mod tests {
     #[test]
     fn a_height_belongs_to_the_layer_that_holds_it() {
         let layer = |thickness: f64| SoilLayer { thickness, ..SoilLayer::default() };
-        let layers = SoilLayers::of(&[layer(0.3), layer(0.4), layer(0.3)]).expect("three are few");
+        let layers = SoilLayers::from_slice(&[layer(0.3), layer(0.4), layer(0.3)]).expect("three are few");
         for (height, number) in [(0.0, 0), (0.3, 0), (0.31, 1), (0.7, 1), (0.71, 2), (1.0, 2), (1.1, 2)] {
             assert_eq!(layers.number_at(height), number, "{height}");
         }
         assert_eq!((layers.misses(1.0), layers.misses(1.5)), (None, Some(1.0)));
-        assert!(SoilLayers::of(&[layer(0.1); 9]).is_none());
+        assert!(SoilLayers::from_slice(&[layer(0.1); 9]).is_none());
     }
 
     #[test]
@@ -133,10 +133,10 @@ mod tests {
                 soil.hydraulic_conductivity,
             ]
         };
-        let own = [7e6, 0.21, 0.37, 5e7, 3e-6];
+        let overrides = [7e6, 0.21, 0.37, 5e7, 3e-6];
         // Bit `i` of the number says whether the layer has the value `i`.
         for number in 0..32_usize {
-            let has = |place: usize| (number >> place & 1 == 1).then_some(own[place]);
+            let has = |place: usize| (number >> place & 1 == 1).then_some(overrides[place]);
             let layer = SoilLayer {
                 thickness: 0.5,
                 youngs_modulus: has(0),

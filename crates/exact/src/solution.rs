@@ -1,4 +1,4 @@
-//! What every exact solution answers: its fields at a place and time, how far it has settled, and how exact it is.
+//! The interface of every exact solution: its fields at a place and time, its settlement and its accuracy.
 
 use crate::exact_error::ExactError;
 use std::fmt::Debug;
@@ -15,28 +15,28 @@ pub struct FieldValues {
     pub displacement: f64,
 }
 
-/// What round-off leaves of fields over the load at least: at most 7.5e-15 was seen against values of 40 digits.
+/// Round-off error of fields over the load: the largest seen against values of 40 digits was 7.5e-15.
 pub const ROUND_OFF: f64 = 1e-14;
 
-/// How far a reference itself can be trusted.
+/// Error bounds of a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Number of terms (modes, images, unknowns) used.
     pub terms: usize,
     /// Bound on the truncation error of the pressure over the load, the worst over the depth.
     pub tail_bound: f64,
-    /// Bound on what round-off leaves of pressures over the load and of displacements over the final one, where it is more
-    /// than [`ROUND_OFF`]: of the phases of waves that have run for long, of sums whose terms cancel.
+    /// Bound on the round-off error of pressures over the load and of displacements over the final one, if it exceeds
+    /// [`ROUND_OFF`]: from phases of waves after many periods, or from sums whose terms cancel.
     pub phase_bound: f64,
 }
 
 impl Accuracy {
-    /// So many terms, and what the others may add.
-    pub fn of(terms: usize, tail_bound: f64) -> Self {
+    /// The accuracy of a sum of `terms` terms with a bound on the omitted ones.
+    pub fn new(terms: usize, tail_bound: f64) -> Self {
         Self { terms, tail_bound, phase_bound: 0.0 }
     }
 
-    /// What round-off leaves of fields over the load, at most.
+    /// Bound on the round-off error of fields over the load.
     pub fn round_off(&self) -> f64 {
         ROUND_OFF.max(self.phase_bound)
     }
@@ -61,10 +61,10 @@ pub trait Solution: Debug + Send + Sync {
     /// When `time_factor` is negative or not finite.
     fn settlement(&self, time_factor: f64) -> Result<f64, ExactError>;
 
-    /// Settlement when nothing moves any more, m, or what settlements are measured by where that never is.
+    /// Final settlement, m; for motions that never end, the scale of settlements.
     ///
     /// # Errors
-    /// When it has no solution.
+    /// When the final state has no solution.
     fn final_settlement(&self) -> Result<f64, ExactError>;
 
     /// Degree of consolidation by settlement, `s(t)/s(∞)`; an immediate settlement counts.
@@ -75,23 +75,24 @@ pub trait Solution: Debug + Send + Sync {
         Ok(self.settlement(time_factor)? / self.final_settlement()?)
     }
 
-    /// Whether that degree means anything: not where nothing consolidates, or waves move the surface to and fro.
+    /// Whether the degree of consolidation is meaningful: it is not if nothing consolidates or waves move the surface up and
+    /// down.
     fn has_degree(&self) -> bool {
         true
     }
 
-    /// Least porosity of all places and times, where the porosity bounds what is possible and no field depends on it.
+    /// Least porosity of all places and times, for solutions that the porosity limits without entering their fields.
     fn least_porosity(&self) -> Option<f64> {
         None
     }
 
-    /// Terms used at a time factor, and the bound on what the others may add, the worst over the depth.
+    /// Number of terms used at a time factor, and a bound on the omitted ones, the largest over the depth.
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError>;
 
-    /// What displacements are measured by, m.
+    /// Scale of displacements, m.
     ///
     /// # Errors
     /// As for [`final_settlement`](Self::final_settlement).
@@ -99,7 +100,7 @@ pub trait Solution: Debug + Send + Sync {
         self.final_settlement().map(f64::abs)
     }
 
-    /// Strain across the body, uniform in it: that of rigid plates, and none in a column.
+    /// Uniform strain across the body: that of rigid plates, and zero in a column.
     ///
     /// # Errors
     /// When `time_factor` is negative or not finite.

@@ -2,14 +2,14 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, WEIGHT];
-/// Keys that it reads with incompressible water.
-pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[OF_COLUMN, LAW, WEIGHT];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY];
+/// Study keys that the solution reads with incompressible water.
+pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, LAW_KEY, WEIGHT_KEY];
 
 /// Small-strain consolidation of a column that drains at its top (Terzaghi 1943).
 ///
@@ -82,7 +82,7 @@ impl Solution for Terzaghi {
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         // The images' tail grows with the depth, the modes' does not depend on it.
         let base = isochrone(1.0, self.storage_ratio * time_factor)?;
-        Ok(Accuracy::of(base.terms, self.storage_ratio * base.tail_bound))
+        Ok(Accuracy::new(base.terms, self.storage_ratio * base.tail_bound))
     }
 }
 

@@ -1,18 +1,18 @@
-//! Columns in which nothing changes with time: one at rest, and one that no water leaves.
+//! Columns that do not change with time: a column at rest and a sealed one.
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{LAW, OF_WATER, WEIGHT};
+use crate::inputs::{LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Keys that it reads at rest.
-pub(crate) const INPUTS_AT_REST: &[&[&str]] = &[LAW, WEIGHT];
-/// Keys that it reads where no water leaves.
+/// Study keys that the column at rest reads.
+pub(crate) const INPUTS_AT_REST: &[&[&str]] = &[LAW_KEY, WEIGHT_KEY];
+/// Study keys that the sealed column reads.
 pub(crate) const INPUTS: &[&[&str]] =
-    &[&["height", "load", "youngs_modulus", "poissons_ratio"], OF_WATER, LAW];
+    &[&["height", "load", "youngs_modulus", "poissons_ratio"], WATER_KEYS, LAW_KEY];
 
-/// A column whose fields stay as they are from the start on: a pressure and an effective stress, Pa, that are uniform, and
-/// the share of its height that it has got shorter by.
+/// A column with constant fields: a uniform pressure and effective stress, Pa, and a uniform compression relative to its
+/// height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unchanging {
     pressure: f64,
@@ -22,7 +22,8 @@ pub struct Unchanging {
 }
 
 impl Unchanging {
-    /// A column at rest, whatever it weighs: no pressure, no stress beyond that of the weight and no displacement.
+    /// A column at rest, with or without self-weight: no excess pressure, no stress beyond that of the weight and no
+    /// displacement.
     ///
     /// # Errors
     /// When a parameter is impossible.
@@ -31,7 +32,7 @@ impl Unchanging {
         Ok(Self { pressure: 0.0, effective_stress: 0.0, strain: 0.0, height: parameters.height })
     }
 
-    /// A column that no water leaves: `p = q/(1 + n E_oed/K_w)` for ever.
+    /// A column that no water leaves: `p = q/(1 + n E_oed/K_w)` at all times.
     ///
     /// # Errors
     /// When a parameter is impossible.
@@ -62,7 +63,7 @@ impl Solution for Unchanging {
         self.settlement(0.0)
     }
 
-    /// All there is to come has come.
+    /// 1 from the start: nothing is left to settle.
     fn degree_of_consolidation(&self, time_factor: f64) -> Result<f64, ExactError> {
         checked_time_factor(time_factor).map(|_| 1.0)
     }
@@ -73,6 +74,6 @@ impl Solution for Unchanging {
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let terms = usize::from(self.strain != 0.0);
-        checked_time_factor(time_factor).map(|_| Accuracy::of(terms, 0.0))
+        checked_time_factor(time_factor).map(|_| Accuracy::new(terms, 0.0))
     }
 }

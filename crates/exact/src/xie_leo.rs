@@ -2,13 +2,14 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, positive};
-use crate::inputs::{LAW, OF_COLUMN, WEIGHT};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads; of the law, the continuity and the load's growth it takes its own.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, LAW, WEIGHT, &["porosity", "continuity", "loading_time"]];
+/// Study keys that the solution reads; of the law, the continuity and the load's growth it takes its own.
+pub(crate) const INPUTS: &[&[&str]] =
+    &[COLUMN_KEYS, LAW_KEY, WEIGHT_KEY, &["porosity", "continuity", "loading_time"]];
 
 /// Xie & Leo (2004): consolidation at large strain of a soil with constant
 /// `m_vl = −(1/(1 + e)) de/dσ'` and `k = k_0 J²`, incompressible water.
@@ -151,7 +152,7 @@ impl Solution for XieLeo {
         let base = isochrone(1.0, time_factor)?;
         // |∂p/∂W| ≤ (e^m − 1)/m_vl, reached at the drained surface.
         let slope = elementary::exp_m1(self.strain) / self.strain;
-        Ok(Accuracy::of(base.terms, slope * base.tail_bound))
+        Ok(Accuracy::new(base.terms, slope * base.tail_bound))
     }
 }
 

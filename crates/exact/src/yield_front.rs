@@ -11,22 +11,22 @@
 //! ```
 //!
 //! Stefan's problem of two phases without latent heat (Neumann; Carslaw & Jaeger 1959, section 11.2), for stress and
-//! strain are continuous at the front. It is a column's as long as the base has not heard of the top.
+//! strain are continuous at the front. It holds for a column as long as the front has not affected the base.
 
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, normal, positive};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
-/// Keys that it reads.
+/// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] =
-    &[OF_COLUMN, OF_WATER, LAW, &["reload_modulus", "preconsolidation", "initial_stress"]];
+    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["reload_modulus", "preconsolidation", "initial_stress"]];
 
-/// Relative difference up to which two moduli are one.
+/// Relative difference below which two moduli count as equal.
 const EQUAL: f64 = 1e-9;
 
 /// The exact solution of a column of a preconsolidated soil under a load that acts at once. Stresses here are compression
@@ -140,7 +140,7 @@ impl YieldFront {
         elastic + self.start * (front - depth) - held
     }
 
-    /// Shortening of all below a depth in the column, m, from before the load on.
+    /// Shortening of the column below a depth, m, since before the load.
     fn shortening_below(&self, seconds: f64, depth: f64) -> f64 {
         let Self { column, start, yielding, .. } = *self;
         let elastic = (column.load - start) / self.reload * (column.height - depth);
@@ -181,22 +181,22 @@ impl YieldFront {
         Ok(self.shortening_below(checked_time_factor(seconds)?, 0.0))
     }
 
-    /// What the base, which a half-space does not have, may change of the pressure over the load: what an image of
-    /// the elastic part adds, twice.
+    /// Bound on the effect of the base, which a half-space does not have, on the pressure over the load: twice the
+    /// contribution of an image of the elastic part.
     ///
     /// # Errors
     /// When `seconds` is negative or not finite.
     pub fn accuracy_after(&self, seconds: f64) -> Result<Accuracy, ExactError> {
         let seconds = checked_time_factor(seconds)?;
         if seconds == 0.0 {
-            return Ok(Accuracy::of(1, 0.0));
+            return Ok(Accuracy::new(1, 0.0));
         }
         let second = 2.0 * self.speeds[1];
         let reached = erfc(self.column.height / (second * seconds.sqrt())) / erfc(self.front / second);
         let tail = (2.0 * reached * (self.start - self.yielding) / self.column.load).min(1.0);
         // e^{−x²} is known to 2x² times the round-off of x.
         let [a, b] = self.speeds.map(|speed| self.front / (2.0 * speed));
-        Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON * (1.0 + a * a + b * b), ..Accuracy::of(1, tail) })
+        Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON * (1.0 + a * a + b * b), ..Accuracy::new(1, tail) })
     }
 }
 
@@ -212,7 +212,7 @@ impl Solution for YieldFront {
         self.settlement_after(self.column.time(checked_time_factor(time_factor)?))
     }
 
-    /// When all of the column has yielded; the solution is that of a half-space, which settles without end.
+    /// Settlement of a fully yielded column; the half-space of the solution itself settles without limit.
     fn final_settlement(&self) -> Result<f64, ExactError> {
         let Self { column, yielding, .. } = self;
         let strain = (column.load - yielding) / self.reload + yielding / self.virgin;
@@ -263,8 +263,8 @@ mod tests {
             for row in rows {
                 let [seconds, depth, pressure, front, out] =
                     [1, 2, 3, 4, 5].map(|cell| row[cell].parse::<f64>().unwrap());
-                let found = solution.fields_after(seconds, depth).unwrap().pressure;
-                assert!((found - pressure).abs() < 1e-12 * column.load, "{row:?}: {found}");
+                let computed = solution.fields_after(seconds, depth).unwrap().pressure;
+                assert!((computed - pressure).abs() < 1e-12 * column.load, "{row:?}: {computed}");
                 assert!((solution.front_depth(seconds) / front - 1.0).abs() < 1e-12, "{row:?}");
                 assert!((solution.water_out(seconds) / out - 1.0).abs() < 1e-12, "{row:?}");
                 assert!(solution.accuracy_after(seconds).unwrap().bound() < 1e-12);
@@ -281,8 +281,8 @@ mod tests {
             let lost = solution.lost_pressure(seconds, 0.0) - solution.lost_pressure(seconds, 1.0);
             let expected =
                 solution.water_out(seconds) - column.soil.porosity / column.soil.water_bulk_modulus * lost;
-            let found = solution.settlement_after(seconds).unwrap() - undrained;
-            assert!((found / expected - 1.0).abs() < 1e-11, "{seconds}: {found:e} {expected:e}");
+            let computed = solution.settlement_after(seconds).unwrap() - undrained;
+            assert!((computed / expected - 1.0).abs() < 1e-11, "{seconds}: {computed:e} {expected:e}");
             // The displacement's slope is the strain of the stress at the place.
             for depth in [0.3 * solution.front_depth(seconds), 2.0 * solution.front_depth(seconds)] {
                 let step = 1e-6;
@@ -304,8 +304,8 @@ mod tests {
         let speed = solution.speeds[0];
         for depth in [0.0, 0.01, 0.05, 0.2] {
             let expected = solution.start * erf(depth / (2.0 * speed * seconds.sqrt()));
-            let found = solution.fields_after(seconds, depth).unwrap().pressure;
-            assert!((found - expected).abs() < 1e-12 * column.load);
+            let computed = solution.fields_after(seconds, depth).unwrap().pressure;
+            assert!((computed - expected).abs() < 1e-12 * column.load);
         }
     }
 
@@ -327,7 +327,7 @@ mod tests {
         column.height = 3.0;
         // From 20 to 60 kPa with 6 MPa, to 120 kPa with 1.2 MPa.
         let strain = 4e4 / 6e6 + 6e4 / 1.2e6;
-        let found = YieldFront::new(&column).unwrap().final_settlement().unwrap();
-        assert!((found / (3.0 * strain) - 1.0).abs() < 1e-14, "{found}");
+        let computed = YieldFront::new(&column).unwrap().final_settlement().unwrap();
+        assert!((computed / (3.0 * strain) - 1.0).abs() < 1e-14, "{computed}");
     }
 }

@@ -63,9 +63,9 @@ fn used(name: &str, text: &str, known: &BTreeSet<String>) -> BTreeSet<String> {
             // Of `a::{b, c::d}` every branch.
             let inside = rest.strip_prefix('{').and_then(|rest| rest.split('}').next()).unwrap_or_default();
             for branch in inside.split(',') {
-                let whole = [base.clone(), steps(stem), steps(branch)].concat();
+                let full = [base.clone(), steps(stem), steps(branch)].concat();
                 // The longest path that is a source.
-                let paths = (1..=whole.len()).rev().map(|count| whole[..count].join("/"));
+                let paths = (1..=full.len()).rev().map(|count| full[..count].join("/"));
                 used.extend(paths.filter(|path| known.contains(path)).take(1));
             }
         }
@@ -98,8 +98,8 @@ fn wrong(sources: &BTreeMap<String, String>) -> Vec<String> {
             wrong.push(format!("{from} is in a circle"));
         }
         let floor = |name: &str| GROUND.iter().position(|ground| *ground == name);
-        if let Some(own) = floor(from) {
-            let up = to.iter().filter(|to| floor(to).is_none_or(|floor| floor >= own));
+        if let Some(level) = floor(from) {
+            let up = to.iter().filter(|to| floor(to).is_none_or(|floor| floor >= level));
             wrong.extend(up.map(|to| format!("{from} → {to}")));
         }
         let is_door = DOOR.contains(&from.as_str());
@@ -133,7 +133,7 @@ fn no_source_is_in_a_circle_and_the_ground_knows_no_problem() {
 
 #[test]
 fn a_planted_circle_and_arrows_up_are_named() {
-    for (name, line, told) in [
+    for (name, line, complaint) in [
         ("parameters", "use crate::shelf::ShelfProblem;", "parameters → shelf"),
         (
             "solution",
@@ -150,6 +150,6 @@ fn a_planted_circle_and_arrows_up_are_named() {
     ] {
         let mut sources = sources();
         sources.get_mut(name).expect("a source").push_str(line);
-        assert!(wrong(&sources).iter().any(|arrow| arrow == told), "{told}: {:?}", wrong(&sources));
+        assert!(wrong(&sources).iter().any(|arrow| arrow == complaint), "{complaint}: {:?}", wrong(&sources));
     }
 }

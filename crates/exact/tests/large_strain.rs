@@ -214,11 +214,11 @@ fn traps_are_as_far_off_as_measured() {
         ),
     ];
     for (law, continuity, pressures, settlements) in expected {
-        let found = figures(law, continuity);
-        for (i, (pressure, settlement)) in found.into_iter().enumerate() {
+        let computed = figures(law, continuity);
+        for (i, (pressure, settlement)) in computed.into_iter().enumerate() {
             let near = |value: f64, printed: f64| (value - printed).abs() < 0.03 * printed.abs();
-            assert!(near(pressure, pressures[i]), "{law:?} {continuity:?} {found:?}");
-            assert!(near(settlement, settlements[i]), "{law:?} {continuity:?} {found:?}");
+            assert!(near(pressure, pressures[i]), "{law:?} {continuity:?} {computed:?}");
+            assert!(near(settlement, settlements[i]), "{law:?} {continuity:?} {computed:?}");
         }
     }
 }

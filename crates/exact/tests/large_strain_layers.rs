@@ -13,7 +13,7 @@ use oedometer_soil::material::Material;
 const TIMES: [f64; 4] = [0.05, 0.2, 0.4, 1.0];
 
 fn layers(list: &[SoilLayer]) -> SoilLayers {
-    SoilLayers::of(list).expect("few")
+    SoilLayers::from_slice(list).expect("few")
 }
 
 /// A column of 2 m under a load that grows to the time factor 0.2.
@@ -41,20 +41,20 @@ fn layers_of_one_soil_are_the_column_without_them() {
     for law in [Law::LogLinear, Law::PorosityDependent, Law::Linear] {
         let model = LargeStrainModel { law, ..LargeStrainModel::XIE_LEO };
         let cut = [0.5, 1.1, 0.4].map(|thickness| SoilLayer { thickness, ..SoilLayer::default() });
-        let (one, many) = (column(4e5, &[]), column(4e5, &cut));
-        let [one, many] = [one, many].map(|column| LargeStrain::new(&column, model, &TIMES).unwrap());
+        let (single, split) = (column(4e5, &[]), column(4e5, &cut));
+        let [single, split] = [single, split].map(|column| LargeStrain::new(&column, model, &TIMES).unwrap());
         for time_factor in TIMES {
             for zeta in [0.0, 0.01, 0.2, 0.3, 0.5, 0.75, 0.9, 1.0] {
-                let [a, b] = [&one, &many].map(|column| column.fields(time_factor, zeta).unwrap());
+                let [a, b] = [&single, &split].map(|column| column.fields(time_factor, zeta).unwrap());
                 assert!((a.pressure - b.pressure).abs() < 1e-9 * 4e5, "{law:?} {time_factor} {zeta}");
                 assert!((a.displacement - b.displacement).abs() < 1e-9, "{law:?} {time_factor} {zeta}");
-                let [a, b] = [&one, &many].map(|column| column.volume_ratio(time_factor, zeta).unwrap());
+                let [a, b] = [&single, &split].map(|column| column.volume_ratio(time_factor, zeta).unwrap());
                 assert!((a - b).abs() < 1e-9);
             }
-            let [a, b] = [&one, &many].map(|column| column.degree_of_consolidation(time_factor).unwrap());
+            let [a, b] = [&single, &split].map(|column| column.degree_of_consolidation(time_factor).unwrap());
             assert!((a - b).abs() < 1e-9);
         }
-        assert!(many.accuracy(0.2).unwrap().bound() < 1e-8);
+        assert!(split.accuracy(0.2).unwrap().bound() < 1e-8);
     }
 }
 
@@ -62,22 +62,22 @@ fn layers_of_one_soil_are_the_column_without_them() {
 fn a_linear_law_gives_the_exact_layered_column_under_a_load_that_grows() {
     let column = column(3e3, &soft_over_tight());
     let linear = LargeStrainModel { law: Law::Linear, ..LargeStrainModel::XIE_LEO };
-    let found = LargeStrain::new(&column, linear, &TIMES).unwrap();
+    let large_strain = LargeStrain::new(&column, linear, &TIMES).unwrap();
     let soils: Vec<_> =
         column.soils.iter().map(|layer| (layer.thickness, layer.soil(&column.soil))).collect();
     let exact = LayeredColumn::new(column.load, &soils).unwrap();
     for time_factor in [0.4, 1.0] {
         for zeta in [0.05, 0.4, 0.41, 0.7, 1.0] {
             // Every share of the load consolidates by itself (Duhamel).
-            let mean = |of: &dyn Fn(f64) -> f64| {
-                let at = |share: f64| of(column.time(time_factor) - share * column.loading_time);
+            let mean = |function: &dyn Fn(f64) -> f64| {
+                let at = |share: f64| function(column.time(time_factor) - share * column.loading_time);
                 integrate(at, 0.0, 1.0, 8)
             };
             let pressure = mean(&|seconds| exact.fields_after(seconds, 2.0 * (1.0 - zeta)).unwrap().pressure);
             let settlement = mean(&|seconds| exact.settlement_after(seconds).unwrap());
-            let fields = found.fields(time_factor, zeta).unwrap();
+            let fields = large_strain.fields(time_factor, zeta).unwrap();
             assert!((fields.pressure - pressure).abs() < 1e-9 * column.load, "{time_factor} {zeta}");
-            assert!((found.settlement(time_factor).unwrap() / settlement - 1.0).abs() < 1e-8);
+            assert!((large_strain.settlement(time_factor).unwrap() / settlement - 1.0).abs() < 1e-8);
         }
     }
 }
@@ -133,12 +133,12 @@ fn finite_volumes(column: &ColumnParameters, time_factor: f64, cells: usize) -> 
             };
             // The load of the last stage still grows.
             let late = (time + dt).min(to * (1.0 - 1e-15));
-            let one = rate(&pressure, time);
-            let two = rate(&moved(&one, 0.5), time + 0.5 * dt);
-            let three = rate(&moved(&two, 0.5), time + 0.5 * dt);
-            let four = rate(&moved(&three, 1.0), late);
+            let k1 = rate(&pressure, time);
+            let k2 = rate(&moved(&k1, 0.5), time + 0.5 * dt);
+            let k3 = rate(&moved(&k2, 0.5), time + 0.5 * dt);
+            let k4 = rate(&moved(&k3, 1.0), late);
             for i in 0..pressure.len() {
-                pressure[i] += dt / 6.0 * (one[i] + 2.0 * two[i] + 2.0 * three[i] + four[i]);
+                pressure[i] += dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
             }
         }
     }
@@ -170,10 +170,10 @@ fn finite_volumes_converge_to_it_with_the_square_of_their_size() {
             let exact = reference.settlement(time_factor).unwrap() / column.height;
             [worst, (settlement / exact - 1.0).abs()]
         });
-        for of in 0..2 {
-            let orders = [0, 1].map(|i| (errors[i][of] / errors[i + 1][of]).log2());
+        for quantity in 0..2 {
+            let orders = [0, 1].map(|i| (errors[i][quantity] / errors[i + 1][quantity]).log2());
             assert!(orders.iter().all(|order| (1.8..2.3).contains(order)), "{orders:?} of {errors:?}");
-            assert!(errors[2][of] < 3e-4, "{errors:?}");
+            assert!(errors[2][quantity] < 3e-4, "{errors:?}");
         }
     }
     // A fifth of the soft layer's height has gone, and the strain jumps at the interface.

@@ -27,7 +27,7 @@ fn column() -> ColumnParameters {
         height: 2.3,
         load: 3.4e4,
         soil: Material { water_density: 1030.0, gravity: 9.7, ..soil },
-        soils: SoilLayers::of(&layers).expect("three"),
+        soils: SoilLayers::from_slice(&layers).expect("three"),
         ..ColumnParameters::default()
     }
 }
@@ -82,8 +82,8 @@ fn each_layer_starts_with_the_pressure_of_its_own_soil_and_ends_with_its_own_str
     for [thickness, young, nu, n, water, _] in LAYERS {
         let modulus = young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
         let zeta = 1.0 - (bottom + 0.5 * thickness) / column.height;
-        let found = reference.fields(0.0, zeta).expect("inside").pressure / column.load;
-        assert!((found * (1.0 + n * modulus / water) - 1.0).abs() < 1e-14, "{found}");
+        let ratio = reference.fields(0.0, zeta).expect("inside").pressure / column.load;
+        assert!((ratio * (1.0 + n * modulus / water) - 1.0).abs() < 1e-14, "{ratio}");
         (bottom, total) = (bottom + thickness, total + column.load * thickness / modulus);
     }
     assert!((reference.displacement_scale().expect("a scale") / total - 1.0).abs() < 1e-14);

@@ -39,13 +39,16 @@ fn ratios(reference: &Reference, column: &ColumnParameters, time: f64, zeta: f64
 }
 
 /// Largest difference of two problems over times and depths.
-fn apart(one: (ShelfProblem, &ColumnParameters), other: (ReferenceKind, &ColumnParameters)) -> f64 {
-    let ours = reference(one.0, one.1);
-    let theirs = Reference::new(other.0, other.1, &[]).expect("a possible problem");
+fn largest_difference(
+    first: (ShelfProblem, &ColumnParameters),
+    second: (ReferenceKind, &ColumnParameters),
+) -> f64 {
+    let ours = reference(first.0, first.1);
+    let theirs = Reference::new(second.0, second.1, &[]).expect("a possible problem");
     let mut worst = 0.0_f64;
     for time in [0.001, 0.02, 0.3, 2.0] {
         for zeta in [0.05, 0.3, 0.8, 1.0] {
-            let pair = [(&ours, one.1), (&theirs, other.1)];
+            let pair = [(&ours, first.1), (&theirs, second.1)];
             let [ours, theirs] = pair.map(|(reference, column)| ratios(reference, column, time, zeta));
             worst = ours.iter().zip(theirs).fold(worst, |worst, (a, b)| worst.max((a - b).abs()));
         }
@@ -63,13 +66,13 @@ fn every_problem_agrees_with_forty_digits() {
         let number = |place: usize| cells[place].parse::<f64>().expect("a number");
         let problem = ShelfProblem::named(cells[0]).expect("a problem");
         let column = column(cells[1]);
-        let found = ratios(&reference(problem, &column), &column, number(2), number(3));
-        for (place, value) in found.into_iter().enumerate() {
+        let computed = ratios(&reference(problem, &column), &column, number(2), number(3));
+        for (place, value) in computed.into_iter().enumerate() {
             let exact = number(4 + place);
             // A pressure near a source is larger than the load.
             let off = (value - exact).abs() / exact.abs().max(1.0);
             assert!(off < 1e-12, "{line}: {value} in column {place}");
-            let at = ShelfProblem::ALL.iter().position(|one| *one == problem).expect("one of all");
+            let at = ShelfProblem::ALL.iter().position(|listed| *listed == problem).expect("one of all");
             worst[at] = worst[at].max(off);
             compared += 1;
         }
@@ -119,14 +122,16 @@ fn a_biot_coefficient_of_one_is_terzaghis_column() {
             soil: Material { water_bulk_modulus, ..Material::default() },
             ..ColumnParameters::default()
         };
-        assert!(apart((ShelfProblem::BiotColumn, &seed), (ReferenceKind::Terzaghi, &seed)) < 1e-14);
+        assert!(
+            largest_difference((ShelfProblem::BiotColumn, &seed), (ReferenceKind::Terzaghi, &seed)) < 1e-14
+        );
     }
     // Grains a million times stiffer than the skeleton nearly so.
     let seed = ColumnParameters::default();
     let grain_bulk_modulus = Some(6.7e11);
     let shelf = ShelfParameters { grain_bulk_modulus, ..ShelfParameters::default() };
     let stiff = ColumnParameters { shelf, ..seed };
-    let off = apart((ShelfProblem::BiotColumn, &stiff), (ReferenceKind::Terzaghi, &seed));
+    let off = largest_difference((ShelfProblem::BiotColumn, &stiff), (ReferenceKind::Terzaghi, &seed));
     assert!((1e-8..1e-5).contains(&off), "{off:e}");
 }
 
@@ -186,8 +191,8 @@ fn early_every_body_drains_like_a_half_space_and_late_all_is_drained() {
         // Depths of the diffusion's width, 1/200 of the body: its curvature is a few per cent.
         for depth in [1.0, 2.0] {
             let width = 2.0 * 2.5e-5_f64.sqrt();
-            let found = reference.fields(2.5e-5, depth * width).expect("inside").pressure / inside;
-            assert!((found / libm::erf(depth) - 1.0).abs() < 0.07, "{problem} {depth}: {found}");
+            let computed = reference.fields(2.5e-5, depth * width).expect("inside").pressure / inside;
+            assert!((computed / libm::erf(depth) - 1.0).abs() < 0.07, "{problem} {depth}: {computed}");
         }
         let late = reference.fields(200.0, 1.0).expect("inside").pressure;
         assert!(late.abs() < 1e-12, "{problem}: {late:e}");
@@ -240,7 +245,7 @@ fn a_slow_wave_is_drained_and_a_fast_one_undrained_below_its_skin() {
 
 #[test]
 fn impossible_problems_are_refused_in_sentences() {
-    let told = |problem, change: fn(&mut ShelfParameters), time: f64, zeta: f64| {
+    let answer = |problem, change: fn(&mut ShelfParameters), time: f64, zeta: f64| {
         let mut shelf = ShelfParameters::default();
         change(&mut shelf);
         let column = ColumnParameters { shelf, ..ColumnParameters::default() };
@@ -248,35 +253,35 @@ fn impossible_problems_are_refused_in_sentences() {
             .and_then(|reference| reference.fields(time, zeta));
         asked.map_or_else(|error: ExactError| error.to_string(), |fields| format!("{fields:?}"))
     };
-    for (told, wanted) in [
+    for (answer, wanted) in [
         (
-            told(ShelfProblem::BiotColumn, |s| s.biot_coefficient = Some(1.2), 0.1, 0.5),
+            answer(ShelfProblem::BiotColumn, |s| s.biot_coefficient = Some(1.2), 0.1, 0.5),
             "between the porosity 0.3 and 1, got 1.2",
         ),
         (
-            told(ShelfProblem::Cryer, |s| s.grain_bulk_modulus = Some(1e3), 0.1, 0.5),
+            answer(ShelfProblem::Cryer, |s| s.grain_bulk_modulus = Some(1e3), 0.1, 0.5),
             "stiffer than the skeleton",
         ),
-        (told(ShelfProblem::Cryer, |s| s.grain_bulk_modulus = Some(-1.0), 0.1, 0.5), "must be positive"),
-        (told(ShelfProblem::Seabed, |s| s.biot_coefficient = Some(f64::NAN), 0.1, 0.5), "got NaN"),
+        (answer(ShelfProblem::Cryer, |s| s.grain_bulk_modulus = Some(-1.0), 0.1, 0.5), "must be positive"),
+        (answer(ShelfProblem::Seabed, |s| s.biot_coefficient = Some(f64::NAN), 0.1, 0.5), "got NaN"),
         (
-            told(ShelfProblem::Seabed, |s| s.wave_period = 0.0, 0.1, 0.5),
+            answer(ShelfProblem::Seabed, |s| s.wave_period = 0.0, 0.1, 0.5),
             "period of the wave must be positive",
         ),
         (
-            told(ShelfProblem::Barron, |s| s.drain_radius = -0.1, 0.1, 0.5),
+            answer(ShelfProblem::Barron, |s| s.drain_radius = -0.1, 0.1, 0.5),
             "radius of the drain must be positive",
         ),
         (
-            told(ShelfProblem::DavisRaymond, |s| s.initial_stress = Some(0.0), 0.1, 0.5),
+            answer(ShelfProblem::DavisRaymond, |s| s.initial_stress = Some(0.0), 0.1, 0.5),
             "effective stress of the start",
         ),
-        (told(ShelfProblem::Injection, |_| (), 0.1, 1.0), "infinite"),
-        (told(ShelfProblem::Cryer, |_| (), 1e-9, 0.5), "too early"),
-        (told(ShelfProblem::BarronFreeStrain, |_| (), 1e-9, 0.5), "too early"),
-        (told(ShelfProblem::Cryer, |_| (), 0.1, 1.5), "relative depth"),
-        (told(ShelfProblem::Barron, |_| (), -1.0, 0.5), "time factor"),
+        (answer(ShelfProblem::Injection, |_| (), 0.1, 1.0), "infinite"),
+        (answer(ShelfProblem::Cryer, |_| (), 1e-9, 0.5), "too early"),
+        (answer(ShelfProblem::BarronFreeStrain, |_| (), 1e-9, 0.5), "too early"),
+        (answer(ShelfProblem::Cryer, |_| (), 0.1, 1.5), "relative depth"),
+        (answer(ShelfProblem::Barron, |_| (), -1.0, 0.5), "time factor"),
     ] {
-        assert!(told.contains(wanted), "{told}: {wanted}");
+        assert!(answer.contains(wanted), "{answer}: {wanted}");
     }
 }

@@ -66,7 +66,7 @@ pub fn settlement_tables(
     let runs = problems.into_iter().map(|(_, runs)| runs[0]);
     runs.map(|record| {
         let case = &record.case;
-        let reference = known_reference(case, kind.of_soil(&case.material), &case.time_factors)?;
+        let reference = known_reference(case, kind.for_soil(&case.material), &case.time_factors)?;
         let row = |time_factor: &f64| -> Result<SettlementRow, ExactError> {
             let (surface, norm) = (Sample::Surface, Norm::Relative);
             let error = record.error(Quantity::Settlement, surface, norm, reference.name(), *time_factor);

@@ -183,7 +183,7 @@ impl Checker<'_> {
             );
             return SoilLayers::default();
         }
-        let Some(layers) = SoilLayers::of(&list) else {
+        let Some(layers) = SoilLayers::from_slice(&list) else {
             let count = list.len();
             self.complain(
                 whole,
@@ -317,7 +317,7 @@ impl Checker<'_> {
         }
         let is_loaded = case.scene.is_large_strain() && !case.scene.is_manufactured();
         if is_loaded && !case.column.soils.is_empty() {
-            let kind = case.scene.references()[0].of_soil(&case.material);
+            let kind = case.scene.references()[0].for_soil(&case.material);
             let reference = Reference::new(kind, &column_parameters(&case.column, &case.material), &[]);
             if let Err(error) = &reference {
                 self.complain(load.clone(), error.to_string(), "see [column], [column.soils] and [material]");

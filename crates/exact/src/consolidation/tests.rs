@@ -87,15 +87,15 @@ fn forms_need_few_terms_at_the_switch() {
 fn tail_bounds_hold() {
     // Each shortened sum's error is within the bound that the next term gives.
     for time_factor in [0.2, 0.5, 1.0] {
-        let whole = modes::isochrone(0.7, time_factor);
-        assert!(whole.tail_bound < 2.8e-17);
-        let m = eigenvalue(whole.terms);
+        let sum = modes::isochrone(0.7, time_factor);
+        assert!(sum.tail_bound < 2.8e-17);
+        let m = eigenvalue(sum.terms);
         let first_omitted = 2.0 / m * libm::exp(-m * m * time_factor);
-        assert!(whole.tail_bound >= first_omitted);
+        assert!(sum.tail_bound >= first_omitted);
     }
     for time_factor in [1e-8, 1e-3, 0.1, 0.19] {
-        let whole = images::isochrone(1.0, time_factor);
-        assert!(whole.tail_bound < 2.3e-17);
+        let sum = images::isochrone(1.0, time_factor);
+        assert!(sum.tail_bound < 2.3e-17);
     }
 }
 

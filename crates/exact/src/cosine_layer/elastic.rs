@@ -110,7 +110,7 @@ impl ElasticSolution {
         solution.coefficients = system
             .lu()
             .solve(&load)
-            .filter(|found| found.iter().all(|c| c.is_finite()))
+            .filter(|coefficients| coefficients.iter().all(|c| c.is_finite()))
             .ok_or(ExactError::LayerSingular {
                 ratio: core::f64::consts::PI / (constants.wave_number * constants.height),
             })?
@@ -137,7 +137,7 @@ impl ElasticSolution {
         };
         let sizes = DVector::from_iterator(
             self.coefficients.len(),
-            self.coefficients.iter().map(|&found| elementary::modulus(found)),
+            self.coefficients.iter().map(|&coefficient| elementary::modulus(coefficient)),
         );
         let moved = inverse.map(elementary::modulus) * (system.map(elementary::modulus) * sizes);
         moved.iter().copied().collect()

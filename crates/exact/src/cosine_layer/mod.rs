@@ -8,16 +8,16 @@ use nalgebra::Complex;
 
 use crate::cosine_layer::elastic::{Constants, ElasticSolution, Local, Regime};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within, positive};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS};
 use crate::parameters::{Base, ColumnParameters, Water};
 use crate::solution::{Accuracy, FieldValues, Solution};
 use crate::talbot::{NODES, talbot_contour};
 use oedometer_soil::elementary;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["length", "base"]];
-/// Keys that it reads with incompressible water.
-pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[OF_COLUMN, LAW, &["length", "base"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["length", "base"]];
+/// Study keys that the solution reads with incompressible water.
+pub(crate) const INPUTS_INCOMPRESSIBLE: &[&[&str]] = &[COLUMN_KEYS, LAW_KEY, &["length", "base"]];
 
 /// `B T_v` from which on the slowest mode is below round-off, and the contour so near the origin
 /// that flow and stress can hardly be told apart.
@@ -190,7 +190,7 @@ impl Solution for CosineLayer {
             worst = worst.max(difference.abs() / self.parameters.load);
             rounded = rounded.max(fine.round_off(&sensitivities, y));
         }
-        Ok(Accuracy { phase_bound: rounded, ..Accuracy::of(NODES, worst) })
+        Ok(Accuracy { phase_bound: rounded, ..Accuracy::new(NODES, worst) })
     }
 }
 
@@ -229,8 +229,8 @@ impl LayerState {
         Ok(sum)
     }
 
-    /// What round-off leaves of pressures and stresses over the load at `y` over the base, m: the sum over the contour
-    /// cancels most of its terms.
+    /// Round-off error of pressures and stresses over the load at `y` over the base, m: most terms of the sum over the
+    /// contour cancel.
     fn round_off(&self, sensitivities: &[Vec<f64>], y: f64) -> f64 {
         let terms = self.parts.iter().zip(sensitivities).map(|((part, weight), sensitivities)| {
             elementary::modulus(*weight) * part.round_off(sensitivities, y)

@@ -1,4 +1,4 @@
-//! The column with inertia as data: how it starts, what is known of it in advance, and what its modes depart from.
+//! Data of the column with inertia: its initial state, its precomputed modes, and the steady state that they depart from.
 
 use crate::dynamic_column::modes::ModeState;
 use crate::parameters::ColumnParameters;

@@ -14,16 +14,17 @@ pub use crate::dynamic_column::column::{DynamicColumn, Start};
 use crate::dynamic_column::modes::ModeState;
 use crate::dynamic_column::summation::{BLOCK, Waves};
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::parameters::ColumnParameters;
 use crate::single_mode::PhaseVelocities;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads where it is let go.
-pub(crate) const INPUTS_RELEASED: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, &["grain_density"]];
-/// Keys that it reads under a load.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_WATER, LAW, WEIGHT, &["grain_density", "loading_time"]];
+/// Study keys that the solution reads if the column is released.
+pub(crate) const INPUTS_RELEASED: &[&[&str]] = &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, &["grain_density"]];
+/// Study keys that the solution reads under a load.
+pub(crate) const INPUTS: &[&[&str]] =
+    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["grain_density", "loading_time"]];
 
 /// Both phases' fields at one depth and time.
 #[derive(Clone, Copy, Debug, PartialEq)]

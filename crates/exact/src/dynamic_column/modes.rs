@@ -32,9 +32,9 @@ pub struct Amplitude {
     pub mixture_rate: f64,
     /// Bound on the pressure and stress of this mode, Pa.
     pub envelope: f64,
-    /// The share of all roots but the slowest in it, Pa.
+    /// The part of the envelope due to all roots but the slowest, Pa.
     pub rest: f64,
-    /// Bound on what round-off of frequencies and of the time makes of it, Pa.
+    /// Bound on the effect of round-off in the frequencies and the time, Pa.
     pub phase_error: f64,
 }
 
@@ -59,7 +59,7 @@ pub enum Drive {
     Release(InitialState),
 }
 
-/// What becomes of the response `exp(s t)` of a root when the load grows over a time.
+/// Response of a root, `exp(s t)` under a sudden load, when the load grows over a time.
 ///
 /// The response to a load that grows is the mean of those to steps (Duhamel), and all means are
 /// written so that nothing cancels, however short the time or slow the root.

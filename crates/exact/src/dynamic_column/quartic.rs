@@ -85,18 +85,18 @@ mod tests {
     fn roots_of_many_magnitudes_keep_their_digits() {
         // (s + 1e-8)(s + 1e9) and a lightly damped wave of 1e3 rad/s.
         let coefficients = product([[10.0, 1e9 + 1e-8], [1e6, 20.0]]);
-        let mut found = roots(&coefficients);
-        found.sort_by(|a, b| modulus(*a).total_cmp(&modulus(*b)));
-        assert!((found[0].re / -1e-8 - 1.0).abs() < 1e-14);
-        assert!((found[3].re / -1e9 - 1.0).abs() < 1e-14);
-        assert!((found[1].re / -10.0 - 1.0).abs() < 1e-12);
-        assert!((modulus(found[1]) / 1e3 - 1.0).abs() < 1e-14);
+        let mut computed = roots(&coefficients);
+        computed.sort_by(|a, b| modulus(*a).total_cmp(&modulus(*b)));
+        assert!((computed[0].re / -1e-8 - 1.0).abs() < 1e-14);
+        assert!((computed[3].re / -1e9 - 1.0).abs() < 1e-14);
+        assert!((computed[1].re / -10.0 - 1.0).abs() < 1e-12);
+        assert!((modulus(computed[1]) / 1e3 - 1.0).abs() < 1e-14);
     }
 
     #[test]
     fn double_roots_have_half_the_digits() {
-        let found = roots(&product([[1.0, 2.0], [100.0, 1.0]]));
-        let near = found.iter().filter(|s| modulus(*s + 1.0) < 1e-7).count();
+        let computed = roots(&product([[1.0, 2.0], [100.0, 1.0]]));
+        let near = computed.iter().filter(|s| modulus(*s + 1.0) < 1e-7).count();
         assert_eq!(near, 2);
     }
 

@@ -6,7 +6,7 @@ use crate::dynamic_column::modes::{Amplitude, Drive, Growth, InitialState, Mode,
 use core::f64::consts::PI;
 use oedometer_soil::elementary;
 
-/// More modes are not summed: beyond, a wave front is still sharp and the sum's tail says so.
+/// Most modes that are summed; a front that is still sharp beyond them shows in the bound on the tail.
 const MOST_MODES: usize = 4096;
 /// Modes below this share of the load are left out.
 const RELATIVE_TAIL: f64 = 1e-18;
@@ -83,7 +83,7 @@ impl DynamicColumn {
         snapshot
     }
 
-    /// What very high modes may add, Pa: their attenuation no longer grows with the frequency.
+    /// Bound on the contribution of very high modes, Pa, whose attenuation no longer grows with the frequency.
     fn sharp_front(&self, modes: usize, time: f64) -> f64 {
         let far = 1_000_000;
         let front = self.amplitude(far, time).envelope * far as f64;
@@ -108,7 +108,7 @@ pub(super) struct Waves {
 }
 
 impl Waves {
-    /// At a relative depth.
+    /// The waves at a relative depth.
     pub(super) fn at(zeta: f64) -> Self {
         let above_base = 1.0 - zeta;
         let mut steps = [[0.0; BLOCK]; 2];

@@ -1,4 +1,4 @@
-//! The column in space: spectral elements, one per layer, each of which joins the next in a point of both.
+//! The column in space: a spectral element per layer; neighbouring elements share a point.
 //!
 //! In each layer, with the moduli `E` and conductivities `k` over those of the column's soil and `y = Y/H`,
 //!
@@ -18,7 +18,7 @@ use crate::large_strain::legendre::{Element, evaluate, integral_to_one};
 use crate::parameters::ColumnParameters;
 use oedometer_soil::continuity::Continuity;
 
-/// A column of layers, from the surface down as its points are.
+/// A column of layers, ordered from the surface down, like its points.
 #[derive(Clone, Debug)]
 pub struct Layers {
     stack: Vec<Layer>,
@@ -96,7 +96,7 @@ impl Layers {
     /// # Errors
     /// When a soil is impossible or closes its pores; of several layers when they do not fill the column, the load acts at
     /// once, a weight acts, or the continuity needs a gradient of the porosity.
-    pub fn of(
+    pub fn new(
         parameters: &ColumnParameters,
         model: LargeStrainModel,
         order: usize,
@@ -223,7 +223,7 @@ impl Layers {
         jacobian
     }
 
-    /// What every point takes in, and its storage.
+    /// Inflow and storage of every point.
     fn balance(&self, ratio: &DVector<f64>, load: LoadAt) -> (DVector<f64>, DVector<f64>) {
         let (mut taken, mut storage) = (DVector::zeros(self.len()), DVector::zeros(self.len()));
         for (at, layer) in self.stack.iter().enumerate() {

@@ -77,11 +77,11 @@ impl Element {
         let (middle, last) = (self.points.len() / 2, self.points.len() - 1);
         let mut weights = self.weights[..=middle].to_vec();
         weights[middle] *= 0.5;
-        let whole = self.derivative();
-        let mut half = whole.view((0, 0), (middle + 1, middle + 1)).into_owned();
+        let full = self.derivative();
+        let mut half = full.view((0, 0), (middle + 1, middle + 1)).into_owned();
         for j in 0..middle {
-            let image = whole.view((0, last - j), (middle + 1, 1));
-            half.column_mut(j).zip_apply(&image, |own, image| *own += image);
+            let image = full.view((0, last - j), (middle + 1, 1));
+            half.column_mut(j).zip_apply(&image, |entry, image| *entry += image);
         }
         (weights, half)
     }
@@ -109,11 +109,11 @@ pub fn evaluate(coefficients: &[f64], x: f64) -> f64 {
 /// Integral of a series from `x` to 1: `∫ P_k = (P_{k−1} − P_{k+1})/(2k + 1)`.
 pub fn integral_to_one(coefficients: &[f64], x: f64) -> f64 {
     let values = polynomials(coefficients.len(), x);
-    let of = |(k, coefficient): (usize, &f64)| {
+    let term = |(k, coefficient): (usize, &f64)| {
         let below = if k == 0 { 1.0 } else { values[k - 1] };
         coefficient * (below - values[k + 1]) / (2.0 * k as f64 + 1.0)
     };
-    coefficients.iter().enumerate().map(of).sum()
+    coefficients.iter().enumerate().map(term).sum()
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const ENDED: f64 = 1e-17;
 /// Solution at one time factor.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// When.
+    /// Time factor of the state.
     pub time_factor: f64,
     /// `r = p/q` at the points below the surface.
     ratio: DVector<f64>,
@@ -28,7 +28,7 @@ pub struct State {
 /// March at one resolution.
 #[derive(Clone, Debug)]
 pub struct March {
-    /// Where the pressure is known, and what moves it there.
+    /// The spatial discretisation.
     pub layers: Layers,
     loading: Loading,
     weights: [[f64; STAGES]; STAGES],
@@ -41,11 +41,11 @@ impl March {
     /// A march with steps of up to `growth` times the time that has passed.
     pub fn new(layers: Layers, loading: Loading, growth: f64) -> Self {
         let weights = weights();
-        let modes = StageModes::of(&weights);
+        let modes = StageModes::new(&weights);
         Self { layers, loading, weights, modes, growth }
     }
 
-    /// Before any load: no pressure at all.
+    /// The state before any load, without pressure.
     pub fn rest(&self) -> State {
         State { time_factor: 0.0, ratio: DVector::zeros(self.layers.len()) }
     }
@@ -105,7 +105,7 @@ impl March {
         let order = ratio.len();
         let loads = POINTS.map(|point| self.loading.within_step(now.time_factor, point * step));
         let jacobian = self.layers.jacobian(ratio, self.loading.within_step(now.time_factor, 0.0));
-        let factors = StageFactors::of(&self.modes, &jacobian, step);
+        let factors = StageFactors::new(&self.modes, &jacobian, step);
         let mut increments = DVector::zeros(STAGES * order);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {

@@ -10,7 +10,7 @@ mod similarity;
 pub use crate::large_strain::diffusion::{LargeStrainModel, Water};
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{LAW, OF_COLUMN, OF_WATER, WEIGHT};
+use crate::inputs::{COLUMN_KEYS, LAW_KEY, WATER_KEYS, WEIGHT_KEY};
 use crate::large_strain::diffusion::{Diffusion, Loading};
 use crate::large_strain::layers::{Layers, Profile};
 use crate::large_strain::march::{March, State};
@@ -18,9 +18,9 @@ use crate::large_strain::similarity::Front;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Keys that it reads.
+/// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] =
-    &[OF_COLUMN, OF_WATER, LAW, WEIGHT, &["continuity", "loading_time", "soils"]];
+    &[COLUMN_KEYS, WATER_KEYS, LAW_KEY, WEIGHT_KEY, &["continuity", "loading_time", "soils"]];
 
 /// Resolutions: points in depth and growth of the time step. Each is held against the one before.
 const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 0.15), (64, 0.1)];
@@ -28,11 +28,11 @@ const RESOLUTIONS: [(usize, f64); 5] = [(14, 0.45), (20, 0.3), (30, 0.22), (44, 
 const ENOUGH: f64 = 1e-9;
 /// Difference in `p/q` that is enough for a line in a figure: a hundredth of what a reader sees.
 const ENOUGH_TO_DRAW: f64 = 1e-6;
-/// A last difference above this is no reference.
+/// Largest difference of the last two resolutions that is accepted as a reference.
 const TOO_MUCH: f64 = 1e-6;
-/// Round-off, below which no difference is believed.
+/// Round-off: smaller differences are not significant.
 const ROUND_OFF: f64 = 1e-13;
-/// The load is put on in as many shares to find the first front.
+/// Number of load increments to find the first front.
 const LOAD_SHARES: u32 = 4;
 
 /// One-dimensional consolidation at large strain (Gibson, England & Hussey 1967), for any soil law,
@@ -64,7 +64,7 @@ pub struct LargeStrain {
     resolution: usize,
 }
 
-/// What one resolution gives.
+/// The solution at one resolution.
 struct Attempt {
     front: Option<Front>,
     march: March,
@@ -72,7 +72,7 @@ struct Attempt {
 }
 
 impl LargeStrain {
-    /// Solves for a column at `time_factors`; at other times every question costs a march.
+    /// Solves for a column at `time_factors`; every evaluation at another time needs a march.
     ///
     /// # Errors
     /// When the parameters are impossible, the load would close the pores, a time factor is
@@ -110,7 +110,7 @@ impl LargeStrain {
             .collect::<Result<Vec<_>, _>>()?;
         times.sort_by(f64::total_cmp);
         times.dedup();
-        Layers::of(parameters, model, RESOLUTIONS[0].0)?;
+        Layers::new(parameters, model, RESOLUTIONS[0].0)?;
         let loading = Loading::over(parameters.time_factor(parameters.loading_time));
         let mut before: Option<Attempt> = None;
         let mut difference = f64::INFINITY;
@@ -203,7 +203,7 @@ impl Solution for LargeStrain {
     /// Points in depth, and the difference to the next coarser resolution as the bound.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         checked_time_factor(time_factor)?;
-        Ok(Accuracy::of(self.resolution, self.difference))
+        Ok(Accuracy::new(self.resolution, self.difference))
     }
 }
 
@@ -216,7 +216,7 @@ impl Attempt {
         times: &[f64],
     ) -> Result<Self, ExactError> {
         let failed = ExactError::NotConverged { difference: f64::INFINITY };
-        let march = March::new(Layers::of(parameters, model, order)?, loading, growth);
+        let march = March::new(Layers::new(parameters, model, order)?, loading, growth);
         let mut front: Option<Front> = None;
         if !loading.is_gradual() {
             // A steep front is reached by way of smaller loads.

@@ -36,7 +36,7 @@ const EIGENVALUES: [(f64, f64); 3] = [
     (0.133_179_077_018_299_7, 0.074_994_511_835_818_65),
     (0.065_065_778_545_743_6, 0.116_468_527_740_317_03),
 ];
-/// Share by which an eigenvalue is missed for its vectors: the system is not singular then, and leaves little but them.
+/// Relative shift from the eigenvalue in the inverse iteration, which keeps the system regular.
 const MISSED: f64 = 1e-8;
 /// Inverse iterations to a vector.
 const ITERATIONS: usize = 3;
@@ -51,7 +51,7 @@ type StageMatrix = SMatrix<Complex<f64>, STAGES, STAGES>;
 struct Mode {
     value: Complex<f64>,
     right: StageVector,
-    /// Scaled so that its product with the other is one, two for one of a pair.
+    /// Left eigenvector, scaled so that its product with the right one is 1, or 2 for a conjugate pair.
     left: StageVector,
 }
 
@@ -60,16 +60,16 @@ struct Mode {
 pub struct StageModes([Mode; EIGENVALUES.len()]);
 
 impl StageModes {
-    /// Those of its weights, row by row.
+    /// The modes of the weights of a method, row by row.
     ///
     /// # Panics
     /// Never for the weights of Radau IIA with five stages.
-    pub fn of(weights: &[[f64; STAGES]; STAGES]) -> Self {
+    pub fn new(weights: &[[f64; STAGES]; STAGES]) -> Self {
         let matrix = StageMatrix::from_fn(|i, j| Complex::from(weights[i][j]));
         Self(EIGENVALUES.map(|(real, imaginary)| {
             let value = Complex::new(real, imaginary);
-            let right = vector_of(&matrix, value);
-            let left = vector_of(&matrix.transpose(), value);
+            let right = eigenvector(&matrix, value);
+            let left = eigenvector(&matrix.transpose(), value);
             let count = if imaginary == 0.0 { 1.0 } else { 2.0 };
             Mode { value, right, left: left * (Complex::from(count) / left.dot(&right)) }
         }))
@@ -77,7 +77,7 @@ impl StageModes {
 }
 
 /// The right eigenvector of a matrix by inverse iteration.
-fn vector_of(matrix: &StageMatrix, value: Complex<f64>) -> StageVector {
+fn eigenvector(matrix: &StageMatrix, value: Complex<f64>) -> StageVector {
     let factors = (matrix - StageMatrix::identity() * (value * (1.0 + MISSED))).lu();
     let mut vector = StageVector::from_element(Complex::from(1.0));
     for _ in 0..ITERATIONS {
@@ -97,8 +97,8 @@ pub struct StageFactors<'a> {
 }
 
 impl<'a> StageFactors<'a> {
-    /// Of a Jacobian and a step.
-    pub fn of(modes: &'a StageModes, jacobian: &DMatrix<f64>, step: f64) -> Self {
+    /// The factors for a Jacobian and a step.
+    pub fn new(modes: &'a StageModes, jacobian: &DMatrix<f64>, step: f64) -> Self {
         let factors = modes.0.each_ref().map(|mode| {
             let mut system = jacobian.map(|entry| -(mode.value * (step * entry)));
             for i in 0..system.nrows() {
@@ -143,17 +143,17 @@ mod tests {
             let wave = ((3 * i + 5 * j) as f64).sin();
             if i == j { -20.0 * (1.0 + i as f64) } else { 3.0 * wave }
         });
-        let mut whole = DMatrix::identity(STAGES * order, STAGES * order);
+        let mut coupled = DMatrix::identity(STAGES * order, STAGES * order);
         for (i, row) in weights.iter().enumerate() {
             for (j, weight) in row.iter().enumerate() {
-                let mut block = whole.view_mut((i * order, j * order), (order, order));
+                let mut block = coupled.view_mut((i * order, j * order), (order, order));
                 block -= &jacobian * (step * weight);
             }
         }
         let right_side = DVector::from_fn(STAGES * order, |i, _| (1.7 * i as f64).cos());
-        let together = whole.lu().solve(&right_side).expect("a solution");
-        let modes = StageModes::of(&weights);
-        let apart = StageFactors::of(&modes, &jacobian, step).solve(&right_side).expect("a solution");
+        let together = coupled.lu().solve(&right_side).expect("a solution");
+        let modes = StageModes::new(&weights);
+        let apart = StageFactors::new(&modes, &jacobian, step).solve(&right_side).expect("a solution");
         assert!((&apart - &together).amax() < 1e-13 * together.amax(), "{}", (&apart - &together).amax());
     }
 

@@ -139,8 +139,8 @@ impl Front {
         }
         // From η to the reach is from x down to −1.
         let x = 1.0 - 2.0 * eta / self.reach;
-        let whole = integral_to_one(&self.shrinkage, -1.0);
-        let part = whole - integral_to_one(&self.shrinkage, x);
+        let total = integral_to_one(&self.shrinkage, -1.0);
+        let part = total - integral_to_one(&self.shrinkage, x);
         undrained + width * 0.5 * self.reach * part
     }
 }

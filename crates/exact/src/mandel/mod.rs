@@ -10,7 +10,7 @@
 mod sums;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, held_within};
-use crate::inputs::{LAW, OF_BIOT, OF_COLUMN};
+use crate::inputs::{BIOT_KEYS, COLUMN_KEYS, LAW_KEY};
 pub use crate::mandel::sums::MandelRatios;
 use crate::mandel::sums::{Groups, early, series};
 use crate::parameters::ColumnParameters;
@@ -18,8 +18,8 @@ use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT, LAW, &["width"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS, LAW_KEY, &["width"]];
 
 /// `T = B_1 T_v` from which on a handful of terms of the series is exact to round-off; the closed form
 /// leaves out `e^{−1/T}`, 2e-22 there.
@@ -27,7 +27,7 @@ const SERIES_FROM: f64 = 0.02;
 
 /// `T` between which the peak in the middle lies, whatever the material.
 const PEAK_BETWEEN: [f64; 2] = [1e-3, 1.0];
-/// Width in `ln T` to which a flat top can be told: the square root of the round-off, and a little.
+/// Width in `ln T` to which a flat maximum can be located: somewhat more than the square root of round-off.
 const PEAK_WITHIN: f64 = 1e-7;
 
 /// Relative rise above the start that is more than round-off.
@@ -50,8 +50,8 @@ impl Mandel {
     /// When the parameters are impossible.
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
         parameters.validate()?;
-        let soil = PorousSoil::of(parameters)?;
-        let groups = Groups::of(&soil, parameters.soil.poissons_ratio);
+        let soil = PorousSoil::new(parameters)?;
+        let groups = Groups::new(&soil, parameters.soil.poissons_ratio);
         Ok(Self { parameters: *parameters, soil, groups })
     }
 
@@ -83,7 +83,7 @@ impl Solution for Mandel {
         })
     }
 
-    /// What each plate has gone inward, m, at half the distance of the plates: the length of the parameters.
+    /// Inward displacement of each plate, m; half the distance of the plates is the length of the parameters.
     fn settlement(&self, time_factor: f64) -> Result<f64, ExactError> {
         Ok(-self.strain_across(time_factor)? * self.parameters.length)
     }
@@ -98,10 +98,10 @@ impl Solution for Mandel {
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let time = self.groups.storage_ratio * checked_time_factor(time_factor)?;
         if time < SERIES_FROM {
-            return Ok(Accuracy::of(0, early::bound(&self.groups, time)));
+            return Ok(Accuracy::new(0, early::bound(&self.groups, time)));
         }
         let terms = series::terms(time);
-        Ok(Accuracy::of(terms, series::bound(time, terms)))
+        Ok(Accuracy::new(terms, series::bound(time, terms)))
     }
 
     /// Strain `ε_yy` across the plates, compression negative: the same everywhere.
@@ -109,8 +109,8 @@ impl Solution for Mandel {
         Ok(-self.parameters.load * self.ratios(time_factor, 0.0)?.strain / self.soil.shear)
     }
 
-    /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963); none where
-    /// it never rises: a skeleton that keeps its volume, or water that carries nothing.
+    /// Time factor `T_v` and height `p a/F` of the highest pressure in the middle (Mandel 1953; Cryer 1963). `None` if the
+    /// pressure never rises: for a skeleton of constant volume, or water that carries no load.
     fn pressure_peak(&self) -> Option<(f64, f64)> {
         let height = |time: f64| {
             let ratios = if time < SERIES_FROM { early::ratios } else { series::ratios };

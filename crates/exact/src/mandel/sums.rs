@@ -3,7 +3,7 @@
 use crate::porous_soil::PorousSoil;
 use oedometer_soil::elementary;
 
-/// What the problem depends on.
+/// Dimensionless groups of the problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groups {
     /// Poisson's ratio `ν`, drained.
@@ -13,11 +13,11 @@ pub struct Groups {
     pub kappa: f64,
     /// Pressure at once over the mean stress, `B (1 + ν_u)/3`.
     pub start: f64,
-    /// `B_1 = 1/(E_oed S)`: what `c` is of `c_v`.
+    /// `B_1 = 1/(E_oed S) = c/c_v`.
     pub storage_ratio: f64,
 }
 
-/// Fields over what makes them pure numbers.
+/// Dimensionless fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MandelRatios {
     /// `p a/F`.
@@ -26,11 +26,11 @@ pub struct MandelRatios {
     pub stress: f64,
     /// `u_x G/F`, towards the drained sides.
     pub displacement: f64,
-    /// `−ε_yy G a/F`, the same everywhere: what the plates have come together.
+    /// `−ε_yy G a/F`, uniform: the approach of the plates.
     pub strain: f64,
 }
 
-/// Sums over the roots at one time and place, by whichever way they are found.
+/// Sums over the roots at one time and place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
     /// `Σ sin α cos α/d e^{−α²T}`.
@@ -48,7 +48,7 @@ impl Groups {
     /// ```text
     /// κ = 9Gα²/((3K + 4G) d)     B (1 + ν_u)/3 = 3α/(2d)     B_1 = 1/(E_oed S)
     /// ```
-    pub fn of(soil: &PorousSoil, poissons_ratio: f64) -> Self {
+    pub fn new(soil: &PorousSoil, poissons_ratio: f64) -> Self {
         let PorousSoil { bulk, shear, alpha, fixed_storage, .. } = *soil;
         let squared = alpha * alpha;
         let undrained = 3.0 * (bulk * fixed_storage + squared) + shear * fixed_storage;
@@ -56,7 +56,7 @@ impl Groups {
             poissons_ratio,
             kappa: 9.0 * shear * squared / ((3.0 * bulk + 4.0 * shear) * undrained),
             start: 1.5 * alpha / undrained,
-            storage_ratio: soil.slowed(),
+            storage_ratio: soil.diffusivity_ratio(),
         }
     }
 
@@ -67,8 +67,8 @@ impl Groups {
 }
 
 impl MandelRatios {
-    /// The ratios of sums over the roots, docs/theory.md, Eq. 16.
-    pub fn of(groups: &Groups, distance: f64, sums: Sums) -> Self {
+    /// The ratios from the sums over the roots, docs/theory.md, Eq. 16.
+    pub fn from_sums(groups: &Groups, distance: f64, sums: Sums) -> Self {
         let Groups { poissons_ratio: nu, kappa, start, .. } = *groups;
         let undrained = nu + kappa * (1.0 - nu);
         Self {
@@ -141,9 +141,9 @@ pub mod early {
         // e^{sT} q = e^{1/T − 2/T}; q itself underflows beside the rest.
         let left = elementary::exp(-r);
         let echo = 2.0 * kappa / (-elementary::exp_m1(-2.0 * r));
-        let own = r - kappa;
-        let plates = echo / (own * (own - echo * elementary::exp(-2.0 * r)));
-        let drained = 3.0 * plates + 4.0 / own;
+        let shifted = r - kappa;
+        let plates = echo / (shifted * (shifted - echo * elementary::exp(-2.0 * r)));
+        let drained = 3.0 * plates + 4.0 / shifted;
         4.0 * left * r * (plates + drained)
     }
 }
@@ -154,9 +154,9 @@ pub mod series {
     use super::{Groups, MandelRatios, Sums, elementary};
     use core::f64::consts::{FRAC_PI_2, PI};
 
-    /// What the terms left out may add up to.
+    /// Bound on the sum of the omitted terms.
     const NEGLIGIBLE: f64 = 1e-18;
-    /// More terms than the shortest time asks for: a dozen are enough from `T = 0.02` on, two thousand at 1e-6.
+    /// More terms than the shortest time needs: a dozen are enough from `T = 0.02` on, two thousand at 1e-6.
     const MOST_TERMS: usize = 10_000;
     /// Newton's iterations for a root: it gains twice its digits from each, and begins with one.
     const MOST_ITERATIONS: usize = 60;
@@ -200,7 +200,7 @@ pub mod series {
         sum(groups, time, distance, terms(time))
     }
 
-    /// The ratios of so many terms.
+    /// The ratios from a number of terms.
     pub fn sum(groups: &Groups, time: f64, distance: f64, terms: usize) -> MandelRatios {
         let mut sums = Sums::default();
         // The small ones first.
@@ -214,7 +214,7 @@ pub mod series {
             sums.wave += sine * elementary::cos(root * distance) * weight;
             sums.slope += cosine * elementary::sin(root * distance) * weight;
         }
-        let mut ratios = MandelRatios::of(groups, distance, sums);
+        let mut ratios = MandelRatios::from_sums(groups, distance, sums);
         if distance == 1.0 {
             // cos(αx) = cos α, to the last digit.
             ratios.pressure = 0.0;

@@ -15,7 +15,7 @@ fn slab(case: &str) -> Mandel {
         .expect("a possible slab")
 }
 
-fn fields_of(ratios: MandelRatios) -> [f64; 4] {
+fn to_array(ratios: MandelRatios) -> [f64; 4] {
     [ratios.pressure, ratios.stress, ratios.displacement, ratios.strain]
 }
 
@@ -44,8 +44,8 @@ fn the_fields_agree_with_forty_digits() {
         let cells: Vec<&str> = line.split(',').collect();
         let Ok(distance) = cells[3].parse::<f64>() else { continue };
         let number = |place: usize| cells[place].parse::<f64>().expect("a number");
-        let found = fields_of(slab(cells[0]).ratios(number(2), distance).expect("inside"));
-        for (place, value) in found.into_iter().enumerate() {
+        let computed = to_array(slab(cells[0]).ratios(number(2), distance).expect("inside"));
+        for (place, value) in computed.into_iter().enumerate() {
             assert!((value - number(4 + place)).abs() < 1e-12, "{line}: {value} in column {place}");
             compared += 1;
         }
@@ -60,12 +60,12 @@ fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
         ("seed", 0.068_017_581_9, 0.546_059_661_7, 0.999_836_39),
         ("soft", 0.059_887_797_8, 0.379_067_506_0, 0.625),
     ] {
-        let (found_time, found) = slab(case).pressure_peak().expect("a peak");
-        assert!((found - height).abs() < 1e-10, "{case}: {found}");
-        assert!((found_time * share / time - 1.0).abs() < 1e-6, "{case}: {found_time}");
+        let (peak_time, peak) = slab(case).pressure_peak().expect("a peak");
+        assert!((peak - height).abs() < 1e-10, "{case}: {peak}");
+        assert!((peak_time * share / time - 1.0).abs() < 1e-6, "{case}: {peak_time}");
         // Lower on both sides, by no second formula.
         for aside in [0.99, 1.01] {
-            assert!(slab(case).ratios(aside * found_time, 0.0).expect("inside").pressure < found);
+            assert!(slab(case).ratios(aside * peak_time, 0.0).expect("inside").pressure < peak);
         }
     }
     let seed = ColumnParameters::default();
@@ -151,12 +151,12 @@ fn by_laplace(slab: &Mandel, time: f64, distance: f64) -> [f64; 4] {
         let s = z / time;
         let r = elementary::sqrt_complex(s);
         let exp = |way: f64| elementary::exp_complex(-r * way);
-        let one = Complex::new(1.0, 0.0);
-        let whole = one + exp(2.0);
-        let tanh = (one - exp(2.0)) / whole;
+        let unit = Complex::new(1.0, 0.0);
+        let denominator = unit + exp(2.0);
+        let tanh = (unit - exp(2.0)) / denominator;
         let plates = (r * (r - tanh * kappa)).inv();
-        let shape = (exp(1.0 - distance) + exp(1.0 + distance)) / whole;
-        let within = (exp(1.0 - distance) - exp(1.0 + distance)) / whole / r;
+        let shape = (exp(1.0 - distance) + exp(1.0 + distance)) / denominator;
+        let within = (exp(1.0 - distance) - exp(1.0 + distance)) / denominator / r;
         for (sum, value) in sums.iter_mut().zip([plates, plates * shape, plates * within]) {
             *sum += (weight * value).re / time;
         }
@@ -172,9 +172,9 @@ fn the_laplace_transform_gives_the_same_fields() {
     for slab in extremes() {
         for time in [1e-4, 3e-3, 0.019, 0.021, 0.3, 4.0] {
             for distance in [0.0, 0.4, 0.9, 1.0] {
-                let found =
-                    fields_of(slab.ratios(time / slab.groups.storage_ratio, distance).expect("inside"));
-                for (value, other) in found.into_iter().zip(by_laplace(&slab, time, distance)) {
+                let computed =
+                    to_array(slab.ratios(time / slab.groups.storage_ratio, distance).expect("inside"));
+                for (value, other) in computed.into_iter().zip(by_laplace(&slab, time, distance)) {
                     assert!((value - other).abs() < 2e-12, "{slab:?} {time} {distance}: {value} for {other}");
                 }
             }
@@ -188,8 +188,8 @@ fn the_closed_form_of_short_times_is_the_series() {
         for time in [1e-6, 1e-4, 0.005, 0.02, 0.03] {
             for distance in [0.0, 0.5, 0.98, 1.0] {
                 let terms = series::terms(time);
-                let long = fields_of(series::sum(&slab.groups, time, distance, terms));
-                let closed = fields_of(early::ratios(&slab.groups, time, distance));
+                let long = to_array(series::sum(&slab.groups, time, distance, terms));
+                let closed = to_array(early::ratios(&slab.groups, time, distance));
                 for (value, other) in long.into_iter().zip(closed) {
                     let rest = series::bound(time, terms) + early::bound(&slab.groups, time);
                     assert!(
@@ -207,17 +207,17 @@ fn what_is_left_out_is_within_its_bound() {
     for slab in extremes() {
         for distance in [0.0, 0.7, 1.0] {
             let time = 0.1;
-            let whole = fields_of(series::sum(&slab.groups, time, distance, 20));
+            let converged = to_array(series::sum(&slab.groups, time, distance, 20));
             for terms in 1..4 {
-                let cut = fields_of(series::sum(&slab.groups, time, distance, terms));
+                let cut = to_array(series::sum(&slab.groups, time, distance, terms));
                 let bound = series::bound(time, terms);
-                for (value, other) in cut.into_iter().zip(whole) {
+                for (value, other) in cut.into_iter().zip(converged) {
                     assert!((value - other).abs() <= bound + 1e-15, "{terms}: {value} for {other}, {bound}");
                 }
             }
             // Later than it is used, where what it leaves out shows.
-            let closed = fields_of(early::ratios(&slab.groups, time, distance));
-            for (value, other) in closed.into_iter().zip(whole) {
+            let closed = to_array(early::ratios(&slab.groups, time, distance));
+            for (value, other) in closed.into_iter().zip(converged) {
                 let bound = early::bound(&slab.groups, time);
                 assert!(
                     (value - other).abs() <= bound + 1e-14 && bound < 0.1,
@@ -244,8 +244,8 @@ fn every_root_is_one_and_in_its_place() {
     }
     // methods: α_0 of both materials.
     for (case, root) in [("seed", 1.324_225_891_702_15), ("soft-water", 1.402_652_657_454_25)] {
-        let found = 0.5 * PI - series::gap_below_pole(slab(case).groups.kappa, 0);
-        assert!((found - root).abs() < 1e-13, "{case}: {found}");
+        let computed = 0.5 * PI - series::gap_below_pole(slab(case).groups.kappa, 0);
+        assert!((computed - root).abs() < 1e-13, "{case}: {computed}");
     }
 }
 

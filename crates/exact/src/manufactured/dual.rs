@@ -23,7 +23,7 @@ pub trait Number:
     /// A number that does not vary.
     fn constant(value: f64) -> Self;
 
-    /// One over it.
+    /// Reciprocal.
     #[must_use]
     fn recip(self) -> Self;
 
@@ -60,19 +60,19 @@ pub struct Jet {
     bend: [Four; PAIRS.len()],
 }
 
-/// Pairs of directions: their order is of no matter.
+/// Unordered pairs of directions.
 const PAIRS: [[usize; 2]; 6] = [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]];
 /// Number of each pair, `[direction][direction]`.
 const PAIR_OF: [[usize; DIRECTIONS]; DIRECTIONS] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 
-/// An array from its places.
+/// An array of a component per direction.
 #[inline(always)]
-fn each<T>(of: impl Fn(usize) -> T) -> [T; DIRECTIONS] {
-    [of(0), of(1), of(2)]
+fn each<T>(component: impl Fn(usize) -> T) -> [T; DIRECTIONS] {
+    [component(0), component(1), component(2)]
 }
 
 impl<T: Number> Dual<T> {
-    /// A function of it, given the function's value and derivative there.
+    /// A function of the number by the chain rule, from the value and derivative of the function.
     #[inline(always)]
     fn chain(self, value: T, derivative: T) -> Self {
         Self { value, slope: each(|i| derivative * self.slope[i]) }
@@ -86,8 +86,7 @@ impl<T: Number> Dual<T> {
 }
 
 impl Slope {
-    /// The slopes of the natural logarithm alone, about a value of zero: where only they are asked for, the logarithm
-    /// need not be taken.
+    /// The slopes of the natural logarithm, with a value of zero: no logarithm is evaluated.
     #[inline(always)]
     pub fn ln_slopes(self) -> Self {
         self.chain(Four::all(0.0), self.value.recip())
@@ -95,9 +94,13 @@ impl Slope {
 }
 
 impl Jet {
-    /// Its parts from those of other jets.
+    /// A jet from its value, its slopes by direction and its second derivatives by number and pair.
     #[inline(always)]
-    fn of(value: Four, slope: impl Fn(usize) -> Four, bend: impl Fn(usize, [usize; 2]) -> Four) -> Self {
+    fn from_parts(
+        value: Four,
+        slope: impl Fn(usize) -> Four,
+        bend: impl Fn(usize, [usize; 2]) -> Four,
+    ) -> Self {
         let pair = |number: usize| bend(number, PAIRS[number]);
         let bend = [pair(0), pair(1), pair(2), pair(3), pair(4), pair(5)];
         Self { value, slope: each(slope), bend }
@@ -122,12 +125,12 @@ impl Jet {
         Self { value, slope, bend: [zero; PAIRS.len()] }
     }
 
-    /// It times the coordinate of a direction, at a value.
+    /// Product with the coordinate of a direction, at a value.
     #[inline(always)]
     pub fn times_coordinate(self, direction: usize, value: Four) -> Self {
         let along =
             |i: usize, part: Four, by: Four| if i == direction { part * value + by } else { part * value };
-        Self::of(
+        Self::from_parts(
             self.value * value,
             #[inline(always)]
             |i| along(i, self.slope[i], self.value),
@@ -145,10 +148,10 @@ impl Jet {
         Slope { value: self.slope[direction], slope: each(|i| self.bend[PAIR_OF[direction][i]]) }
     }
 
-    /// A function of it, given the function's value and first two derivatives there.
+    /// A function of the jet by the chain rule, from the value and the first two derivatives of the function.
     #[inline(always)]
     fn chain(self, value: Four, first: Four, second: Four) -> Self {
-        Self::of(
+        Self::from_parts(
             value,
             #[inline(always)]
             |i| first * self.slope[i],
@@ -165,13 +168,13 @@ impl Jet {
         [self.chain(sine, cosine, less_sine), self.chain(cosine, less_sine, less_cosine)]
     }
 
-    /// `inside` where a number is positive, elsewhere `outside`.
+    /// `inside` at places with a positive number, `outside` at the others.
     #[inline(always)]
     pub fn where_positive(number: Four, inside: Self, outside: Self) -> Self {
         let pick = |inside: Four, outside: Four| {
             four(|place| if number.0[place] > 0.0 { inside.0[place] } else { outside.0[place] })
         };
-        Self::of(
+        Self::from_parts(
             pick(inside.value, outside.value),
             #[inline(always)]
             |i| pick(inside.slope[i], outside.slope[i]),
@@ -185,7 +188,7 @@ impl Add for Jet {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self::of(
+        Self::from_parts(
             self.value + other.value,
             #[inline(always)]
             |i| self.slope[i] + other.slope[i],
@@ -199,7 +202,7 @@ impl Sub for Jet {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self::of(
+        Self::from_parts(
             self.value - other.value,
             #[inline(always)]
             |i| self.slope[i] - other.slope[i],
@@ -315,10 +318,10 @@ pub const PLACES: usize = 4;
 #[must_use]
 pub struct Four(pub [f64; PLACES]);
 
-/// The numbers of four places from those of each.
+/// The numbers of four places from a function of the place.
 #[inline(always)]
-fn four(of: impl Fn(usize) -> f64) -> Four {
-    Four([of(0), of(1), of(2), of(3)])
+fn four(value: impl Fn(usize) -> f64) -> Four {
+    Four([value(0), value(1), value(2), value(3)])
 }
 
 impl Four {
@@ -497,8 +500,12 @@ mod tests {
         assert_same(&turned, &expected);
         let picked = Jet::where_positive(x, turned, sine);
         for place in 0..PLACES {
-            let of = |jet: &Jet| jet.derivative(0).slope[TIME].0[place];
-            assert_eq!(of(&picked), of(if x.0[place] > 0.0 { &turned } else { &sine }), "{place}");
+            let mixed_derivative = |jet: &Jet| jet.derivative(0).slope[TIME].0[place];
+            assert_eq!(
+                mixed_derivative(&picked),
+                mixed_derivative(if x.0[place] > 0.0 { &turned } else { &sine }),
+                "{place}"
+            );
         }
     }
 
@@ -510,7 +517,7 @@ mod tests {
         });
         let (quotient, logarithm) = (a * b.recip(), b.ln());
         for place in 0..PLACES {
-            let value = |of: Four| of.0[place];
+            let value = |numbers: Four| numbers.0[place];
             let divisor = value(b.value);
             assert!((value(logarithm.value) - divisor.ln()).abs() < 1e-15);
             for i in 0..DIRECTIONS {

@@ -1,12 +1,12 @@
 //! Manufactured solutions: prescribed motions at large strain in the plane, with the body forces that make them exact.
 //!
 //! A motion of the unit square and a pore pressure are written down; velocities, porosity, flux, stresses and
-//! accelerations follow from them, and whatever is left of the balances is put on the body as body forces of
-//! mixture and water and as a source of water (docs/theory.md, Eqs 24–27). Points move through the mesh in both
-//! directions and come back; no wall moves, and no front, load or surface spoils the reading.
+//! accelerations follow from them, and the residuals of the balances act on the body as body forces of mixture and water
+//! and as a source of water (docs/theory.md, Eqs 24–27). Points move through the mesh in both directions and return; no
+//! wall moves, and no front, load or surface limits the order of convergence.
 //!
-//! `dual` is the arithmetic with derivatives, `motion` has the motions, their inverse and which law goes with which,
-//! `motion_state` what follows from a motion at a point and time.
+//! `dual` is the arithmetic with derivatives, `motion` has the motions, their inverses and the laws that each supports,
+//! `motion_state` the quantities that follow from a motion at a point and time.
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
@@ -15,7 +15,7 @@ pub mod motion;
 pub mod motion_state;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::inputs::LAW;
+use crate::inputs::LAW_KEY;
 use crate::manufactured::dual::PLACES;
 use crate::manufactured::motion::{ManufacturedModel, Moment, Spot, Spots};
 use crate::manufactured::motion_state::{Soil, State, States};
@@ -23,9 +23,9 @@ use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use std::f64::consts::PI;
 
-/// Keys that it reads.
+/// Study keys that the solution reads.
 pub(crate) const INPUTS: &[&[&str]] = &[
-    LAW,
+    LAW_KEY,
     &[
         "youngs_modulus",
         "poissons_ratio",
@@ -38,7 +38,7 @@ pub(crate) const INPUTS: &[&[&str]] = &[
     ],
 ];
 
-/// Intervals of the grid on which volumes are looked at.
+/// Intervals of the grid on which volume ratios are checked.
 const GRID: u32 = 40;
 /// Round-off of the fields over their scales.
 const ROUND_OFF: f64 = 1e-14;
@@ -62,7 +62,7 @@ impl Manufactured {
         if !model.has_law() {
             return Err(ExactError::LawOfMotion { law: model.law.name(), motion: model.motion.name() });
         }
-        let soil = Soil::of(parameters);
+        let soil = Soil::new(parameters);
         let solution = Self { model, parameters: *parameters, soil };
         let least = solution.least_volume_ratio();
         // NaN is refused too.
@@ -87,20 +87,20 @@ impl Manufactured {
         self.parameters.time(time_factor)
     }
 
-    /// All that follows from motion and pressure for the point `X` (m) of the skeleton at a time, s.
+    /// State of the point `X` (m) of the skeleton at a time, s.
     pub fn state_at(&self, place: [f64; 2], time: f64) -> State {
-        State::first_of(self.states_of(&Spots::of(&[Spot::of(place); PLACES]), &self.moment(time)))
+        State::from_first(self.states_at(&Spots::new(&[Spot::new(place); PLACES]), &self.moment(time)))
     }
 
-    /// The states of four points at a time, with what depends on place or time alone known already.
+    /// The states of four points at a time, from precomputed functions of place and time.
     #[inline(always)]
-    pub fn states_of(&self, spots: &Spots, moment: &Moment) -> States {
-        States::of(self.model, &self.parameters, &self.soil, spots, moment)
+    pub fn states_at(&self, spots: &Spots, moment: &Moment) -> States {
+        States::new(self.model, &self.parameters, &self.soil, spots, moment)
     }
 
-    /// What all points take of a time, s.
+    /// The functions of a time, s, that all points share.
     pub fn moment(&self, time: f64) -> Moment {
-        Moment::of(self.parameters.motion.frequency, time)
+        Moment::new(self.parameters.motion.frequency, time)
     }
 
     /// The point `X` of the skeleton that is at a place at a time, from a guess, m.
@@ -164,9 +164,9 @@ impl Solution for Manufactured {
         Ok(sine * sine)
     }
 
-    /// A formula: no terms, and what round-off leaves.
+    /// A formula without terms: only round-off.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        checked_time_factor(time_factor).map(|_| Accuracy::of(0, ROUND_OFF))
+        checked_time_factor(time_factor).map(|_| Accuracy::new(0, ROUND_OFF))
     }
 
     /// Largest displacement of a point, m.
@@ -178,7 +178,7 @@ impl Solution for Manufactured {
         Some(1.0 - (1.0 - self.parameters.soil.porosity) / self.least_volume_ratio())
     }
 
-    /// Its degree is a share of its motion, and nothing consolidates.
+    /// Nothing consolidates: the degree is the share of the largest displacement.
     fn has_degree(&self) -> bool {
         false
     }

@@ -1,7 +1,7 @@
 //! Prescribed motions of the unit square.
 //!
-//! What the formulas take of a place ([`Spot`]) and of a time ([`Moment`]) is made once for a point and once a step:
-//! no sine is left where points and times meet, but those of an angle that is of both.
+//! The functions of the place alone ([`Spot`]) are evaluated once per point, those of the time alone ([`Moment`]) once per
+//! step. The only sines left per point and step are those of an angle that depends on both.
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
@@ -12,10 +12,10 @@ use oedometer_soil::law::Law;
 use oedometer_soil::wording::words;
 use std::f64::consts::PI;
 
-/// Corrections after which a place is found or never is.
+/// Most iterations for the inverse of a motion.
 const MOST_CORRECTIONS: usize = 50;
-/// Correction, m, after which a place is found to round-off: what it leaves is of its square.
-const FOUND: f64 = 1e-7;
+/// Correction, m, below which the inverse has converged to round-off: the remaining error is quadratic in it.
+const CORRECTION_TOLERANCE: f64 = 1e-7;
 /// Middle of the square, m.
 const MIDDLE: f64 = 0.5;
 
@@ -41,8 +41,8 @@ pub struct ManufacturedModel {
 }
 
 impl ManufacturedModel {
-    /// A motion with the law that it has where nobody names one: of the constant modulus where nothing shears.
-    pub const fn of(motion: Motion) -> Self {
+    /// A motion with its default law: log-linear if nothing shears, neo-Hookean otherwise.
+    pub const fn with_default_law(motion: Motion) -> Self {
         let law = match motion {
             Motion::Box => Law::LogLinear,
             Motion::Shear | Motion::Vortex => Law::NeoHookean,
@@ -75,9 +75,9 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// Of a point, m.
+    /// The functions of a point, m.
     #[inline]
-    pub fn of(place: [f64; 2]) -> Self {
+    pub fn new(place: [f64; 2]) -> Self {
         let [(sine_x, cosine_x), (sine_y, cosine_y)] = place.map(|along| elementary::sincos(PI * along));
         Self { place, sine: [sine_x, sine_y], cosine: [cosine_x, cosine_y] }
     }
@@ -92,17 +92,17 @@ pub struct Spots {
 }
 
 impl Spots {
-    /// Of four points.
+    /// Four points side by side.
     #[inline(always)]
-    pub fn of(spots: &[Spot; PLACES]) -> Self {
-        let four = |of: fn(&Spot) -> [f64; 2], d: usize| {
-            Four([of(&spots[0])[d], of(&spots[1])[d], of(&spots[2])[d], of(&spots[3])[d]])
+    pub fn new(spots: &[Spot; PLACES]) -> Self {
+        let lanes = |vector: fn(&Spot) -> [f64; 2], d: usize| {
+            Four([vector(&spots[0])[d], vector(&spots[1])[d], vector(&spots[2])[d], vector(&spots[3])[d]])
         };
-        let both = |of: fn(&Spot) -> [f64; 2]| [four(of, 0), four(of, 1)];
+        let axes = |vector: fn(&Spot) -> [f64; 2]| [lanes(vector, 0), lanes(vector, 1)];
         Self {
-            place: both(|spot| spot.place),
-            sine: both(|spot| spot.sine),
-            cosine: both(|spot| spot.cosine),
+            place: axes(|spot| spot.place),
+            sine: axes(|spot| spot.sine),
+            cosine: axes(|spot| spot.cosine),
         }
     }
 
@@ -125,7 +125,7 @@ impl Spots {
     }
 }
 
-/// A time with what the formulas take of it, each as value and two derivatives.
+/// The functions of the time alone, each as value and two derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// `sin²(ωt)`: how much of the motion is there.
@@ -135,8 +135,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Of a time, s, at a frequency, rad/s.
-    pub fn of(frequency: f64, time: f64) -> Self {
+    /// The functions of a time, s, at a frequency, rad/s.
+    pub fn new(frequency: f64, time: f64) -> Self {
         let (sine, _) = elementary::sincos(frequency * time);
         let double = 2.0 * frequency;
         let (beat, cosine) = elementary::sincos(double * time);
@@ -147,7 +147,7 @@ impl Moment {
     }
 }
 
-/// A factor of all three.
+/// Product of a factor with a value and its two derivatives.
 #[inline]
 fn times(factor: f64, function: [f64; 3]) -> [f64; 3] {
     function.map(|value| factor * value)
@@ -178,8 +178,8 @@ impl Motion {
         ]
     }
 
-    /// The points `X` of the skeleton that are at four places at a time, m, looked for from guesses by Newton's
-    /// iteration; not a number where the place is no point's.
+    /// The points `X` of the skeleton that are at four places at a time, m, by Newton's iteration from guesses; NaN if no
+    /// point is at the place.
     #[inline(always)]
     pub fn material_places(
         self,
@@ -188,10 +188,10 @@ impl Motion {
         moment: &Moment,
         guesses: &[[f64; 2]; PLACES],
     ) -> [[f64; 2]; PLACES] {
-        let (mut at, mut found) = (*guesses, [[f64::NAN; 2]; PLACES]);
-        let mut is_found = [false; PLACES];
+        let (mut at, mut points) = (*guesses, [[f64::NAN; 2]; PLACES]);
+        let mut has_converged = [false; PLACES];
         for _ in 0..MOST_CORRECTIONS {
-            let [x, y] = self.place(parameters, &Spots::of(&at.map(Spot::of)), moment);
+            let [x, y] = self.place(parameters, &Spots::new(&at.map(Spot::new)), moment);
             let off = |d: usize, jet: &Jet| {
                 Four([places[0][d], places[1][d], places[2][d], places[3][d]]) - jet.value
             };
@@ -203,18 +203,18 @@ impl Motion {
             for place in 0..PLACES {
                 let correction = [correction_x.0[place], correction_y.0[place]];
                 at[place] = [at[place][0] + correction[0], at[place][1] + correction[1]];
-                if !is_found[place] && correction[0].abs() + correction[1].abs() < FOUND {
-                    (found[place], is_found[place]) = (at[place], true);
+                if !has_converged[place] && correction[0].abs() + correction[1].abs() < CORRECTION_TOLERANCE {
+                    (points[place], has_converged[place]) = (at[place], true);
                 }
             }
-            if is_found == [true; PLACES] {
+            if has_converged == [true; PLACES] {
                 break;
             }
         }
-        found
+        points
     }
 
-    /// Largest displacement of a point, m: what displacements are measured by.
+    /// Largest displacement of a point, m: the scale of displacements.
     pub fn largest_displacement(self, parameters: &MotionParameters) -> f64 {
         match self {
             Self::Box | Self::Shear => parameters.amplitude_x.abs().max(parameters.amplitude_y.abs()) / PI,

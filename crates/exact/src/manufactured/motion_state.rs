@@ -7,7 +7,7 @@ use crate::manufactured::motion::{ManufacturedModel, Moment, Spots};
 use crate::parameters::ColumnParameters;
 use oedometer_soil::law::Law;
 
-/// What the balances take of the soil.
+/// Parameters of the soil in the balances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Soil {
     /// Lamé's first parameter, Pa.
@@ -27,8 +27,8 @@ pub struct Soil {
 }
 
 impl Soil {
-    /// Of parameters.
-    pub fn of(parameters: &ColumnParameters) -> Self {
+    /// The soil of a column.
+    pub fn new(parameters: &ColumnParameters) -> Self {
         let shear = parameters.soil.youngs_modulus / (2.0 * (1.0 + parameters.soil.poissons_ratio));
         Self {
             lame: parameters.soil.oedometric_modulus() - 2.0 * shear,
@@ -53,8 +53,8 @@ pub enum Inertia {
     None,
 }
 
-/// The states of four points of the skeleton. Vectors are `[component]`, tensors `[row][column]`. What few ask for is
-/// made where it is asked for.
+/// The states of four points of the skeleton. Vectors are `[component]`, tensors `[row][column]`. Rarely needed quantities
+/// are methods.
 #[derive(Clone, Copy, Debug)]
 pub struct States {
     soil: Soil,
@@ -73,16 +73,16 @@ pub struct States {
     flux: [Slope; 2],
 }
 
-/// A vector or a row from its places.
+/// A vector or a row of a tensor from a function of the component.
 #[inline(always)]
-fn both<T>(of: impl Fn(usize) -> T) -> [T; 2] {
-    [of(0), of(1)]
+fn pair<T>(component: impl Fn(usize) -> T) -> [T; 2] {
+    [component(0), component(1)]
 }
 
 impl States {
-    /// Of four points and a time (docs/theory.md, Eqs 24 and 25).
+    /// The states of four points at a time (docs/theory.md, Eqs 24 and 25).
     #[inline(always)]
-    pub fn of(
+    pub fn new(
         model: ManufacturedModel,
         parameters: &ColumnParameters,
         soil: &Soil,
@@ -92,15 +92,15 @@ impl States {
         let position = model.motion.place(&parameters.motion, spots, moment);
         let pressure =
             Jet::growing(&spots.pressure_shape(), moment.beat.map(|value| parameters.load * value));
-        let [xx, xy] = both(|d| position[0].derivative(d));
-        let [yx, yy] = both(|d| position[1].derivative(d));
+        let [xx, xy] = pair(|d| position[0].derivative(d));
+        let [yx, yy] = pair(|d| position[1].derivative(d));
         let deformation = [[xx, xy], [yx, yy]];
         let volume_ratio = xx * yy - xy * yx;
         let per_volume = volume_ratio.recip();
         let inverse_deformation =
             [[yy * per_volume, xy * per_volume * -1.0], [yx * per_volume * -1.0, xx * per_volume]];
         // grad p = F⁻ᵀ grad_X p
-        let [along_x, along_y] = both(|d| pressure.derivative(d));
+        let [along_x, along_y] = pair(|d| pressure.derivative(d));
         let pressure_gradient = [
             inverse_deformation[0][0] * along_x + inverse_deformation[1][0] * along_y,
             inverse_deformation[0][1] * along_x + inverse_deformation[1][1] * along_y,
@@ -139,17 +139,17 @@ impl States {
 
     #[inline(always)]
     fn solid_velocity_slope(&self) -> [Slope; 2] {
-        both(|i| self.position[i].derivative(TIME))
+        pair(|i| self.position[i].derivative(TIME))
     }
 
     #[inline(always)]
     fn water_velocity_slope(&self) -> [Slope; 2] {
         let per_porosity = self.porosity.recip();
-        both(|i| self.position[i].derivative(TIME) + self.flux[i] * per_porosity)
+        pair(|i| self.position[i].derivative(TIME) + self.flux[i] * per_porosity)
     }
 
-    /// Effective stress of the law from the deformation gradient; `logarithm` is that of a stretch, whose value counts
-    /// in the stress and not in its slopes.
+    /// Effective stress of the law from the deformation gradient; `logarithm` is applied to stretches. Its value enters the
+    /// stress but not the slopes of the stress.
     #[inline(always)]
     fn stress(&self, logarithm: impl Fn(Slope) -> Slope) -> [[Slope; 2]; 2] {
         let (soil, deformation) = (&self.soil, &self.deformation);
@@ -161,17 +161,17 @@ impl States {
                 for j in 0..2 {
                     let [left, right] = [&deformation[i], &deformation[j]];
                     let stretch = (left[0] * right[0] + left[1] * right[1]) * soil.shear;
-                    let whole = if i == j { stretch + pressure } else { stretch };
-                    stress[i][j] = whole * self.per_volume;
+                    let kirchhoff = if i == j { stretch + pressure } else { stretch };
+                    stress[i][j] = kirchhoff * self.per_volume;
                 }
             }
             return stress;
         }
         // Without shear or spin: 2μ ln F_ii + λ ln J, and J = F_xx F_yy.
-        let logarithms = both(|i| logarithm(deformation[i][i]));
+        let logarithms = pair(|i| logarithm(deformation[i][i]));
         let volumetric = (logarithms[0] + logarithms[1]) * soil.lame;
-        both(|i| {
-            both(
+        pair(|i| {
+            pair(
                 |j| {
                     if i == j {
                         logarithms[i] * (2.0 * soil.shear) + volumetric
@@ -183,33 +183,33 @@ impl States {
         })
     }
 
-    /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: what is left of the
-    /// momentum balances with some of their accelerations (docs/theory.md, Eq. 26). Rates follow the skeleton.
+    /// Body forces on the mixture, N per m³ of mixture, and on the water, N per m³ of water: the residuals of the momentum
+    /// balances with the accelerations that `inertia` keeps (docs/theory.md, Eq. 26). Rates follow the skeleton.
     #[inline(always)]
     pub fn body_forces(&self, inertia: Inertia) -> [[Four; 2]; 2] {
         let soil = &self.soil;
         let porosity = self.porosity.value;
         let still = [Four::all(0.0); 2];
-        let of_skeleton = || both(|i| self.position[i].derivative(TIME).slope[TIME]);
-        let [of_grains, of_water] = match inertia {
+        let skeleton_acceleration = || pair(|i| self.position[i].derivative(TIME).slope[TIME]);
+        let [grain_acceleration, water_acceleration] = match inertia {
             Inertia::Both => {
                 let velocity = self.water_velocity_slope();
-                [of_skeleton(), both(|i| velocity[i].slope[TIME])]
+                [skeleton_acceleration(), pair(|i| velocity[i].slope[TIME])]
             }
-            Inertia::Skeleton => [of_skeleton(); 2],
+            Inertia::Skeleton => [skeleton_acceleration(); 2],
             Inertia::None => [still; 2],
         };
         let stress = self.stress(Slope::ln_slopes);
-        let water = both(|i| of_water[i] * soil.water_density);
-        let mixture = both(|i| {
-            let grains = (Four::all(1.0) - porosity) * soil.grain_density * of_grains[i];
+        let water = pair(|i| water_acceleration[i] * soil.water_density);
+        let mixture = pair(|i| {
+            let grains = (Four::all(1.0) - porosity) * soil.grain_density * grain_acceleration[i];
             grains + porosity * water[i] - self.divergence(&stress[i]) + self.pressure_gradient[i].value
         });
         // The drag balances the pressure gradient: no more is left for the water.
         [mixture, water]
     }
 
-    /// Source of water, volume per volume of mixture and second: what is left of the continuity
+    /// Source of water, volume per volume of mixture and second: the residual of the continuity equation
     /// (docs/theory.md, Eq. 27).
     #[inline(always)]
     pub fn source(&self) -> Four {
@@ -224,14 +224,14 @@ impl States {
 pub struct State(States);
 
 impl State {
-    /// Of the first of four points.
-    pub fn first_of(states: States) -> Self {
+    /// The state of the first of four points.
+    pub fn from_first(states: States) -> Self {
         Self(states)
     }
 
     /// Present place, m.
     pub fn position(&self) -> [f64; 2] {
-        both(|i| self.0.position[i].value.first())
+        pair(|i| self.0.position[i].value.first())
     }
 
     /// Volume ratio `J`.

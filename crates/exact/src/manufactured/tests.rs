@@ -13,7 +13,7 @@ use oedometer_soil::material::Material;
 const STEP: f64 = 2.5e-3;
 /// Weights of the central difference of eighth order.
 const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-/// Residual that is let go, over sizes of some ones.
+/// Largest accepted residual; the terms are of order 1.
 const RESIDUAL: f64 = 1e-11;
 
 fn parameters(amplitudes: [f64; 3]) -> ColumnParameters {
@@ -37,14 +37,14 @@ fn parameters(amplitudes: [f64; 3]) -> ColumnParameters {
 }
 
 fn solutions() -> Vec<Manufactured> {
-    let of = |motion, law, amplitudes| {
+    let solution = |motion, law, amplitudes| {
         Manufactured::new(ManufacturedModel { motion, law }, &parameters(amplitudes)).expect("possible")
     };
     vec![
-        of(Motion::Box, Law::LogLinear, [0.25, 0.25, 0.0]),
-        of(Motion::Box, Law::NeoHookean, [0.3, -0.2, 0.0]),
-        of(Motion::Shear, Law::NeoHookean, [0.25, -0.2, 0.0]),
-        of(Motion::Vortex, Law::NeoHookean, [0.0, 0.0, 1.5]),
+        solution(Motion::Box, Law::LogLinear, [0.25, 0.25, 0.0]),
+        solution(Motion::Box, Law::NeoHookean, [0.3, -0.2, 0.0]),
+        solution(Motion::Shear, Law::NeoHookean, [0.25, -0.2, 0.0]),
+        solution(Motion::Vortex, Law::NeoHookean, [0.0, 0.0, 1.5]),
     ]
 }
 
@@ -59,10 +59,10 @@ fn samples() -> impl Iterator<Item = ([f64; 2], f64)> {
 }
 
 /// Derivative at zero.
-fn derivative(of: impl Fn(f64) -> f64) -> f64 {
+fn derivative(function: impl Fn(f64) -> f64) -> f64 {
     let terms = WEIGHTS.iter().zip(1..).map(|(weight, i)| {
         let step = f64::from(i) * STEP;
-        weight * (of(step) - of(-step))
+        weight * (function(step) - function(-step))
     });
     terms.sum::<f64>() / STEP
 }
@@ -78,29 +78,29 @@ impl Here<'_> {
         self.solution.state_at(self.place, self.time)
     }
 
-    /// What is at a present place.
+    /// State of the point that is at a position.
     fn at(&self, position: [f64; 2], time: f64) -> State {
-        let found = self.solution.material_place(position, &self.solution.moment(time), self.place);
-        self.solution.state_at(found, time)
+        let material = self.solution.material_place(position, &self.solution.moment(time), self.place);
+        self.solution.state_at(material, time)
     }
 
     /// Derivative along a direction of the current configuration.
-    fn along(&self, direction: usize, of: &dyn Fn(&State) -> f64) -> f64 {
+    fn along(&self, direction: usize, quantity: &dyn Fn(&State) -> f64) -> f64 {
         let position = self.now().position();
         derivative(|step| {
             let mut moved = position;
             moved[direction] += step;
-            of(&self.at(moved, self.time))
+            quantity(&self.at(moved, self.time))
         })
     }
 
     /// Rate that follows the skeleton.
-    fn rate(&self, of: &dyn Fn(&State) -> f64) -> f64 {
-        derivative(|step| of(&self.solution.state_at(self.place, self.time + step)))
+    fn rate(&self, quantity: &dyn Fn(&State) -> f64) -> f64 {
+        derivative(|step| quantity(&self.solution.state_at(self.place, self.time + step)))
     }
 
-    fn divergence(&self, of: &dyn Fn(&State) -> [f64; 2]) -> f64 {
-        (0..2).map(|d| self.along(d, &|state| of(state)[d])).sum()
+    fn divergence(&self, quantity: &dyn Fn(&State) -> [f64; 2]) -> f64 {
+        (0..2).map(|d| self.along(d, &|state| quantity(state)[d])).sum()
     }
 }
 
@@ -264,9 +264,11 @@ fn what_is_no_solution_is_refused_in_a_sentence() {
     assert!(refused(model(Motion::Box, Law::Linear), &plain).contains("not known in closed form"));
     // J = (1 − 0.5)² = 0.25 < 1 − n_0 = 0.4
     let wide = parameters([0.5, 0.5, 0.0]);
-    assert!(refused(ManufacturedModel::of(Motion::Box), &wide).contains("would close the pores"));
+    assert!(
+        refused(ManufacturedModel::with_default_law(Motion::Box), &wide).contains("would close the pores")
+    );
     let still = ColumnParameters { motion: MotionParameters::default(), ..plain };
-    assert!(refused(ManufacturedModel::of(Motion::Box), &still).contains("frequency"));
+    assert!(refused(ManufacturedModel::with_default_law(Motion::Box), &still).contains("frequency"));
     let sound = &solutions()[0];
     assert!(sound.fields(-1.0, 0.5).is_err() && sound.fields(0.1, 1.5).is_err());
     assert!(sound.plane_fields(0.1, [f64::NAN, 0.5]).is_err());
@@ -279,17 +281,22 @@ fn four_places_have_the_bits_of_each_alone() {
     for solution in solutions() {
         let motion = solution.model;
         let moment = solution.moment(0.55);
-        let together = solution.states_of(&Spots::of(&places.map(Spot::of)), &moment);
+        let together = solution.states_at(&Spots::new(&places.map(Spot::new)), &moment);
         let [forces, source] = [together.body_forces(Inertia::Both).concat(), vec![together.source()]];
         let guesses = places.map(|[x, y]| [x + 0.01, y - 0.02]);
-        let found = solution.material_places(&places, &moment, &guesses);
+        let material = solution.material_places(&places, &moment, &guesses);
         for (lane, place) in places.into_iter().enumerate() {
             let alone = solution.state_at(place, 0.55);
-            let of_lane = |fours: &[Four]| -> Vec<f64> { fours.iter().map(|four| four.0[lane]).collect() };
-            assert_eq!(of_lane(&forces), alone.body_forces(Inertia::Both).concat(), "{motion:?}, {place:?}");
-            assert_eq!(of_lane(&source), [alone.source()], "{motion:?}, {place:?}");
+            let lane_values =
+                |fours: &[Four]| -> Vec<f64> { fours.iter().map(|four| four.0[lane]).collect() };
             assert_eq!(
-                found[lane],
+                lane_values(&forces),
+                alone.body_forces(Inertia::Both).concat(),
+                "{motion:?}, {place:?}"
+            );
+            assert_eq!(lane_values(&source), [alone.source()], "{motion:?}, {place:?}");
+            assert_eq!(
+                material[lane],
                 solution.material_place(place, &moment, guesses[lane]),
                 "{motion:?}, {place:?}"
             );
@@ -297,7 +304,7 @@ fn four_places_have_the_bits_of_each_alone() {
                 let is_inside = (place[0] - 0.5).hypot(place[1] - 0.5) < 0.5;
                 assert_eq!(alone.position() != place, is_inside, "{place:?}");
             }
-            let back = solution.state_at(found[lane], 0.55).position();
+            let back = solution.state_at(material[lane], 0.55).position();
             assert!((back[0] - place[0]).abs() + (back[1] - place[1]).abs() < 1e-13, "{motion:?}, {place:?}");
         }
     }

@@ -3,15 +3,15 @@
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::inputs::OF_COLUMN;
+use crate::inputs::COLUMN_KEYS;
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{self, exp, hypot, j0, j1, ln, y0, y1};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, &["radius"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, &["radius"]];
 
 /// Roots that are known.
 const MOST_TERMS: usize = 1000;
@@ -109,7 +109,7 @@ impl Solution for Barron {
     /// Closed form; a thin cylinder cancels digits of `μ`.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         self.mean(time_factor)?;
-        Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON / self.spacing, ..Accuracy::of(1, 0.0) })
+        Ok(Accuracy { phase_bound: 8.0 * f64::EPSILON / self.spacing, ..Accuracy::new(1, 0.0) })
     }
 }
 
@@ -146,11 +146,11 @@ impl BarronFreeStrain {
         Ok(Self { cylinder, modes: (0..MOST_TERMS).map(mode).collect() })
     }
 
-    /// Sum over the modes of what `of` gives for each, decayed; the small ones first.
-    fn sum(&self, time_factor: f64, of: impl Fn(f64, f64) -> f64) -> Result<f64, ExactError> {
+    /// Sum over the modes of `term(β, 1/(k² − 1))` times the decay of the mode, smallest first.
+    fn sum(&self, time_factor: f64, term: impl Fn(f64, f64) -> f64) -> Result<f64, ExactError> {
         let time = self.cylinder.time(time_factor)?;
         let modes = &self.modes[..self.terms(time_factor)?.terms];
-        Ok(modes.iter().rev().map(|(root, share)| of(*root, *share) * exp(-root * root * time)).sum())
+        Ok(modes.iter().rev().map(|(root, share)| term(*root, *share) * exp(-root * root * time)).sum())
     }
 
     fn pressure(&self, time_factor: f64, radius: f64) -> Result<f64, ExactError> {
@@ -203,7 +203,7 @@ impl Solution for BarronFreeStrain {
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         if checked_time_factor(time_factor)? == 0.0 {
-            return Ok(Accuracy::of(0, 0.0));
+            return Ok(Accuracy::new(0, 0.0));
         }
         let accuracy = self.terms(time_factor)?;
         // A thin cylinder cancels digits of k² − 1.

@@ -2,13 +2,13 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::ExactError;
-use crate::inputs::{OF_BIOT, OF_COLUMN};
+use crate::inputs::{BIOT_KEYS, COLUMN_KEYS};
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS];
 
 /// Column on an impermeable base, drained and loaded at its top (Biot 1941; Detournay & Cheng 1993, section 5.2).
 ///
@@ -30,19 +30,19 @@ pub struct BiotColumn {
 
 impl BiotColumn {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let soil = PorousSoil::of(parameters)?;
+        let soil = PorousSoil::new(parameters)?;
         Ok(Self {
             load: parameters.load,
             final_settlement: parameters.final_settlement(),
             soil,
-            start: soil.alpha * soil.slowed(),
+            start: soil.alpha * soil.diffusivity_ratio(),
             immediate: soil.fixed_storage / soil.storage,
         })
     }
 
     /// Settlement of the part below a depth, over the final one of the whole.
     fn compressed(&self, time_factor: f64, zeta: f64) -> Result<f64, ExactError> {
-        let consolidated = consolidated_below(zeta, self.soil.slowed() * time_factor)?.value;
+        let consolidated = consolidated_below(zeta, self.soil.diffusivity_ratio() * time_factor)?.value;
         Ok(self.immediate * (1.0 - zeta) + (1.0 - self.immediate) * consolidated)
     }
 }
@@ -50,7 +50,8 @@ impl BiotColumn {
 impl Solution for BiotColumn {
     /// The effective stress is Biot's, `σ + α p`.
     fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
-        let pressure = self.load * self.start * isochrone(zeta, self.soil.slowed() * time_factor)?.value;
+        let pressure =
+            self.load * self.start * isochrone(zeta, self.soil.diffusivity_ratio() * time_factor)?.value;
         Ok(FieldValues {
             pressure,
             effective_stress: self.soil.alpha * pressure - self.load,
@@ -67,7 +68,7 @@ impl Solution for BiotColumn {
     }
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        let base = isochrone(1.0, self.soil.slowed() * time_factor)?;
-        Ok(Accuracy::of(base.terms, self.start * base.tail_bound))
+        let base = isochrone(1.0, self.soil.diffusivity_ratio() * time_factor)?;
+        Ok(Accuracy::new(base.terms, self.start * base.tail_bound))
     }
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{OF_BIOT, OF_COLUMN};
+use crate::inputs::{BIOT_KEYS, COLUMN_KEYS};
 use crate::numerics::bisected;
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
@@ -11,8 +11,8 @@ use crate::shelf::terms::terms_for;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS];
 
 /// Roots that are known: enough from `c t/a²` = 1e-6 on.
 const MOST_TERMS: usize = 2000;
@@ -56,7 +56,7 @@ struct Sums {
 
 impl Cryer {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let soil = PorousSoil::of(parameters)?;
+        let soil = PorousSoil::new(parameters)?;
         let squared = soil.alpha * soil.alpha;
         let share = 4.0 * soil.shear * squared / (3.0 * soil.bulk * soil.modulus * soil.storage);
         let coupling = 3.0 * share / (1.0 + share);
@@ -83,7 +83,7 @@ impl Cryer {
     /// The sums at a distance from the centre over the radius.
     fn sums(&self, time_factor: f64, distance: f64) -> Result<Sums, ExactError> {
         let h = self.coupling;
-        let time = self.soil.slowed() * checked_time_factor(time_factor)?;
+        let time = self.soil.diffusivity_ratio() * checked_time_factor(time_factor)?;
         if time == 0.0 {
             let pressure = if distance < 1.0 { 1.0 } else { 0.0 };
             return Ok(Sums { pressure, within: 1.0 / 3.0, mean: 1.0 });
@@ -110,7 +110,7 @@ impl Cryer {
 
     /// Terms, with a bound on the rest: with `β_i ≥ iπ`, `R ≤ β² + h + hβ` and `h < 3` each is at most `7 e^{−β²T}`.
     fn terms(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
-        let time = self.soil.slowed() * time_factor;
+        let time = self.soil.diffusivity_ratio() * time_factor;
         terms_for(MOST_TERMS, time_factor, |terms| {
             let first = terms as f64 * PI;
             let fall = -elementary::exp_m1(-(2.0 * first + PI) * PI * time);
@@ -146,7 +146,7 @@ impl Solution for Cryer {
 
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         if checked_time_factor(time_factor)? == 0.0 {
-            return Ok(Accuracy::of(0, 0.0));
+            return Ok(Accuracy::new(0, 0.0));
         }
         let accuracy = self.terms(time_factor)?;
         // Where a soil has hardly any bulk modulus the first root is small and flat: its digits go with its fourth power.

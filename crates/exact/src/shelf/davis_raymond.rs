@@ -2,13 +2,13 @@
 
 use crate::consolidation::{consolidated_below, isochrone};
 use crate::exact_error::{ExactError, normal, positive};
-use crate::inputs::OF_COLUMN;
+use crate::inputs::COLUMN_KEYS;
 use crate::parameters::ColumnParameters;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary;
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, &["initial_stress"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, &["initial_stress"]];
 
 /// Column of a soil that compresses with the logarithm of its effective stress, and whose permeability falls with its
 /// compressibility (Davis & Raymond 1965). Small strain, no weight, incompressible water.
@@ -63,6 +63,6 @@ impl Solution for DavisRaymond {
     /// The isochrone's bound times the largest slope of `p` in `W`, `σ'_f ln(σ'_f/σ'_0)`.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let base = isochrone(1.0, time_factor)?;
-        Ok(Accuracy::of(base.terms, self.end / self.load * self.logarithm * base.tail_bound))
+        Ok(Accuracy::new(base.terms, self.end / self.load * self.logarithm * base.tail_bound))
     }
 }

@@ -3,14 +3,14 @@
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor};
-use crate::inputs::{OF_BIOT, OF_COLUMN};
+use crate::inputs::{BIOT_KEYS, COLUMN_KEYS};
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use oedometer_soil::elementary::{erf, erfc, exp};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS];
 
 /// Point source at a constant rate from `t = 0` on (Rudnicki 1986).
 ///
@@ -31,14 +31,14 @@ pub struct Injection {
 
 impl Injection {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let soil = PorousSoil::of(parameters)?;
+        let soil = PorousSoil::new(parameters)?;
         let (load, height) = (parameters.load, parameters.height);
         Ok(Self { load, compressed: parameters.final_settlement(), height, soil })
     }
 
     /// `ξ` at a distance over `H`; infinite at the start.
     fn similarity(&self, time_factor: f64, distance: f64) -> Result<f64, ExactError> {
-        Ok(0.5 * distance / (self.soil.slowed() * checked_time_factor(time_factor)?).sqrt())
+        Ok(0.5 * distance / (self.soil.diffusivity_ratio() * checked_time_factor(time_factor)?).sqrt())
     }
 }
 
@@ -75,7 +75,7 @@ impl Solution for Injection {
     /// Closed form.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         self.similarity(time_factor, 1.0)?;
-        Ok(Accuracy::of(1, 0.0))
+        Ok(Accuracy::new(1, 0.0))
     }
 }
 

@@ -66,7 +66,7 @@ impl core::fmt::Display for ShelfProblem {
 }
 
 impl ShelfProblem {
-    /// Keys that it reads.
+    /// Study keys that the solution reads.
     pub(crate) const fn inputs(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::BiotColumn => biot::INPUTS,

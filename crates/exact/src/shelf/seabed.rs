@@ -3,15 +3,15 @@
 use core::f64::consts::PI;
 
 use crate::exact_error::{ExactError, checked_depth, checked_time_factor, positive};
-use crate::inputs::{OF_BIOT, OF_COLUMN};
+use crate::inputs::{BIOT_KEYS, COLUMN_KEYS};
 use crate::parameters::ColumnParameters;
 use crate::porous_soil::PorousSoil;
 use crate::solution::{Accuracy, FieldValues, Solution};
 use nalgebra::Complex;
 use oedometer_soil::elementary::{self, exp_complex, exp_m1_complex};
 
-/// Keys that it reads.
-pub(crate) const INPUTS: &[&[&str]] = &[OF_COLUMN, OF_BIOT, &["period"]];
+/// Study keys that the solution reads.
+pub(crate) const INPUTS: &[&[&str]] = &[COLUMN_KEYS, BIOT_KEYS, &["period"]];
 
 /// Column of the depth `H` on an impermeable base under `q cos ωt` of total stress and pore pressure, long after its
 /// start: the bed under a wave much longer than it is deep (Verruijt 1982; Madsen 1978 and Yamamoto et al. 1978
@@ -36,9 +36,9 @@ pub struct Seabed {
 
 impl Seabed {
     pub fn new(parameters: &ColumnParameters) -> Result<Self, ExactError> {
-        let soil = PorousSoil::of(parameters)?;
+        let soil = PorousSoil::new(parameters)?;
         let periods = parameters.time(1.0) / positive("period of the wave", parameters.shelf.wave_period)?;
-        let squared = positive("square of the wave number", 2.0 * PI * periods / soil.slowed())?;
+        let squared = positive("square of the wave number", 2.0 * PI * periods / soil.diffusivity_ratio())?;
         Ok(Self {
             load: parameters.load,
             final_settlement: parameters.final_settlement(),
@@ -68,18 +68,18 @@ impl Seabed {
 
     /// `1 − B`.
     fn drainable(&self) -> f64 {
-        1.0 - self.soil.alpha * self.soil.slowed()
+        1.0 - self.soil.alpha * self.soil.diffusivity_ratio()
     }
 }
 
 impl Solution for Seabed {
     fn fields(&self, time_factor: f64, zeta: f64) -> Result<FieldValues, ExactError> {
         let (turned, height) = (self.turned(time_factor)?, 1.0 - checked_depth(zeta)?);
-        let one = Complex::new(1.0, 0.0);
-        let ended = one + exp_complex(-2.0 * self.number);
-        let wave = (one + exp_complex(-2.0 * height * self.number)) / ended;
+        let unit = Complex::new(1.0, 0.0);
+        let ended = unit + exp_complex(-2.0 * self.number);
+        let wave = (unit + exp_complex(-2.0 * height * self.number)) / ended;
         let drained = exp_complex(-(1.0 - height) * self.number) * wave;
-        let start = self.soil.alpha * self.soil.slowed();
+        let start = self.soil.alpha * self.soil.diffusivity_ratio();
         let ratio = ((drained * self.drainable() + start) * turned).re;
         Ok(FieldValues {
             pressure: self.load * ratio,
@@ -103,6 +103,6 @@ impl Solution for Seabed {
     /// Closed form; a phase after many periods has lost their digits.
     fn accuracy(&self, time_factor: f64) -> Result<Accuracy, ExactError> {
         let phase = 2.0 * PI * self.periods * checked_time_factor(time_factor)?;
-        Ok(Accuracy { phase_bound: 4.0 * f64::EPSILON * phase, ..Accuracy::of(1, 0.0) })
+        Ok(Accuracy { phase_bound: 4.0 * f64::EPSILON * phase, ..Accuracy::new(1, 0.0) })
     }
 }

@@ -3,7 +3,7 @@
 use crate::exact_error::ExactError;
 use crate::solution::Accuracy;
 
-/// What the terms left out of a series may add to the pressure over the load.
+/// Bound on the contribution of omitted terms to the pressure over the load.
 const NEGLIGIBLE: f64 = 1e-17;
 
 /// The least number of terms, up to `most`, whose bound on the rest is negligible, with that bound.
@@ -24,8 +24,8 @@ pub(crate) fn terms_for(
         let middle = usize::midpoint(few, enough);
         if tail(middle) > NEGLIGIBLE { few = middle } else { enough = middle }
     }
-    Ok(Accuracy { phase_bound: ROUND_OFF * enough as f64, ..Accuracy::of(enough, tail(enough)) })
+    Ok(Accuracy { phase_bound: ROUND_OFF * enough as f64, ..Accuracy::new(enough, tail(enough)) })
 }
 
-/// What a term's round-off may add to the pressure over the load.
+/// Bound on the round-off error of a term in the pressure over the load.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;

@@ -240,8 +240,9 @@ impl Complex {
 
     /// `cosh z h/cosh z` for `0 ≤ h ≤ 1`.
     pub fn cosh_ratio(self, h: Double) -> Self {
-        let one = c(ONE);
-        (self * c(h - ONE)).exp() * (one + (self * c(d(-2.0) * h)).exp()) / (one + (self * c(d(-2.0))).exp())
+        let unit = c(ONE);
+        (self * c(h - ONE)).exp() * (unit + (self * c(d(-2.0) * h)).exp())
+            / (unit + (self * c(d(-2.0))).exp())
     }
 
     pub fn tanh(self) -> Self {
@@ -251,8 +252,9 @@ impl Complex {
 
     /// `sinh z h/sinh z` for `0 ≤ h ≤ 1`.
     pub fn sinh_ratio(self, h: Double) -> Self {
-        let one = c(ONE);
-        (self * c(h - ONE)).exp() * (one - (self * c(d(-2.0) * h)).exp()) / (one - (self * c(d(-2.0))).exp())
+        let unit = c(ONE);
+        (self * c(h - ONE)).exp() * (unit - (self * c(d(-2.0) * h)).exp())
+            / (unit - (self * c(d(-2.0))).exp())
     }
 }
 
@@ -350,9 +352,9 @@ pub fn solved<const N: usize>(mut matrix: Matrix<N>, mut right: [Complex; N]) ->
 
 #[test]
 fn functions_have_thirty_digits() {
-    let close = |found: Double, high: f64, low: f64| {
-        let missing = (found - Double { high, low }).value().abs();
-        assert!(missing < 1e-29 * high.abs(), "{found:?} for {high}");
+    let close = |computed: Double, high: f64, low: f64| {
+        let missing = (computed - Double { high, low }).value().abs();
+        assert!(missing < 1e-29 * high.abs(), "{computed:?} for {high}");
     };
     // e and √2 to 34 digits.
     close(ONE.exp(), std::f64::consts::E, 1.445_646_891_729_250_2e-16);

@@ -100,9 +100,9 @@ pub fn compared(
     [pressure, settled]: [f64; 2],
 ) -> Compared {
     let (reference, bound) = solution(kind, column, time_factor);
-    let found = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
+    let computed = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
     let degree = reference.degree_of_consolidation(time_factor).expect("a time");
-    Compared { pairs: vec![("pressure", found, pressure), ("settlement", degree, settled)], bound }
+    Compared { pairs: vec![("pressure", computed, pressure), ("settlement", degree, settled)], bound }
 }
 
 type Route = fn(&mut Numbers, ColumnParameters) -> Option<Compared>;
@@ -169,11 +169,11 @@ fn motion(motion: Motion, numbers: &mut Numbers, mut column: ColumnParameters) -
     column.motion =
         MotionParameters { amplitude_x, amplitude_y, amplitude, frequency: numbers.decades(-1.0, 1.0) };
     column.soil.porosity = 0.4;
-    let kind = ReferenceKind::Manufactured(ManufacturedModel::of(motion));
+    let kind = ReferenceKind::Manufactured(ManufacturedModel::with_default_law(motion));
     let (reference, bound) = solution(kind, &column, time);
-    let found = reference.fields(time, zeta).expect("inside").pressure / column.load;
+    let computed = reference.fields(time, zeta).expect("inside").pressure / column.load;
     let [[sine, _], [_, cosine]] = [(PI * d(2.0 * time)).sincos(), (PI * (d(1.0) - d(zeta))).sincos()];
-    Some(Compared { pairs: vec![("pressure", found, (sine * cosine).value())], bound })
+    Some(Compared { pairs: vec![("pressure", computed, (sine * cosine).value())], bound })
 }
 
 #[test]
@@ -191,13 +191,13 @@ fn every_printed_bound_holds() {
             let column = column(&mut numbers);
             let Some(Compared { pairs, bound }) = route(&mut numbers, column) else { continue };
             compared += 1;
-            for (what, found, second) in pairs {
-                let difference = (found - second).abs();
+            for (what, computed, second) in pairs {
+                let difference = (computed - second).abs();
                 worst = worst.max(difference / bound);
                 largest = largest.max(difference);
                 if difference.is_nan() || difference > bound {
                     wrong.push(format!(
-                        "{name}, draw {draw}: the {what} {found:e} is {second:e} by the second route, off by \
+                        "{name}, draw {draw}: the {what} {computed:e} is {second:e} by the second route, off by \
                          {difference:.1e}, and {bound:.1e} is printed"
                     ));
                 }

@@ -234,7 +234,7 @@ mod tests {
         };
         let (soft, stiff) = (layer(1e6), layer(4e9));
         for layers in [[soft, stiff], [stiff, soft]] {
-            let column = Column { soils: SoilLayers::of(&layers).expect("two"), ..Column::default() };
+            let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
             let problem =
                 column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
             let step = TimeStepRule::Courant(0.5).step(&problem, 1.0);

@@ -236,7 +236,7 @@ mod tests {
             ..SoilLayer::default()
         };
         let layers = [layer(0.5, 5e6, 2e6, 0.25), layer(0.5, 2e9, 1e6, 0.4)];
-        let column = Column { soils: SoilLayers::of(&layers).expect("two"), ..Column::default() };
+        let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
         let method = Method::named("PPP").expect("a known method");
         let problem = column_problem::<1>(SceneKind::Layered, &column, &Material::default(), method, 4, 2);
         let body = Body::new(problem.expect("a column"));

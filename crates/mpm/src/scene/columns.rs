@@ -14,7 +14,7 @@ use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
-/// The large-strain reference of the default law; [`ReferenceKind::of_soil`] takes that of a soil.
+/// The large-strain reference of the default law; [`ReferenceKind::for_soil`] takes that of a soil.
 const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel::XIE_LEO);
 
 /// References of the dynamic column, whether its load acts at once or grows.

@@ -23,19 +23,19 @@ use std::sync::Arc;
 
 pub(crate) static BOX: SceneDefinition = SceneDefinition {
     summary: "square stretched along its axes by body forces and back: exact fields at large strain in the plane",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Box))],
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Box))],
     ..OF_ALL
 };
 
 pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
     summary: "the same with shear inside, in a neo-Hookean soil",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Shear))],
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Shear))],
     ..OF_ALL
 };
 
 pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
     summary: "a disc that turns inside a square at rest, and back: tells domains that turn from those that do not",
-    references: &[ReferenceKind::Manufactured(ManufacturedModel::of(Motion::Vortex))],
+    references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Vortex))],
     ..OF_ALL
 };
 
@@ -97,7 +97,7 @@ pub(crate) fn forcing<const D: usize>(
     let solution = Manufactured::new(model, &column_parameters(square, soil))?;
     Ok(Arc::new(MadeMotion {
         solution,
-        spots: points.iter().map(|place| Spot::of(in_plane(place))).collect(),
+        spots: points.iter().map(|place| Spot::new(in_plane(place))).collect(),
     }))
 }
 
@@ -118,7 +118,7 @@ impl MadeMotion {
     fn spot(&self, number: usize, place: [f64; 2]) -> Spot {
         match self.spots.get(number) {
             Some(spot) if spot.place == place => *spot,
-            _ => Spot::of(place),
+            _ => Spot::new(place),
         }
     }
 
@@ -126,7 +126,7 @@ impl MadeMotion {
     #[inline(always)]
     fn spots_of<const D: usize>(&self, places: &[Vector<D>], sites: &[usize; PLACES]) -> Spots {
         let spot = |site: usize| self.spot(site, in_plane(&places[site]));
-        Spots::of(&[spot(sites[0]), spot(sites[1]), spot(sites[2]), spot(sites[3])])
+        Spots::new(&[spot(sites[0]), spot(sites[1]), spot(sites[2]), spot(sites[3])])
     }
 }
 
@@ -167,7 +167,7 @@ impl<const D: usize> Forcing<D> for MadeMotion {
             &mut (0..places.len()),
             #[inline(always)]
             |sites, count| {
-                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let states = self.solution.states_at(&self.spots_of(places, sites), &moment);
                 let [mixture, water] = states.body_forces(inertia);
                 for place in 0..count {
                     let at = |force: [Four; 2]| in_space([force[0].0[place], force[1].0[place]]);
@@ -189,7 +189,7 @@ impl<const D: usize> Forcing<D> for MadeMotion {
             sites,
             #[inline(always)]
             |sites, count| {
-                let states = self.solution.states_of(&self.spots_of(places, sites), &moment);
+                let states = self.solution.states_at(&self.spots_of(places, sites), &moment);
                 let of_each = states.source();
                 for place in 0..count {
                     sources[sites[place]] = of_each.0[place];

@@ -26,7 +26,7 @@ fn layered_problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
     let method = Method::named(method).expect("a known method");
     let lower = SoilLayer { thickness: 0.45, porosity: Some(0.6), ..SoilLayer::default() };
     let upper = SoilLayer { thickness: 0.55, hydraulic_conductivity: Some(1e-3), ..SoilLayer::default() };
-    let soils = SoilLayers::of(&[lower, upper]).expect("few layers");
+    let soils = SoilLayers::from_slice(&[lower, upper]).expect("few layers");
     let (column, soil) = (Column { soils, ..Column::default() }, Material::default());
     column_problem(SceneKind::Layered, &column, &soil, method, cells, per_cell).expect("a column of layers")
 }

@@ -347,7 +347,7 @@ impl Places {
 /// The layers of a column that stands on its head.
 fn turned(layers: &SoilLayers) -> SoilLayers {
     let turned: Vec<SoilLayer> = layers.iter().rev().copied().collect();
-    SoilLayers::of(&turned).unwrap_or(*layers)
+    SoilLayers::from_slice(&turned).unwrap_or(*layers)
 }
 
 /// The soils of a column with all their values changed: that of the column, and those of its layers.
@@ -377,6 +377,6 @@ pub fn with_soils(parameters: &ColumnParameters, change: impl Fn(&mut SoilLayer)
         whole
     };
     let layers: Vec<SoilLayer> = parameters.soils.iter().map(of_layer).collect();
-    changed.soils = SoilLayers::of(&layers).unwrap_or(parameters.soils);
+    changed.soils = SoilLayers::from_slice(&layers).unwrap_or(parameters.soils);
     changed
 }

@@ -54,11 +54,11 @@ proptest! {
         };
         let time = periods / frequency;
         let expected = by_matrix_exponential(&mode, start, time);
-        let found = mode.amplitude(Drive::Release(start), Growth::None, time);
+        let computed = mode.amplitude(Drive::Release(start), Growth::None, time);
         let mixture = (1.0 - porosity) * expected[0] + porosity * expected[1];
-        prop_assert!((found.solid - expected[0]).abs() < 1e-10);
-        prop_assert!((found.mixture - mixture).abs() < 1e-10);
-        prop_assert!((found.solid_rate - expected[2]).abs() < 1e-10 * frequency);
+        prop_assert!((computed.solid - expected[0]).abs() < 1e-10);
+        prop_assert!((computed.mixture - mixture).abs() < 1e-10);
+        prop_assert!((computed.solid_rate - expected[2]).abs() < 1e-10 * frequency);
     }
 }
 
@@ -92,10 +92,10 @@ fn confluent_roots_are_no_exception() {
         assert!(k > over * 1.0001 || critical.cluster().is_some());
         for time in [1e-4, 1e-3, 1e-2] {
             let expected = by_matrix_exponential(&critical, start, time);
-            let found = critical.amplitude(Drive::Release(start), Growth::None, time);
-            assert!((found.solid - expected[0]).abs() < 1e-9, "{k} {time}");
+            let computed = critical.amplitude(Drive::Release(start), Growth::None, time);
+            assert!((computed.solid - expected[0]).abs() < 1e-9, "{k} {time}");
             let mixture = 0.7 * expected[0] + 0.3 * expected[1];
-            assert!((found.mixture - mixture).abs() < 1e-9, "{k} {time}");
+            assert!((computed.mixture - mixture).abs() < 1e-9, "{k} {time}");
         }
     }
 }

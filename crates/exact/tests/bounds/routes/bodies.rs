@@ -9,17 +9,17 @@ use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfProblem, Solution};
 /// From `C = −qE/(Ks) + 4Gα p̄/(3K)` and `P = −α C/(E S) (1 − sinh √s r/(r sinh √s))`.
 pub fn cryer(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let column = with_grains(numbers, column);
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     let zeta = numbers.between(0.0, 0.999);
     let radius = ONE - d(zeta);
     let time = numbers.decades(-4.0, 0.5);
-    let [pressure, mean] = inverse(d(time) * soil.slowed(), |s| {
+    let [pressure, mean] = inverse(d(time) * soil.diffusivity_ratio(), |s| {
         let root = s.sqrt();
         let drained = c(ONE) - c(d(3.0)) * (root / root.tanh() - c(ONE)) / s;
         let share = d(4.0) * soil.shear * soil.alpha * soil.alpha
             / (d(3.0) * soil.bulk * soil.modulus * soil.storage);
         let sides = c(soil.modulus / soil.bulk) / (s * (c(ONE) + c(share) * drained));
-        let scale = c(soil.alpha * soil.slowed());
+        let scale = c(soil.alpha * soil.diffusivity_ratio());
         [scale * sides * (c(ONE) - root.sinh_ratio(radius) / c(radius)), scale * sides * drained]
     });
     let kind = ReferenceKind::Shelf(ShelfProblem::Cryer);
@@ -79,11 +79,12 @@ pub fn free_strain(numbers: &mut Numbers, mut column: ColumnParameters) -> Optio
     let radius = inner + (ONE - inner) * d(zeta);
     let [pressure, mean] = inverse(reached, |s| {
         let root = s.sqrt();
-        let ([_, i1, _, k1], [drain, own]) = (bessel(root), [inner, radius].map(|at| bessel(root * c(at))));
-        let within = drain[0] * k1 + drain[2] * i1;
-        let pressure = (c(ONE) - (own[0] * k1 + own[2] * i1) / within) / s;
+        let ([_, i1, _, k1], [at_drain, at_radius]) =
+            (bessel(root), [inner, radius].map(|at| bessel(root * c(at))));
+        let within = at_drain[0] * k1 + at_drain[2] * i1;
+        let pressure = (c(ONE) - (at_radius[0] * k1 + at_radius[2] * i1) / within) / s;
         // What has left through the drain.
-        let flux = (drain[1] * k1 - drain[3] * i1) * root / within;
+        let flux = (at_drain[1] * k1 - at_drain[3] * i1) * root / within;
         let left = -(flux * c(d(2.0) * inner / (ONE - inner * inner))) / (s * s);
         [pressure, c(ONE) / s - left]
     });
@@ -95,30 +96,30 @@ pub fn free_strain(numbers: &mut Numbers, mut column: ColumnParameters) -> Optio
 pub fn injection(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let column = with_grains(numbers, column);
     let (time, distance) = (numbers.decades(-2.0, 2.0), numbers.decades(-1.5, 0.0));
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     let zeta = 1.0 - distance;
     let distance = ONE - d(zeta);
-    let root = (soil.slowed() * d(time)).sqrt();
+    let root = (soil.diffusivity_ratio() * d(time)).sqrt();
     let [near, far] = [distance, ONE].map(|at| at / (d(2.0) * root));
     let pushed = far.erfc() * d(0.5) + far.erf() / (d(4.0) * far * far)
         - (-(far * far)).exp() / (d(2.0) * PI.sqrt() * far);
     let kind = ReferenceKind::Shelf(ShelfProblem::Injection);
     let (reference, bound) = solution(kind, &column, time);
-    let found = reference.fields(time, zeta).expect("inside").pressure / column.load * distance.value();
+    let computed = reference.fields(time, zeta).expect("inside").pressure / column.load * distance.value();
     let degree = reference.degree_of_consolidation(time).expect("a time");
     let pairs =
-        vec![("pressure", found, near.erfc().value()), ("settlement", degree, (d(2.0) * pushed).value())];
+        vec![("pressure", computed, near.erfc().value()), ("settlement", degree, (d(2.0) * pushed).value())];
     Some(Compared { pairs, bound })
 }
 
 /// The slab's transform from its balances: no stress at the sides, `ε_yy` the same everywhere.
 pub fn mandel(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     let (time, distance) = (numbers.decades(-4.0, 0.7), numbers.between(0.0, 1.0));
     let Biot { modulus, lame, shear, alpha, .. } = soil;
     let two = d(2.0);
-    let coupled = two * shear * alpha * soil.slowed();
-    let second = inverse(d(time) * soil.slowed(), |s| {
+    let coupled = two * shear * alpha * soil.diffusivity_ratio();
+    let second = inverse(d(time) * soil.diffusivity_ratio(), |s| {
         let root = s.sqrt();
         let drained = c(ONE) - root.tanh() / root;
         let stiff = c((modulus * modulus - lame * lame) / modulus);
@@ -135,8 +136,8 @@ pub fn mandel(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compare
         let accuracy = Mandel::new(&column).expect("possible").accuracy(time).expect("a time");
         accuracy.tail_bound + accuracy.round_off()
     };
-    let found = [ratios.pressure, ratios.stress, ratios.displacement, ratios.strain];
+    let computed = [ratios.pressure, ratios.stress, ratios.displacement, ratios.strain];
     let names = ["pressure", "stress", "displacement", "strain"];
-    let pairs = (0..4).map(|part| (names[part], found[part], second[part])).collect();
+    let pairs = (0..4).map(|part| (names[part], computed[part], second[part])).collect();
     Some(Compared { pairs, bound })
 }

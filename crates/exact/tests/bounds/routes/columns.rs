@@ -24,7 +24,7 @@ fn place(numbers: &mut Numbers) -> [f64; 2] {
 
 /// A Biot coefficient, grains, or both.
 pub fn with_grains(numbers: &mut Numbers, mut column: ColumnParameters) -> ColumnParameters {
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     let alpha = numbers.between(column.soil.porosity, 1.0);
     let choice = numbers.between(0.0, 3.0);
     if choice < 2.0 {
@@ -47,19 +47,19 @@ pub fn terzaghi(kind: ReferenceKind, numbers: &mut Numbers, column: &ColumnParam
     let soil = if kind == ReferenceKind::TerzaghiIncompressible {
         Biot::incompressible(&column)
     } else {
-        Biot::of(&column)
+        Biot::new(&column)
     };
-    let [isochrone, degree] = diffused(zeta, soil.slowed() * d(time));
+    let [isochrone, degree] = diffused(zeta, soil.diffusivity_ratio() * d(time));
     let at_once = soil.fixed / soil.storage;
     let settled = at_once + (ONE - at_once) * degree;
-    let pressure = soil.alpha * soil.slowed() * isochrone;
+    let pressure = soil.alpha * soil.diffusivity_ratio() * isochrone;
     Some(compared(kind, &column, [time, zeta], [pressure.value(), settled.value()]))
 }
 
 pub fn single_mode(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let [time, zeta] = place(numbers);
     let mode = PI * d(0.5);
-    let decay = (-(mode * mode * Biot::of(&column).slowed() * d(time))).exp();
+    let decay = (-(mode * mode * Biot::new(&column).diffusivity_ratio() * d(time))).exp();
     let pressure = decay * (mode * d(zeta)).sincos()[0];
     Some(compared(
         ReferenceKind::SingleMode,
@@ -71,7 +71,7 @@ pub fn single_mode(numbers: &mut Numbers, column: ColumnParameters) -> Option<Co
 
 /// Large strain of the log-linear soil in incompressible water.
 pub fn xie_leo(kind: ReferenceKind, numbers: &mut Numbers, mut column: ColumnParameters) -> Option<Compared> {
-    let modulus = Biot::of(&column).modulus;
+    let modulus = Biot::new(&column).modulus;
     column.load = modulus.value() * -(-column.soil.porosity * numbers.between(0.02, 0.9)).ln_1p();
     let [time, zeta] = [numbers.decades(-3.0, 0.5), numbers.between(0.0, 1.0)];
     let [isochrone, degree] = diffused(zeta, d(time));
@@ -94,14 +94,14 @@ pub fn davis_raymond(numbers: &mut Numbers, mut column: ColumnParameters) -> Opt
 pub fn seabed(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let mut column = with_grains(numbers, column);
     let [time, zeta] = [numbers.decades(-3.0, 0.5), numbers.between(0.0, 1.0)];
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     let period = seconds(&column, 1.0) * d(numbers.decades(-2.0, 1.0));
     column.shelf.wave_period = period.value();
     let turns = seconds(&column, 1.0) / d(column.shelf.wave_period);
-    let root = Complex { re: ZERO, im: d(2.0) * PI * turns / soil.slowed() }.sqrt();
+    let root = Complex { re: ZERO, im: d(2.0) * PI * turns / soil.diffusivity_ratio() }.sqrt();
     let [sine, cosine] = (d(2.0) * PI * turns * d(time)).sincos();
     let turned = Complex { re: cosine, im: sine };
-    let at_once = soil.alpha * soil.slowed();
+    let at_once = soil.alpha * soil.diffusivity_ratio();
     let pressure = (c(at_once) + c(ONE - at_once) * root.cosh_ratio(ONE - d(zeta))) * turned;
     let drained = c(soil.alpha * (ONE - at_once)) * root.tanh() / root;
     let settled = (c(ONE - soil.alpha * at_once) - drained) * turned;
@@ -111,13 +111,18 @@ pub fn seabed(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compare
 
 pub fn sealed(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let [time, zeta] = place(numbers);
-    let soil = Biot::of(&column);
-    Some(compared(ReferenceKind::SealedElement, &column, [time, zeta], [soil.slowed().value(), 1.0]))
+    let soil = Biot::new(&column);
+    Some(compared(
+        ReferenceKind::SealedElement,
+        &column,
+        [time, zeta],
+        [soil.diffusivity_ratio().value(), 1.0],
+    ))
 }
 
 /// Neumann's solution by its formulas, the front by regula falsi.
 pub fn yield_front(numbers: &mut Numbers, mut column: ColumnParameters) -> Option<Compared> {
-    let soil = Biot::of(&column);
+    let soil = Biot::new(&column);
     column.soil.reload_modulus = soil.modulus.value() * numbers.decades(0.05, 1.5);
     column.uniform_stress = column.load * numbers.between(0.0, 1.0);
     let reload = d(column.soil.reload_modulus);
@@ -185,7 +190,7 @@ fn layered_column(numbers: &mut Numbers, column: &ColumnParameters) -> ColumnPar
             hydraulic_conductivity: Some(column.soil.hydraulic_conductivity * numbers.decades(-1.5, 1.5)),
         })
         .collect();
-    ColumnParameters { soils: SoilLayers::of(&layers).expect("a few"), ..*column }
+    ColumnParameters { soils: SoilLayers::from_slice(&layers).expect("a few"), ..*column }
 }
 
 /// The transform by shooting from the base, where no water flows.
@@ -195,8 +200,8 @@ pub fn layered(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compar
         .soils
         .iter()
         .map(|layer| {
-            let own = ColumnParameters { soil: layer.soil(&column.soil), ..column };
-            (d(layer.thickness), Biot::of(&own), mobility(&own))
+            let layer_column = ColumnParameters { soil: layer.soil(&column.soil), ..column };
+            (d(layer.thickness), Biot::new(&layer_column), mobility(&layer_column))
         })
         .collect();
     let span = soils.iter().map(|(thick, soil, mobility)| *thick * (soil.storage / *mobility).sqrt());
@@ -212,7 +217,7 @@ pub fn layered(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compar
         let (mut state, mut bottom) = ([[c(ONE), Complex::default()], [Complex::default(); 2]], ZERO);
         let (mut here, mut shortening) = ([Complex::default(); 2], [Complex::default(); 2]);
         for (thick, soil, mobility) in &soils {
-            let start = c(soil.slowed()) / s;
+            let start = c(soil.diffusivity_ratio()) / s;
             let number = (s * c(soil.storage / *mobility)).sqrt();
             let admittance = number * c(*mobility);
             let after = |state: [[Complex; 2]; 2], way: Double| {
@@ -263,10 +268,10 @@ pub fn layered_early(numbers: &mut Numbers, column: ColumnParameters) -> Option<
             ..SoilLayer::default()
         })
         .collect();
-    column.soils = SoilLayers::of(&layers).expect("a few");
+    column.soils = SoilLayers::from_slice(&layers).expect("a few");
     let top = layers.last().expect("a layer");
-    let own = ColumnParameters { soil: top.soil(&column.soil), ..column };
-    let (soil, mobility) = (Biot::of(&own), mobility(&own));
+    let top_column = ColumnParameters { soil: top.soil(&column.soil), ..column };
+    let (soil, mobility) = (Biot::new(&top_column), mobility(&top_column));
     // The face below is 14 lengths of diffusion away.
     let length = d(top.thickness) / d(numbers.decades(1.15, 4.0)) * d(0.5);
     let second = length * length * soil.storage / mobility;
@@ -275,16 +280,16 @@ pub fn layered_early(numbers: &mut Numbers, column: ColumnParameters) -> Option<
     let length = (second * mobility / soil.storage).sqrt();
     let zeta = (length.value() / column.height * numbers.between(0.0, 6.0)).min(1.0);
     let reached = d(zeta) * d(column.height) / (d(2.0) * length);
-    let at_once = soil.slowed();
+    let at_once = soil.diffusivity_ratio();
     let lost = d(2.0) * length / PI.sqrt() * at_once;
     let settled = soil.fixed / soil.storage + lost / d(column.height);
     let pressure = at_once * reached.erf();
     let place = [time_factor, zeta];
     // So early a settlement is small, and has digits of its own.
     let (reference, bound) = solution(ReferenceKind::Layered, &column, time_factor);
-    let found = reference.degree_of_consolidation(time_factor).expect("a time");
+    let computed = reference.degree_of_consolidation(time_factor).expect("a time");
     let mut all = compared(ReferenceKind::Layered, &column, place, [pressure.value(), settled.value()]);
     let scale = bound / 1e-11;
-    all.pairs.push(("settlement over itself", scale * found / settled.value(), scale));
+    all.pairs.push(("settlement over itself", scale * computed / settled.value(), scale));
     Some(all)
 }

@@ -45,12 +45,12 @@ pub fn cosine_layer(
     // Not so short a wave, nor so early, that shooting through the layer loses its digits.
     column.length = column.height * numbers.decades(-0.3, 0.8);
     let soil =
-        if kind == ReferenceKind::CosineLayer { Biot::of(&column) } else { Biot::incompressible(&column) };
-    let time = (numbers.decades(-0.3, 1.3) / soil.slowed().value()).min(90.0);
+        if kind == ReferenceKind::CosineLayer { Biot::new(&column) } else { Biot::incompressible(&column) };
+    let time = (numbers.decades(-0.3, 1.3) / soil.diffusivity_ratio().value()).min(90.0);
     let zeta = if numbers.between(0.0, 1.0) < 0.3 { 0.0 } else { numbers.between(0.0, 1.0) };
     let shot = |s: Complex, depth: f64| {
         let matrix = system(&column, &soil, s);
-        let whole = exponential(&matrix);
+        let propagator = exponential(&matrix);
         let part = exponential(&matrix.map(|row| row.map(|entry| entry * c(d(depth)))));
         // At the top p = τ = 0 and σ = −q; at the base u_z, the flux and u_x or τ are nothing.
         let (known, unknown) = ([0, 0, 0, 0, -1, 0].map(|value| c(d(f64::from(value)))), [0, 1, 5]);
@@ -59,13 +59,13 @@ pub fn cosine_layer(
         let mut right = [Complex::default(); 3];
         for (i, row) in rows.into_iter().enumerate() {
             for (j, place) in unknown.into_iter().enumerate() {
-                small[i][j] = whole[row][place];
+                small[i][j] = propagator[row][place];
             }
-            right[i] = whole[row][4];
+            right[i] = propagator[row][4];
         }
-        let found = solved(small, right);
+        let computed = solved(small, right);
         let mut state = known;
-        for (place, value) in unknown.into_iter().zip(found) {
+        for (place, value) in unknown.into_iter().zip(computed) {
             state[place] = value;
         }
         part.map(|row| (0..6).fold(Complex::default(), |sum, k| sum + row[k] * state[k]))

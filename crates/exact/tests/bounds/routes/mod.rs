@@ -23,7 +23,7 @@ pub struct Biot {
 }
 
 impl Biot {
-    pub fn of(column: &ColumnParameters) -> Self {
+    pub fn new(column: &ColumnParameters) -> Self {
         let soil = &column.soil;
         let (young, nu, n) = (d(soil.youngs_modulus), d(soil.poissons_ratio), d(soil.porosity));
         let two = d(2.0);
@@ -42,12 +42,12 @@ impl Biot {
 
     /// Incompressible water and grains.
     pub fn incompressible(column: &ColumnParameters) -> Self {
-        let soil = Self::of(&ColumnParameters { shelf: ShelfParameters::default(), ..*column });
+        let soil = Self::new(&ColumnParameters { shelf: ShelfParameters::default(), ..*column });
         Self { fixed: d(0.0), alpha: ONE, storage: ONE / soil.modulus, ..soil }
     }
 
     /// `c/c_v`.
-    pub fn slowed(&self) -> Double {
+    pub fn diffusivity_ratio(&self) -> Double {
         ONE / (self.modulus * self.storage)
     }
 }
@@ -61,5 +61,5 @@ pub fn mobility(column: &ColumnParameters) -> Double {
 /// Seconds of a time factor.
 pub fn seconds(column: &ColumnParameters, time_factor: f64) -> Double {
     let height = d(column.height);
-    d(time_factor) * height * height / (mobility(column) * Biot::of(column).modulus)
+    d(time_factor) * height * height / (mobility(column) * Biot::new(column).modulus)
 }

@@ -8,7 +8,7 @@ use oedometer_exact::{ColumnParameters, ReferenceKind};
 /// Coupling modulus `Q` and the propagator of a mode's `u`, `U_w` and their velocities over a time.
 fn propagator(column: &ColumnParameters, wave: Double, time: Double) -> (Double, Matrix<4>) {
     let soil = &column.soil;
-    let (n, modulus) = (d(soil.porosity), Biot::of(column).modulus);
+    let (n, modulus) = (d(soil.porosity), Biot::new(column).modulus);
     let coupling = d(soil.water_bulk_modulus) / n;
     let solid = ONE - n;
     let [heavy, light] = [solid * d(soil.grain_density), n * d(soil.water_density)];
@@ -41,13 +41,13 @@ fn after(propagator: &Matrix<4>, state: [Double; 4]) -> [Double; 2] {
 fn swings(numbers: &mut Numbers, column: &ColumnParameters, wave: Double) -> f64 {
     let soil = &column.soil;
     let density = (1.0 - soil.porosity) * soil.grain_density + soil.porosity * soil.water_density;
-    let speed = ((Biot::of(column).modulus.value() + soil.coupling_modulus()) / density).sqrt();
+    let speed = ((Biot::new(column).modulus.value() + soil.coupling_modulus()) / density).sqrt();
     column.time_factor(numbers.decades(-1.0, 1.5) / (speed * wave.value()))
 }
 
 pub fn released(kind: ReferenceKind, numbers: &mut Numbers, column: &ColumnParameters) -> Option<Compared> {
     let column = ColumnParameters { soil: permeable(numbers, column), ..*column };
-    let (soil, biot) = (&column.soil, Biot::of(&column));
+    let (soil, biot) = (&column.soil, Biot::new(&column));
     let (n, load) = (d(soil.porosity), d(column.load));
     let wave = PI * d(0.5) / d(column.height);
     let time_factor = swings(numbers, &column, wave);
@@ -60,7 +60,7 @@ pub fn released(kind: ReferenceKind, numbers: &mut Numbers, column: &ColumnParam
         let solid = load / (biot.modulus * wave);
         let mixture = -(load / (coupling * wave));
         let discharge = wave * mobility(&column) * load;
-        let falls = -(biot.slowed() * discharge);
+        let falls = -(biot.diffusivity_ratio() * discharge);
         [solid, (mixture - (ONE - n) * solid) / n, falls * time, (falls + discharge / n) * time]
     };
     let [solid, water] = after(&propagator, start);
@@ -68,10 +68,10 @@ pub fn released(kind: ReferenceKind, numbers: &mut Numbers, column: &ColumnParam
     let shape = (PI * d(0.5) * d(zeta)).sincos()[0];
     let pressure = -(coupling * wave * ((ONE - n) * solid + n * water) * shape) / load;
     let (reference, bound) = solution(kind, &column, time_factor);
-    let found = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
+    let computed = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
     let degree = reference.degree_of_consolidation(time_factor).expect("a time");
     let settled = (start[0] - solid) / start[0];
-    let pairs = vec![("pressure", found, pressure.value()), ("settlement", degree, settled.value())];
+    let pairs = vec![("pressure", computed, pressure.value()), ("settlement", degree, settled.value())];
     Some(Compared { pairs, bound })
 }
 
@@ -89,7 +89,7 @@ fn permeable(numbers: &mut Numbers, column: &ColumnParameters) -> oedometer_soil
 
 pub fn loaded(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compared> {
     let column = ColumnParameters { soil: permeable(numbers, &column), ..column };
-    let biot = Biot::of(&column);
+    let biot = Biot::new(&column);
     let (n, load, height) = (d(column.soil.porosity), d(column.load), d(column.height));
     // When the waves of high modes have died out.
     let time_factor = numbers.decades(-1.5, 0.3);
@@ -112,8 +112,8 @@ pub fn loaded(numbers: &mut Numbers, column: ColumnParameters) -> Option<Compare
         pressure = pressure - coupling * wave * ((ONE - n) * solid + n * water) * cosine / load;
         settled = settled - sign * solid * biot.modulus / (load * height);
     }
-    let found = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
+    let computed = reference.fields(time_factor, zeta).expect("inside").pressure / column.load;
     let degree = reference.degree_of_consolidation(time_factor).expect("a time");
-    let pairs = vec![("pressure", found, pressure.value()), ("settlement", degree, settled.value())];
+    let pairs = vec![("pressure", computed, pressure.value()), ("settlement", degree, settled.value())];
     Some(Compared { pairs, bound })
 }

@@ -56,7 +56,7 @@ fn scenes() -> Vec<Scene> {
         layer(1.5, 6e6, 0.2, 0.45, 1.1e9, 1e-7),
         layer(0.7, 1e6, 0.35, 0.4, 4e8, 2e-8),
     ];
-    let soils = SoilLayers::of(&layers).expect("three are few");
+    let soils = SoilLayers::from_slice(&layers).expect("three are few");
     let layered = ColumnParameters { soils, ..column(3.0, 1.0, 4e4, soil(2e6, 0.3, 0.35, 3e-8)) };
     let of = |kind, parameters, times| Scene { kind, parameters, times };
     use ReferenceKind::{CosineLayer, Layered, Mandel, Terzaghi, TerzaghiIncompressible, XieLeo};
@@ -456,7 +456,7 @@ fn changes() -> Vec<Change> {
                 scene.is_column().then(|| {
                     // Of layers, the column on its head.
                     let turned: Vec<SoilLayer> = scene.parameters.soils.iter().rev().copied().collect();
-                    let soils = SoilLayers::of(&turned).expect("as many");
+                    let soils = SoilLayers::from_slice(&turned).expect("as many");
                     let mut states =
                         scene.solved(&ColumnParameters { soils, ..scene.parameters }, &|time| time);
                     for state in &mut states {
