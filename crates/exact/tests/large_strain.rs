@@ -268,7 +268,7 @@ fn a_growing_load_at_small_strain_is_terzaghi_s_mean() {
 }
 
 #[test]
-fn a_load_that_grows_ends_where_one_at_once_does_and_is_refined_to_its_bound() {
+fn a_growing_load_ends_like_a_sudden_load_and_is_refined_to_its_bound() {
     let sudden = ColumnParameters {
         soil: Material { porosity: 0.7, ..Material::default() },
         load: 8.4e5,

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stages_solved_apart_are_those_solved_together() {
+    fn decoupled_stages_give_the_coupled_solution() {
         let (weights, order, step) = (weights(), 7, 0.3);
         let jacobian = DMatrix::from_fn(order, order, |i, j| {
             let wave = ((3 * i + 5 * j) as f64).sin();

@@ -54,7 +54,7 @@ fn the_fields_agree_with_forty_digits() {
 }
 
 #[test]
-fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
+fn the_pressure_peak_is_the_published_one_and_absent_where_no_pressure_rises() {
     // crates/exact/tests/reference/make_mandel.py: `T`, `p a/F`; the time factor has the drained c_v, T/B_1.
     for (case, time, height, share) in [
         ("seed", 0.068_017_581_9, 0.546_059_661_7, 0.999_836_39),
@@ -75,7 +75,7 @@ fn the_peak_in_the_middle_is_the_known_one_and_none_where_nothing_rises() {
 }
 
 #[test]
-fn the_published_case_of_porepy_is_one_of_ours() {
+fn a_slab_reproduces_the_published_case_of_porepy() {
     // examples/mandel_biot.py of PorePy (Keilegavlen et al. 2021), after Mikelić, Wang & Wheeler (2014): a slab of
     // half width 100 m under 6e8 N/m with λ = 1.65e9 Pa, μ = 2.475e9 Pa, a storage of 6.0606e-11 1/Pa, α = 1, a
     // permeability of 9.869e-14 m² and a viscosity of 1e-3 Pa s: E = 5.94e9 Pa, ν = 0.2, B = 1/(1 + S K) = 5/6,
@@ -122,7 +122,7 @@ fn the_published_case_of_porepy_is_one_of_ours() {
 }
 
 #[test]
-fn the_pressure_in_the_pressure_peaks_when_and_as_high_as_it_should() {
+fn the_pressure_peaks_at_the_reference_time_and_height() {
     // ../../tests/reference/mandel.csv: T = c t/a², p a/F, and that over the start (40 digits).
     for (case, time, height, over_start) in [
         ("seed", 0.068_017_581_878_9, 0.546_059_661_7, 1.092_238_463_6),
@@ -203,7 +203,7 @@ fn the_closed_form_of_short_times_is_the_series() {
 }
 
 #[test]
-fn what_is_left_out_is_within_its_bound() {
+fn omitted_terms_are_within_their_bound() {
     for slab in extremes() {
         for distance in [0.0, 0.7, 1.0] {
             let time = 0.1;
@@ -230,7 +230,7 @@ fn what_is_left_out_is_within_its_bound() {
 }
 
 #[test]
-fn every_root_is_one_and_in_its_place() {
+fn every_root_solves_the_equation_in_its_own_interval() {
     for slab in extremes() {
         let kappa = slab.groups.kappa;
         assert!(kappa > 0.0 && kappa <= 0.75, "{kappa}");

@@ -254,7 +254,7 @@ fn places_and_pressures_are_those_of_the_formulas() {
 }
 
 #[test]
-fn what_is_no_solution_is_refused_in_a_sentence() {
+fn impossible_motions_are_refused_in_a_sentence() {
     let refused = |model, parameters: &ColumnParameters| {
         Manufactured::new(model, parameters).expect_err("no solution").to_string()
     };

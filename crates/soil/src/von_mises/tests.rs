@@ -55,7 +55,7 @@ fn a_simple_shear_ends_at_the_strength_and_unloads_elastically() {
 }
 
 #[test]
-fn a_flow_in_the_plane_ends_as_tresca_has_it() {
+fn plane_strain_flow_ends_at_trescas_condition() {
     let law = clay();
     // Plane strain that keeps the volume, from a start whose s_zz is not zero.
     let state = along(&law, &[[0.0, -2e-3, 0.0, 0.0], [4e-2, -4e-2, 0.0, 0.0]], 200);
@@ -83,7 +83,7 @@ pub fn tangent_is_consistent(law: &impl PointLaw, state: &PointState, strain: &C
 }
 
 #[test]
-fn the_tangent_is_what_differences_say() {
+fn the_tangent_agrees_with_finite_differences() {
     let law = clay();
     let start = along(&law, &[[1e-3, -3e-3, 5e-4, 2e-3]], 5);
     for strain in [[1e-4, -2e-4, 0.0, 1e-5], [1e-3, -4e-3, 2e-4, 3e-3], [-6e-4, 8e-4, 0.0, -9e-4]] {
