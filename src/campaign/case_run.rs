@@ -134,7 +134,7 @@ fn outcome_of(run: outcome::Outcome) -> Outcome {
 fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
     let SolverName::Own(method) = *method else { unreachable!("other programs solve their own cases") };
-    SceneProblem::of(*scene, column, material, method, *cells, *points_per_cell)
+    SceneProblem::new(*scene, column, material, method, *cells, *points_per_cell)
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.

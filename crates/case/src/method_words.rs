@@ -1,8 +1,8 @@
 //! A method in words: what each of its parts does, and who published it.
 
 use oedometer_mpm::method::{
-    Basis, Configuration, Memory, Method, PressureIntegration, Quadrature, Recovery, StrainGradient,
-    WHOLE_PROJECTION,
+    Basis, Configuration, FULL_PROJECTION, Memory, Method, PressureIntegration, Quadrature, Recovery,
+    StrainGradient,
 };
 
 /// One part of a method.
@@ -46,7 +46,7 @@ pub fn parts(method: &Method) -> Vec<MethodPart> {
     if let Some(configuration) = method.configuration {
         parts.push(part("configuration", configuration.name(), of_configuration(configuration)));
     }
-    if method.projection != WHOLE_PROJECTION {
+    if method.projection != FULL_PROJECTION {
         let scaled = "the parameter of the pressure projection is scaled against that of its source";
         parts.push(part("projection", "", (scaled, "")));
     }

@@ -233,22 +233,22 @@ pub struct Method {
     #[serde(default, skip_serializing_if = "is_default")]
     pub quadrature: Quadrature,
     /// Parameter of a pressure projection over that of its source, in thousandths.
-    #[serde(default = "whole", skip_serializing_if = "is_whole")]
+    #[serde(default = "full_projection", skip_serializing_if = "is_full_projection")]
     pub projection: u32,
     /// Configuration of the shape functions, where the method insists on one.
     pub configuration: Option<Configuration>,
 }
 
 /// The projection's own parameter, in thousandths.
-pub const WHOLE_PROJECTION: u32 = 1000;
+pub const FULL_PROJECTION: u32 = 1000;
 
-fn whole() -> u32 {
-    WHOLE_PROJECTION
+fn full_projection() -> u32 {
+    FULL_PROJECTION
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-fn is_whole(thousandths: &u32) -> bool {
-    *thousandths == WHOLE_PROJECTION
+fn is_full_projection(thousandths: &u32) -> bool {
+    *thousandths == FULL_PROJECTION
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
@@ -306,7 +306,7 @@ impl Method {
         recovery: Recovery::Constant,
         memory: Memory::Points,
         quadrature: Quadrature::Volumes,
-        projection: WHOLE_PROJECTION,
+        projection: FULL_PROJECTION,
         configuration: None,
     };
 
@@ -371,8 +371,8 @@ impl Method {
         if (self.pressure, self.recovery) != (PressureIntegration::Points, Recovery::Constant) {
             choices = format!("{choices}+{}", self.recovery.name());
         }
-        if self.projection != WHOLE_PROJECTION {
-            choices = format!("{choices}({})", f64::from(self.projection) / f64::from(WHOLE_PROJECTION));
+        if self.projection != FULL_PROJECTION {
+            choices = format!("{choices}({})", f64::from(self.projection) / f64::from(FULL_PROJECTION));
         }
         if self.quadrature == Quadrature::Moments {
             choices = format!("{choices}+{}", self.quadrature.name());
@@ -409,7 +409,7 @@ impl Method {
     pub fn configuration_in(&self, scene: Configuration) -> Configuration {
         match (self.configuration, scene) {
             (Some(Configuration::Total), Configuration::Frozen) => scene,
-            (own, scene) => own.unwrap_or(scene),
+            (chosen, scene) => chosen.unwrap_or(scene),
         }
     }
 }
@@ -470,7 +470,7 @@ mod tests {
             recovery: Recovery::Patch,
             memory: Memory::Points,
             quadrature: Quadrature::Volumes,
-            projection: WHOLE_PROJECTION,
+            projection: FULL_PROJECTION,
             configuration: Some(Configuration::Updated),
         };
         assert_eq!(method.to_string(), "hat+cmpm+sri+patch (updated)");

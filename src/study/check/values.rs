@@ -7,7 +7,7 @@ use crate::study::diagnostic::one_of;
 use crate::study::inputs::{Inputs, MethodTable, One, TimeStepTable, TypedInput};
 use crate::study::reading::Placed;
 use crate::study::solver::ExternalSolver;
-use oedometer_mpm::method::{Method, PressureIntegration, Recovery, WHOLE_PROJECTION};
+use oedometer_mpm::method::{FULL_PROJECTION, Method, PressureIntegration, Recovery};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_soil::conductivity::ConductivityMean;
@@ -127,7 +127,7 @@ impl Checker<'_> {
 
     /// Parameter of a method's projection over that of its source, in thousandths.
     fn projection_of(&mut self, table: &MethodTable, recovery: Recovery) -> Option<u32> {
-        let Some(typed) = &table.projection else { return Some(WHOLE_PROJECTION) };
+        let Some(typed) = &table.projection else { return Some(FULL_PROJECTION) };
         let refusal = if !recovery.is_projected() {
             ("this recovery has no projection", "leave `projection` out, or take the recovery \"ppp\"")
         } else if !(0.001..=1000.0).contains(&**typed) {

@@ -21,7 +21,7 @@ use oedometer_soil::tensor::{Tensor, Vector};
 pub struct VelocityGradients<const D: usize>(Vec<[Tensor<D>; 2]>);
 
 impl<const D: usize> VelocityGradients<D> {
-    /// Those of the present nodal velocities at so many points.
+    /// The affine velocities of the present nodal velocities at `points` points.
     pub fn new(points: usize, grid: &Grid<D>, basis: &PointStencils<D>, nodes: &Nodes<D>) -> Self {
         let mut gradients = Self(vec![[[[0.0; D]; D]; 2]; points]);
         gradients.take(grid, basis, nodes);

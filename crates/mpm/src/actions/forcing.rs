@@ -69,8 +69,8 @@ pub struct Forced<const D: usize> {
 }
 
 impl<const D: usize> Forced<D> {
-    /// At the start of a run of points on a grid.
-    pub fn of(acting: Arc<dyn Forcing<D>>, grid: &Grid<D>, points: &Points<D>) -> Self {
+    /// The forcing of points on a grid, at the start of a run.
+    pub fn new(acting: Arc<dyn Forcing<D>>, grid: &Grid<D>, points: &Points<D>) -> Self {
         let at_centre: Vec<_> = (0..grid.cell_count()).map(|cell| grid.cell_centre(cell)).collect();
         let mut forced = Self {
             acting,

@@ -32,7 +32,7 @@ pub struct RigidPlate {
 
 impl RigidPlate {
     /// The plate on a body's upper face under a mean pressure, Pa; masses must have been mapped.
-    pub fn of<const D: usize>(
+    pub fn new<const D: usize>(
         load: f64,
         grid: &Grid<D>,
         nodes: &Nodes<D>,

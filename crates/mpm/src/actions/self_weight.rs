@@ -14,8 +14,8 @@ pub struct SelfWeight {
 }
 
 impl SelfWeight {
-    /// The weight of points whose highest domains end at the water level.
-    pub fn of<const D: usize>(gravity: f64, points: &Points<D>) -> Self {
+    /// The self-weight of points; the water level is at the top of the highest domains.
+    pub fn new<const D: usize>(gravity: f64, points: &Points<D>) -> Self {
         let top = |point: usize| points.initial_position[point][D - 1] + points.half_length[point][D - 1];
         let level = (0..points.len()).map(top).fold(f64::NEG_INFINITY, f64::max);
         Self { gravity, level, rise: 0.0 }

@@ -27,9 +27,9 @@ struct Levers {
 }
 
 impl Levers {
-    /// Of a domain of such a half-length, cells, whose middle is so far from the node, m, and with that shape function there; cells
-    /// of such a size, m.
-    fn of(distance: f64, half: f64, value: f64, cell_size: f64) -> Self {
+    /// The levers of a domain of half-length `half` in cells, whose middle is at a `distance` from the node, m, and has the
+    /// shape function `value` there; `cell_size` in m.
+    fn new(distance: f64, half: f64, value: f64, cell_size: f64) -> Self {
         let middle = distance / cell_size;
         let (low, high) = (middle - half, middle + half);
         let ends = 0.5 * (hat(low) + hat(high));
@@ -80,7 +80,7 @@ impl<const D: usize> StressPlanes<D> {
                 for (k, (value, gradient)) in run.values.iter().zip(&run.gradients).enumerate() {
                     let node = grid.node_position(run.first + k);
                     let levers = |d: usize, value: f64| {
-                        Levers::of(place[d] - node[d], half[d], value, cell_size)
+                        Levers::new(place[d] - node[d], half[d], value, cell_size)
                     };
                     let along = levers(0, *value);
                     let mut means = [[0.0; D]; D];
@@ -192,8 +192,8 @@ impl<const D: usize> StressPlanes<D> {
         let (mut apart, mut differences) = ([[0.0; D]; D], [Stresses::NONE; D]);
         for d in 0..D {
             let stride = grid.cell_stride()[d];
-            let or_own = |other: usize| if cells.is_occupied(other) { other } else { cell };
-            let (lower, upper) = (or_own(cell - stride), or_own(cell + stride));
+            let occupied_or_cell = |other: usize| if cells.is_occupied(other) { other } else { cell };
+            let (lower, upper) = (occupied_or_cell(cell - stride), occupied_or_cell(cell + stride));
             if lower == upper {
                 apart[d][d] = 1.0;
                 continue;

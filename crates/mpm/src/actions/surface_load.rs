@@ -69,7 +69,7 @@ const EDGE_SPOTS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8]
 
 impl<const D: usize> LoadedSurface<D> {
     /// The surface of a lattice: the highest points of the initial configuration.
-    pub fn of(points: &Points<D>, load: f64) -> Self {
+    pub fn new(points: &Points<D>, load: f64) -> Self {
         let height = |point: usize| points.initial_position[point][D - 1];
         let highest = (0..points.len()).map(height).fold(f64::NEG_INFINITY, f64::max);
         let tolerance = 1e-9 * highest.abs();
@@ -250,7 +250,7 @@ mod tests {
     fn the_load_is_whole_and_acts_where_the_surface_is() {
         let grid = Grid::new(0.1, [12]);
         let mut points = Points::lattice(0.1, [10], 2);
-        let surface = LoadedSurface::of(&points, 5.0);
+        let surface = LoadedSurface::new(&points, 5.0);
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
         surface.apply(&grid, &points, &mut nodes);
         let top = grid.flat_node(&[12]);
@@ -277,7 +277,7 @@ mod tests {
         }
         let forces = |basis| {
             let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
-            let surface = LoadedSurface::of(&points, 5.0).spread_by(basis, Support::oedometer());
+            let surface = LoadedSurface::new(&points, 5.0).spread_by(basis, Support::oedometer());
             surface.apply(&grid, &points, &mut nodes);
             [12, 13].map(|node| nodes.external_force[grid.flat_node(&[node])][0])
         };
@@ -291,7 +291,7 @@ mod tests {
     fn a_cosine_load_has_no_resultant_and_its_own_amplitude() {
         let grid = Grid::new(0.25, [4, 5]);
         let points = Points::<2>::lattice(0.25, [4, 4], 2);
-        let surface = LoadedSurface::of(&points, 3.0).shaped(LoadShape::Cosine { length: 1.0 }, &points);
+        let surface = LoadedSurface::new(&points, 3.0).shaped(LoadShape::Cosine { length: 1.0 }, &points);
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
         surface.apply(&grid, &points, &mut nodes);
         let force = |node: usize| nodes.external_force[node][1];
@@ -313,7 +313,7 @@ mod tests {
     fn a_plane_surface_carries_load_times_width() {
         let grid = Grid::new(0.5, [2, 3]);
         let points = Points::<2>::lattice(0.5, [2, 2], 2);
-        let surface = LoadedSurface::of(&points, 3.0);
+        let surface = LoadedSurface::new(&points, 3.0);
         let mut nodes = Nodes::new(&grid, &Support::oedometer(), 1.0);
         surface.apply(&grid, &points, &mut nodes);
         let total: f64 = nodes.external_force.iter().map(|force| force[1]).sum();

@@ -101,20 +101,20 @@ impl BandedLu {
             }
             let below = lower.min(size - 1 - column);
             let (left, right) = self.factors.entries.split_at_mut((column + 1) * height);
-            let own = &mut left[column * height + diagonal..][..=below];
+            let pivot_column = &mut left[column * height + diagonal..][..=below];
             let mut pivot = 0;
             for row in 1..=below {
-                if own[row].abs() > own[pivot].abs() {
+                if pivot_column[row].abs() > pivot_column[pivot].abs() {
                     pivot = row;
                 }
             }
-            own.swap(0, pivot);
-            if own[0] == 0.0 || !own[0].is_finite() {
+            pivot_column.swap(0, pivot);
+            if pivot_column[0] == 0.0 || !pivot_column[0].is_finite() {
                 return Err(Singular { row: column });
             }
             self.pivots[column] = pivot;
-            own[0] = 1.0 / own[0];
-            let (per_pivot, multipliers) = (own[0], &mut own[1..]);
+            pivot_column[0] = 1.0 / pivot_column[0];
+            let (per_pivot, multipliers) = (pivot_column[0], &mut pivot_column[1..]);
             for multiplier in multipliers.iter_mut() {
                 *multiplier *= per_pivot;
             }

@@ -52,8 +52,8 @@ fn eliminate_one_by_one(matrix: &mut DMatrixViewMut<'_, f64>, pivot_rows: usize,
                 *factor /= pivot;
             }
             for mut column in later.column_iter_mut() {
-                let (own, rest) = column.as_mut_slice()[place..].split_at_mut(1);
-                subtract_multiple(rest, factors, own[0]);
+                let (pivot_entry, rest) = column.as_mut_slice()[place..].split_at_mut(1);
+                subtract_multiple(rest, factors, pivot_entry[0]);
             }
         });
     }
@@ -109,11 +109,11 @@ pub(crate) fn subtract_product(
             for (tile, term) in panel.iter_mut().zip(terms.clone()) {
                 *tile = first_rows(&a.column(term).as_slice()[rows.clone()]);
             }
-            let whole = c.ncols() - c.ncols() % COLUMNS;
-            for first in (0..whole).step_by(COLUMNS) {
+            let tiled = c.ncols() - c.ncols() % COLUMNS;
+            for first in (0..tiled).step_by(COLUMNS) {
                 subtract_tile::<COLUMNS>(c, panel, &b, (rows.clone(), terms.start, first));
             }
-            for first in whole..c.ncols() {
+            for first in tiled..c.ncols() {
                 subtract_tile::<1>(c, panel, &b, (rows.clone(), terms.start, first));
             }
         }
@@ -169,9 +169,9 @@ mod tests {
     proptest! {
         #[test]
         fn factors_multiply_to_the_matrix_with_its_rows_swapped(
-            columns in 1..70usize, own_below in 0..5usize, below in 0..40usize, seed in 1..1_000_000_u32,
+            columns in 1..70usize, pivot_rows_below in 0..5usize, below in 0..40usize, seed in 1..1_000_000_u32,
         ) {
-            let (pivot_rows, rows) = (columns + own_below, columns + own_below + below);
+            let (pivot_rows, rows) = (columns + pivot_rows_below, columns + pivot_rows_below + below);
             let mut state = seed;
             let matrix = DMatrix::from_fn(rows, columns, |_, _| {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -203,12 +203,12 @@ mod tests {
                 |seed: usize| move |row: usize, column: usize| 1.0 / (1 + seed + 3 * row + 7 * column) as f64;
             let [a, b, c] = [(rows, terms), (terms, columns), (rows, columns)]
                 .map(|(rows, columns)| DMatrix::from_fn(rows, columns, number(rows + 2 * columns)));
-            let mut found = c.clone();
-            subtract_product(&mut found.as_view_mut(), a.as_view(), b.as_view());
-            assert!((&found + &a * &b - &c).amax() < 1e-14, "{rows} x {terms} x {columns}");
+            let mut product = c.clone();
+            subtract_product(&mut product.as_view_mut(), a.as_view(), b.as_view());
+            assert!((&product + &a * &b - &c).amax() < 1e-14, "{rows} x {terms} x {columns}");
             let mut narrow = c;
             in_narrow_registers(|| subtract_product(&mut narrow.as_view_mut(), a.as_view(), b.as_view()));
-            assert_eq!(narrow, found, "the same bits on every processor");
+            assert_eq!(narrow, product, "the same bits on every processor");
         }
     }
 

@@ -172,13 +172,13 @@ impl Front {
         }
         for (child, schur_complement) in self.children.iter().zip(schur_complements) {
             let rows = &child.in_parent;
-            let own_rows = rows.partition_point(|row| *row < count);
+            let pivot_rows = rows.partition_point(|row| *row < count);
             for (column, values) in rows.iter().zip(schur_complement.column_iter()) {
                 match column.checked_sub(count) {
                     None => add_to_rows(column_of(&mut left, *column), rows, 0, values.as_slice()),
                     Some(column) => {
-                        let (above, below) = values.as_slice().split_at(own_rows);
-                        let (rows_above, rows_below) = rows.split_at(own_rows);
+                        let (above, below) = values.as_slice().split_at(pivot_rows);
+                        let (rows_above, rows_below) = rows.split_at(pivot_rows);
                         add_to_rows(column_of(&mut right, column), rows_above, 0, above);
                         add_to_rows(column_of(&mut rest, column), rows_below, count, below);
                     }

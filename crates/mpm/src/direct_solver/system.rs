@@ -187,14 +187,14 @@ impl Factors {
             }
             _ => unreachable!("factors of another pattern"),
         }
-        if let (Some(own), Some(border)) = (&mut self.border, &matrix.border) {
-            own.clone_from(border);
-            self.core.solve(&mut own.column);
-            let left = border.corner - dot(&own.row, &own.column);
+        if let (Some(factored), Some(border)) = (&mut self.border, &matrix.border) {
+            factored.clone_from(border);
+            self.core.solve(&mut factored.column);
+            let left = border.corner - dot(&factored.row, &factored.column);
             if left == 0.0 || !left.is_finite() {
-                return Err(Singular { row: own.row.len() });
+                return Err(Singular { row: factored.row.len() });
             }
-            own.corner = 1.0 / left;
+            factored.corner = 1.0 / left;
         }
         Ok(())
     }

@@ -64,9 +64,9 @@ pub struct NodalDrag {
 }
 
 impl NodalDrag {
-    /// The drag for a kick of so many seconds, at a node with `m_w/m_s` and `ρ_w V`.
+    /// The drag for a `kick` in s at a node with the `water_share` `m_w/m_s` and the `water_inertia` `ρ_w V`.
     #[inline]
-    pub fn of(level: Drag, kick: f64, coefficient: f64, water_share: f64, water_inertia: f64) -> Self {
+    pub fn new(level: Drag, kick: f64, coefficient: f64, water_share: f64, water_inertia: f64) -> Self {
         if level == Drag::Explicit {
             return Self { coefficient, implicit: 0.0 };
         }
@@ -96,7 +96,7 @@ pub fn step_limit(soil: &Material) -> f64 {
     2.0 / (drag * (1.0 / ((1.0 - n) * soil.grain_density) + 1.0 / (n * soil.water_density)))
 }
 
-/// What turns the forces on one component of a node into accelerations, for one kick.
+/// Converts the forces on one component of a node to accelerations, for one kick.
 #[derive(Clone, Copy, Debug)]
 pub struct NodalBalance {
     /// One over the mass of the grains where the skeleton is free, else zero, 1/kg.

@@ -115,7 +115,7 @@ impl<const D: usize> ExplicitStepper<D> {
             step_follows: !matches!(schedule.rule, TimeStepRule::Seconds(_)),
             rhythm: Rhythm::default(),
             kick: f64::NAN,
-            load: GrowingLoad::of(body, plan.loading_time),
+            load: GrowingLoad::new(body, plan.loading_time),
             points,
         };
         if plan.loading_time > 0.0 {

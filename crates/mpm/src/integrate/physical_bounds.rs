@@ -51,7 +51,7 @@ pub struct PhysicalBounds {
 
 impl PhysicalBounds {
     /// The bounds of a problem.
-    pub fn of<const D: usize>(problem: &Problem<D>) -> Self {
+    pub fn new<const D: usize>(problem: &Problem<D>) -> Self {
         let scale = settlement_scale(problem);
         let without = f64::INFINITY;
         let cell_size = problem.grid.cell_size;
@@ -148,7 +148,7 @@ fn settlement_scale<const D: usize>(problem: &Problem<D>) -> f64 {
         return problem.pressure_scale * compliance * distance;
     }
     // The mean height: a cosine has none of its own.
-    let height = LoadedSurface::of(&problem.points, problem.load).height(&problem.points);
+    let height = LoadedSurface::new(&problem.points, problem.load).height(&problem.points);
     let softest = problem.least_of_soils(Material::oedometric_modulus);
     let column = problem.pressure_scale / softest * height;
     match problem.load_shape {
@@ -173,9 +173,9 @@ mod tests {
     fn bounds_of(scene: SceneKind, column: &Column, soil: &Material) -> PhysicalBounds {
         let method = Method::named("GC-SRI-patch").expect("the paper's method");
         if scene.needs_two_dimensions() {
-            PhysicalBounds::of(&column_problem::<2>(scene, column, soil, method, 4, 2).expect("a layer"))
+            PhysicalBounds::new(&column_problem::<2>(scene, column, soil, method, 4, 2).expect("a layer"))
         } else {
-            PhysicalBounds::of(&column_problem::<1>(scene, column, soil, method, 4, 2).expect("a column"))
+            PhysicalBounds::new(&column_problem::<1>(scene, column, soil, method, 4, 2).expect("a column"))
         }
     }
 
@@ -183,11 +183,15 @@ mod tests {
     fn a_column_is_held_to_what_consolidation_and_waves_can_reach() {
         let soil = Material::default();
         let bounds = bounds_of(SceneKind::Terzaghi, &Column::default(), &soil);
-        let whole = 1.0 / soil.oedometric_modulus();
+        let final_settlement = 1.0 / soil.oedometric_modulus();
         for (settlement, is_within) in
             [(0.0, true), (2.0, true), (-0.9, true), (3.1, false), (-1.1, false), (f64::NAN, false)]
         {
-            assert_eq!(bounds.left_by_settlement(settlement * whole).is_none(), is_within, "{settlement}");
+            assert_eq!(
+                bounds.left_by_settlement(settlement * final_settlement).is_none(),
+                is_within,
+                "{settlement}"
+            );
         }
         for (pressure, is_within) in
             [(1.0, true), (-4.0, true), (6.0, false), (-6.0, false), (f64::INFINITY, false)]

@@ -110,10 +110,10 @@ impl<'a> Plan<'a> {
             nodes: problem.grid.node_count(),
             pressure_scale: problem.pressure_scale,
             velocity_scale: velocity_scale(problem),
-            initial_height: LoadedSurface::of(&problem.points, problem.load)
+            initial_height: LoadedSurface::new(&problem.points, problem.load)
                 .shaped(problem.load_shape, &problem.points)
                 .height(&problem.points),
-            bounds: PhysicalBounds::of(problem),
+            bounds: PhysicalBounds::new(problem),
             loading_time: problem.loading_time,
             driven_plate: problem.driven_plate,
             schedule,

@@ -56,7 +56,7 @@ impl<const D: usize> Body<D> {
     /// The undrained equilibrium with the pressures of the sites as unknowns: a projected storage is no pressure times
     /// modulus site by site.
     fn settle_with_pressures(&mut self, threads: usize, time_limit: TimeLimit) -> Result<(), Singular> {
-        let system = LinearSystem::of(self);
+        let system = LinearSystem::new(self);
         let (unknowns, scales) = (&system.unknowns, &system.unknowns.scales);
         let mut rest = system.start_residual.clone();
         for unknown in &unknowns.pressure {
@@ -88,7 +88,7 @@ impl<const D: usize> Body<D> {
         for (value, coupling) in pressures.iter_mut().zip(&rows.coupling) {
             *value *= -coupling;
         }
-        if let Some(mut storage) = ProjectedStorage::of(self, &rows.sites, &rows.projection) {
+        if let Some(mut storage) = ProjectedStorage::from_body(self, &rows.sites, &rows.projection) {
             storage.project(&mut pressures);
         }
         self.change_points(rows, strained, &pressures, displacements);

@@ -195,19 +195,19 @@ impl<const D: usize> Body<D> {
             && plate_load.is_none()
             && forcing.is_none()
             && operators.domains.is_none();
-        let stacked = is_stacked.then(|| StackedPoints::of(&points, method.domains_follow()));
+        let stacked = is_stacked.then(|| StackedPoints::new(&points, method.domains_follow()));
         let mut body = Self {
             nodes: Nodes::new(&grid, &support, solid_cell_mass),
             cells: Cells::new(&grid, count),
             stress_laws: soils.iter().map(Material::stress_law).collect(),
             actions: Actions {
-                surface: LoadedSurface::of(&points, load)
+                surface: LoadedSurface::new(&points, load)
                     .shaped(load_shape, &points)
                     .spread_by(method.basis, support)
                     .stretching(configuration.moves_points() && !method.domains_follow()),
                 plate: None,
-                weight: weight.map(|gravity| SelfWeight::of(gravity, &points)),
-                forcing: forcing.map(|acting| Forced::of(acting, &grid, &points)),
+                weight: weight.map(|gravity| SelfWeight::new(gravity, &points)),
+                forcing: forcing.map(|acting| Forced::new(acting, &grid, &points)),
                 cell_averages: (method.memory == Memory::Cells).then(|| CellAverages::new(&grid, stacked)),
                 weight_carried: Vec::new(),
                 velocity_gradients: None,
@@ -239,7 +239,7 @@ impl<const D: usize> Body<D> {
         }
         if let Some(load) = plate_load {
             let volumes = body.points.initial_volume.iter().copied();
-            body.actions.plate = Some(RigidPlate::of(load, &body.grid, &body.nodes, volumes));
+            body.actions.plate = Some(RigidPlate::new(load, &body.grid, &body.nodes, volumes));
             body.apply_loads();
         }
         body.map_velocities();
@@ -446,7 +446,7 @@ impl<const D: usize> Body<D> {
                 continue;
             }
             let shared = Material { youngs_modulus: share * soil.youngs_modulus, ..soil };
-            let number = self.soils.iter().position(|one| *one == shared).unwrap_or(self.soils.len());
+            let number = self.soils.iter().position(|soil| *soil == shared).unwrap_or(self.soils.len());
             // More kinds than there are numbers keep their own.
             if let Ok(small) = u8::try_from(number) {
                 if number == self.soils.len() {
@@ -487,8 +487,8 @@ impl<const D: usize> Body<D> {
 
     /// Largest nodal velocity of either phase, m/s; infinite where one is not finite.
     pub fn largest_velocity(&self) -> f64 {
-        let both = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
-        both.flatten().fold(0.0, |largest: f64, velocity| {
+        let velocities = self.nodes.solid_velocity.iter().chain(&self.nodes.water_velocity);
+        velocities.flatten().fold(0.0, |largest: f64, velocity| {
             if velocity.is_finite() { largest.max(velocity.abs()) } else { f64::INFINITY }
         })
     }

@@ -59,9 +59,9 @@ impl<const D: usize> Body<D> {
             let volume_ratio = nodes.volume[node] * solid_fraction / grain_volume;
             let [potential, stress, size] = nodes.sums.chords[node];
             let chord = potential / stress;
-            // Of no slope, or of points that lie so that none can be told, the mobility is that of the node.
-            let is_told = stress.abs() > UNIFORM * size && chord > 0.0 && chord.is_finite();
-            let mobility = if is_told { chord } else { law.mobility_ratio(volume_ratio) };
+            // Without a slope, or where the points do not determine one, the mobility is that of the node.
+            let is_determined = stress.abs() > UNIFORM * size && chord > 0.0 && chord.is_finite();
+            let mobility = if is_determined { chord } else { law.mobility_ratio(volume_ratio) };
             nodes.drag[node] =
                 pore_volume * unit_weight / (soil.hydraulic_conductivity * mobility * volume_ratio);
         }
@@ -75,7 +75,7 @@ mod tests {
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
-    use crate::state::grid::whole;
+    use crate::state::grid::integer_part;
     use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::law::Law;
     use oedometer_soil::material::Material;
@@ -99,7 +99,7 @@ mod tests {
         let mut body = Body::new(problem);
         for point in 0..body.points.len() {
             let height = body.points.initial_position[point][D - 1];
-            let ratio = ratios[whole(height * CELLS as f64)];
+            let ratio = ratios[integer_part(height * CELLS as f64)];
             body.points.volume_ratio[point] = ratio;
             let back = &mut body.points.inverse_deformation[point];
             back[D - 1][D - 1] = 1.0 / ratio;

@@ -12,7 +12,7 @@ use crate::kernel::body::Body;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Tensor;
 
-/// What an energy may rise above the least so far, as a share of the largest that was ever in motion.
+/// Largest accepted rise of the energy above its minimum so far, as a share of the largest kinetic energy so far.
 ///
 /// The largest rise of the explicit cases of the shipped studies is a fifth of it; a mode that grows has made pressures
 /// wrong by a fifth of the load where its energy is a twentieth of that of the load's own.
@@ -26,7 +26,7 @@ const ROUND_OFF: f64 = 1e-24;
 /// Energy of a body at a time, J; in a column, J a unit area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of motion.
+    /// Kinetic energy.
     pub kinetic: f64,
     /// Of stresses and pressures, since the start or on the whole.
     pub stored: f64,
@@ -34,7 +34,7 @@ pub struct Energy {
     pub work: f64,
 }
 
-/// What was seen of a body's energy.
+/// Extremes of a body's energy so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyAccount {
     /// Least of kinetic and stored energy less work so far, J.
@@ -92,7 +92,8 @@ impl<const D: usize> Body<D> {
             return None;
         }
         let nodes = &self.nodes;
-        let square = |velocity: &[f64; D]| velocity.iter().map(|one| one * one).sum::<f64>();
+        let square =
+            |velocity: &[f64; D]| velocity.iter().map(|component| component * component).sum::<f64>();
         let moving = (0..nodes.len()).map(|node| {
             0.5 * (nodes.solid_mass[node] * square(&nodes.solid_velocity[node])
                 + nodes.water_mass[node] * square(&nodes.water_velocity[node]))
@@ -144,7 +145,7 @@ fn strain_energy<const D: usize>(soil: &Material, stress: &Tensor<D>) -> f64 {
         return 0.5 * stress[0][0] * stress[0][0] / soil.oedometric_modulus();
     }
     let (modulus, ratio) = (soil.youngs_modulus, soil.poissons_ratio);
-    let squares: f64 = stress.as_flattened().iter().map(|one| one * one).sum();
+    let squares: f64 = stress.as_flattened().iter().map(|component| component * component).sum();
     let trace: f64 = (0..D).map(|d| stress[d][d]).sum();
     0.5 * (1.0 + ratio) / modulus * (squares - ratio * trace * trace)
 }
@@ -186,8 +187,8 @@ mod tests {
         // The shear strain is the mean of the gradients across; none out of the plane.
         let strain = [[1e-3, 1e-4], [1e-4, -3e-3]];
         let product: f64 = (0..4).map(|i| stress[i / 2][i % 2] * strain[i / 2][i % 2]).sum();
-        let found = strain_energy(&soil, &stress);
-        assert!((found / (0.5 * product) - 1.0).abs() < 1e-14, "{found:e}");
+        let energy = strain_energy(&soil, &stress);
+        assert!((energy / (0.5 * product) - 1.0).abs() < 1e-14, "{energy:e}");
         let confined = strain_energy(&soil, &[[2e3]]);
         assert!((confined / (0.5 * 4e6 / soil.oedometric_modulus()) - 1.0).abs() < 1e-14, "{confined:e}");
     }

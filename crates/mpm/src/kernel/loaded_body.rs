@@ -17,11 +17,11 @@ pub(crate) struct GrowingLoad {
 
 impl GrowingLoad {
     /// The load of a body, which grows over a time, s.
-    pub fn of<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
+    pub fn new<const D: usize>(body: &Body<D>, loading_time: f64) -> Self {
         Self { load: body.actions.surface.load, loading_time, share: 1.0 }
     }
 
-    /// Whether it still grows.
+    /// Whether the load still grows.
     pub fn grows(&self) -> bool {
         self.share < 1.0
     }

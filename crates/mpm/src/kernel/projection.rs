@@ -11,7 +11,7 @@
 
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::kernel::body::Body;
-use crate::method::{Method, WHOLE_PROJECTION};
+use crate::method::{FULL_PROJECTION, Method};
 use crate::operators::recovery::points_in_cells::points_in_cells;
 use crate::operators::sparse_rows::entry_of;
 use crate::time_limit::TimeLimit;
@@ -25,7 +25,7 @@ impl Method {
     pub(crate) fn projection_parameter(&self, soil: &Material) -> f64 {
         let source =
             if self.has_projection() { (1.0 + soil.poissons_ratio) / soil.youngs_modulus } else { 0.0 };
-        source * f64::from(self.projection) / f64::from(WHOLE_PROJECTION)
+        source * f64::from(self.projection) / f64::from(FULL_PROJECTION)
     }
 
     /// Speed of the longest wave of a column of so many cells, `4H`, over that without a projection: the projection adds
@@ -96,7 +96,7 @@ impl<const D: usize> Body<D> {
         }
         let (sites, site_of_node) = self.nodal_sites();
         let rows = self.projection_rows(&sites, &site_of_node);
-        let Some(mut storage) = ProjectedStorage::of(self, &sites, &rows) else { return };
+        let Some(mut storage) = ProjectedStorage::from_body(self, &sites, &rows) else { return };
         let mut values: Vec<f64> = sites.iter().map(|node| self.site_values[*node]).collect();
         storage.project(&mut values);
         for (node, value) in sites.iter().zip(values) {
@@ -110,9 +110,13 @@ impl<const D: usize> Body<D> {
 pub struct ProjectedStorage(Factors);
 
 impl ProjectedStorage {
-    /// The storage of a body at the nodes that are its sites, from its [`Body::projection_rows`]; none where there are
-    /// none.
-    pub(crate) fn of<const D: usize>(body: &Body<D>, sites: &[usize], rows: &SiteRows) -> Option<Self> {
+    /// The storage of a body at the nodes that are its sites, from its [`Body::projection_rows`]; `None` if there are no
+    /// such rows.
+    pub(crate) fn from_body<const D: usize>(
+        body: &Body<D>,
+        sites: &[usize],
+        rows: &SiteRows,
+    ) -> Option<Self> {
         if rows.is_empty() {
             return None;
         }
@@ -193,7 +197,7 @@ mod tests {
         let rows = body.projection_rows(&sites, &site_of_node);
         let given: Vec<f64> = (0..sites.len()).map(|site| (1.3 * site as f64).sin()).collect();
         let mut solved = given.clone();
-        ProjectedStorage::of(&body, &sites, &rows).expect("a projection").project(&mut solved);
+        ProjectedStorage::from_body(&body, &sites, &rows).expect("a projection").project(&mut solved);
         for (site, row) in rows.iter().enumerate() {
             let coupling = body.material.water_bulk_modulus / body.porosity_of(sites[site]);
             let projected: f64 = row.iter().map(|(column, value)| value * solved[*column]).sum();
@@ -219,11 +223,11 @@ mod tests {
     #[test]
     fn the_parameter_is_that_of_the_source_times_the_share_of_the_method() {
         let soil = Material::default();
-        let of = |method: Method| method.projection_parameter(&soil);
+        let parameter = |method: Method| method.projection_parameter(&soil);
         let method = Method::named("PPP").expect("a known method");
-        assert!((of(method) / PARAMETER - 1.0).abs() < 1e-12);
-        assert!((of(Method { projection: 125, ..method }) / PARAMETER - 0.125).abs() < 1e-12);
-        assert_eq!(of(Method::named("VP").expect("a known method")), 0.0);
+        assert!((parameter(method) / PARAMETER - 1.0).abs() < 1e-12);
+        assert!((parameter(Method { projection: 125, ..method }) / PARAMETER - 0.125).abs() < 1e-12);
+        assert_eq!(parameter(Method::named("VP").expect("a known method")), 0.0);
     }
 
     #[test]

@@ -124,7 +124,7 @@ impl<const D: usize> Body<D> {
         for &node in &nodes.active {
             let inertia = water_inertia(volume[node], node);
             let share = water_mass[node] * per_solid_mass[node];
-            let drag = NodalDrag::of(level, kick, drag[node], share, inertia);
+            let drag = NodalDrag::new(level, kick, drag[node], share, inertia);
             for d in 0..D {
                 let (free, water_free) = (free[node][d], water_free[node][d]);
                 let balance = NodalBalance {
@@ -133,7 +133,8 @@ impl<const D: usize> Body<D> {
                     per_water_inertia: water_free / drag.inertia(inertia, free * share),
                     drag,
                 };
-                let [force, velocity] = [force, velocity].map(|[one, other]| [one[node][d], other[node][d]]);
+                let [force, velocity] =
+                    [force, velocity].map(|[solid, water]| [solid[node][d], water[node][d]]);
                 let [solid, water] = balance.accelerations(force[0], force[1], velocity);
                 (solid_acceleration[node][d], water_acceleration[node][d]) = (solid, water);
             }

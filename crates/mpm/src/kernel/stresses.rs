@@ -97,10 +97,10 @@ impl<const D: usize> Body<D> {
     fn following(&self) -> Following {
         let moves = self.configuration.moves_points();
         // A hyperelastic law asks for the whole deformation, and so do domains that turn.
-        let is_whole = self.material.law.is_hyperelastic() || self.operators.domains.is_some();
+        let needs_deformation = self.material.law.is_hyperelastic() || self.operators.domains.is_some();
         Following {
             domain: moves && self.method.domains_follow(),
-            inverse: self.configuration == Configuration::Total || moves && is_whole,
+            inverse: self.configuration == Configuration::Total || moves && needs_deformation,
         }
     }
 }
@@ -431,11 +431,11 @@ mod tests {
                 array::from_fn(|j| size(point) * (3.0 * point as f64 + (2 * i + j) as f64).sin())
             })
         };
-        let mut both = [points.clone(), points];
+        let mut versions = [points.clone(), points];
         straining
-            .strain_points(&mut both[0], gradient, |first| Some(array::from_fn(|p| gradient(first + p))));
-        straining.strain_points(&mut both[1], gradient, |_| None);
-        both
+            .strain_points(&mut versions[0], gradient, |first| Some(array::from_fn(|p| gradient(first + p))));
+        straining.strain_points(&mut versions[1], gradient, |_| None);
+        versions
     }
 
     #[test]
@@ -478,13 +478,13 @@ mod tests {
             let stretch = exponential(&increment);
             motion = product(&stretch, &motion);
             let share = volume.exp() / inverse(&stretch).1;
-            let of_step = stretch.map(|row| row.map(|one| share.cbrt() * one));
-            f_bar = product(&of_step, &f_bar);
+            let step_stretch = stretch.map(|row| row.map(|entry| share.cbrt() * entry));
+            f_bar = product(&step_stretch, &f_bar);
             log_volume += volume;
             let mut b_bar = increment;
             let dilation = volume - inverse(&stretch).1.ln();
             (b_bar[0][0], b_bar[1][1]) = (b_bar[0][0] + dilation / 3.0, b_bar[1][1] + dilation / 3.0);
-            for (got, exact) in exponential(&b_bar).as_flattened().iter().zip(of_step.as_flattened()) {
+            for (got, exact) in exponential(&b_bar).as_flattened().iter().zip(step_stretch.as_flattened()) {
                 assert!((got - exact).abs() < 1e-9, "{got} for {exact}");
             }
         }
@@ -542,8 +542,11 @@ mod tests {
             let moved: Tensor<2> = std::array::from_fn(|i| {
                 std::array::from_fn(|j| f64::from(u8::from(i == j)) + dt * gradient[i][j])
             });
-            let whole = product(&back, &moved);
-            (whole[0][0] - 1.0).abs() + whole[0][1].abs() + whole[1][0].abs() + (whole[1][1] - 1.0).abs()
+            let remainder = product(&back, &moved);
+            (remainder[0][0] - 1.0).abs()
+                + remainder[0][1].abs()
+                + remainder[1][0].abs()
+                + (remainder[1][1] - 1.0).abs()
         };
         assert!(off(1e-2) < 1e-6 && (7.5..8.5).contains(&(off(2e-2) / off(1e-2))), "{}", off(1e-2));
     }

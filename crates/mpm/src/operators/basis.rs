@@ -7,7 +7,7 @@
 use crate::method::Basis;
 use crate::operators::row::Row;
 use crate::operators::stencil::{PointStencils, Stencils};
-use crate::state::grid::{GHOST_LAYERS, Grid, power, whole};
+use crate::state::grid::{GHOST_LAYERS, Grid, integer_part, power};
 use crate::state::nodes::Support;
 use crate::wide::wide;
 use oedometer_soil::tensor::Vector;
@@ -109,9 +109,9 @@ impl Basis {
     /// Last node that a surface at a height (in cells) leaves a spline to stand alone on; none without splines.
     pub fn outermost_node(self, height: f64) -> Option<usize> {
         match self {
-            Self::Bspline2 => Some(whole(height + 0.5)),
+            Self::Bspline2 => Some(integer_part(height + 0.5)),
             // The upper node of the cell that the surface is in; one on a face is in the cell below.
-            Self::Bspline3 => Some(whole(height - ON_A_FACE) + 1),
+            Self::Bspline3 => Some(integer_part(height - ON_A_FACE) + 1),
             Self::Hat | Self::Ugimp | Self::Cpgimp | Self::Cpdi => None,
         }
     }
@@ -240,7 +240,7 @@ pub struct Gimp;
 impl ShapeFunction<3> for Gimp {
     #[inline(always)]
     fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
-        let nearest = whole(place + 0.5);
+        let nearest = integer_part(place + 0.5);
         let half_length = half_length.min(0.5);
         let offset = place - nearest as f64;
         let (low, high) = (offset - half_length, offset + half_length);
@@ -267,7 +267,7 @@ impl ShapeFunction<3> for DomainEnds {
     fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
         let half_length = half_length.min(0.5);
         let (low, high) = (place - half_length, place + half_length);
-        let first = whole(low);
+        let first = integer_part(low);
         let middle = (first + 1) as f64;
         // The end below the middle node weighs in on its left, the one above on its right.
         let at = |end: f64| [positive_part(middle - end), positive_part(end - middle)];
@@ -290,7 +290,7 @@ impl ShapeFunction<3> for QuadraticSpline {
 
     #[inline(always)]
     fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
-        let nearest = whole(place + 0.5);
+        let nearest = integer_part(place + 0.5);
         let x = place - nearest as f64;
         let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
         about_middle(nearest - 1, [left, right], [x - 0.5, x + 0.5])
@@ -429,7 +429,7 @@ mod tests {
 
         #[test]
         fn a_row_behind_a_wall_stays_as_it_is(place in 2.5..4.4f64) {
-            let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, whole(place), 0.0));
+            let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, integer_part(place), 0.0));
             let before = quadratic;
             quadratic.fold_at(7, |node| node < 7);
             cubic.fold_at(7, |node| node < 7);
@@ -442,7 +442,7 @@ mod tests {
             let linear = |x: f64| 2.0 + 3.0 * x;
             let (mut quadratic, mut cubic) = (QuadraticSpline::row(place, 0, 0.0), CubicSpline::row(place, 5, 0.0));
             // The surface lies a little above the place, and the last node beside it.
-            let last = whole(place + above + 0.5);
+            let last = integer_part(place + above + 0.5);
             quadratic.straighten_beyond(last.max(quadratic.first + 1));
             cubic.straighten_beyond(5);
             for (row, end) in [(moments(&quadratic, linear), last), (moments(&cubic, linear), 5)] {

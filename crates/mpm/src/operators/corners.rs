@@ -12,7 +12,7 @@ use crate::method::{Basis, Configuration, Method};
 use crate::operators::basis::{Hat, ShapeFunction};
 use crate::operators::row::Row;
 use crate::operators::stencil::{PointStencils, Stencils};
-use crate::state::grid::{GHOST_LAYERS, Grid, whole};
+use crate::state::grid::{GHOST_LAYERS, Grid, integer_part};
 use crate::state::points::Points;
 use oedometer_soil::tensor::{Tensor, Vector, inverse};
 
@@ -59,7 +59,7 @@ fn corner_row<const D: usize>(grid: &Grid<D>, direction: usize, corner: f64, slo
     // `max` and `min`, not `clamp`: they turn a NaN into a place. The outermost node is no cell's lowest.
     let end = (grid.cells[direction] + 2 * GHOST_LAYERS) as f64;
     let corner = corner.max(0.0).min(end - 1e-9);
-    let hat = Hat::row(corner, whole(corner), 0.0);
+    let hat = Hat::row(corner, integer_part(corner), 0.0);
     // A half a direction, a quarter in the plane.
     Row {
         values: hat.values.map(|value| 0.5 * value),
@@ -78,9 +78,9 @@ pub struct Domains<const D: usize> {
 }
 
 impl<const D: usize> Domains<D> {
-    /// Those of points, where a method has domains that turn: in the plane, where points move. Elsewhere domains keep
+    /// The domains of points if the method has domains that turn: in the plane, where points move. Otherwise domains keep
     /// their axes, and a parallelogram is the product of its sides.
-    pub fn of(method: Method, configuration: Configuration, points: &Points<D>) -> Option<Self> {
+    pub fn for_method(method: Method, configuration: Configuration, points: &Points<D>) -> Option<Self> {
         let turns = method.basis == Basis::Cpdi && D == 2 && configuration.moves_points();
         turns.then(|| {
             let mut domains = Self { initial: points.half_length.clone(), half_edges: Vec::new() };
@@ -127,16 +127,16 @@ mod tests {
         (grid, stencils)
     }
 
-    fn field(grid: &Grid<2>, of: impl Fn(f64, f64) -> f64) -> Vec<Vector<2>> {
+    fn field(grid: &Grid<2>, function: impl Fn(f64, f64) -> f64) -> Vec<Vector<2>> {
         let nodes = 0..grid.node_count();
-        nodes.map(|node| grid.node_position(node)).map(|[x, y]| [of(x, y), 0.0]).collect()
+        nodes.map(|node| grid.node_position(node)).map(|[x, y]| [function(x, y), 0.0]).collect()
     }
 
     /// The hats' interpolant of a field at a place, m.
-    fn interpolated(grid: &Grid<2>, of: &impl Fn(f64, f64) -> f64, [x, y]: Vector<2>) -> f64 {
+    fn interpolated(grid: &Grid<2>, function: &impl Fn(f64, f64) -> f64, [x, y]: Vector<2>) -> f64 {
         let h = grid.cell_size;
         let ([i, j], [a, b]) = ([x, y].map(|at| (at / h).floor()), [x, y].map(|at| (at / h).fract()));
-        let node = |right: f64, up: f64| of((i + right) * h, (j + up) * h);
+        let node = |right: f64, up: f64| function((i + right) * h, (j + up) * h);
         (1.0 - b) * ((1.0 - a) * node(0.0, 0.0) + a * node(1.0, 0.0))
             + b * ((1.0 - a) * node(0.0, 1.0) + a * node(1.0, 1.0))
     }
@@ -227,17 +227,18 @@ mod tests {
     fn edges_follow_the_deformation_at_once_and_step_by_step_and_their_area_the_volume() {
         let mut points = Points::<2>::lattice(0.5, [2, 1], 2);
         let method = Method::named("CPDI-SRI-patch").expect("a method");
-        let mut stepwise = Domains::of(method, Configuration::Updated, &points).expect("domains that turn");
+        let mut stepwise =
+            Domains::for_method(method, Configuration::Updated, &points).expect("domains that turn");
         assert_eq!(stepwise.half_edges[3], [[0.125, 0.0], [0.0, 0.125]]);
-        let mut whole = stepwise.clone();
+        let mut at_once = stepwise.clone();
         // Sheared by a half, and turned by a right angle.
         let [shear, turn] = [[[1.0, 0.5], [0.0, 0.8]], [[0.0, -1.0], [1.0, 0.0]]];
         for step in [shear, turn] {
             (0..points.len()).for_each(|point| stepwise.carry(point, &step));
         }
         points.inverse_deformation.fill(inverse(&product(&turn, &shear)).0);
-        whole.follow(&points.inverse_deformation);
-        for domains in [stepwise, whole] {
+        at_once.follow(&points.inverse_deformation);
+        for domains in [stepwise, at_once] {
             let [[ax, ay], [bx, by]] = domains.half_edges[3];
             for (got, exact) in [(ax, 0.0), (ay, 0.125), (bx, -0.1), (by, 0.0625)] {
                 assert!((got - exact).abs() < 1e-16, "{got} for {exact}");
@@ -251,9 +252,9 @@ mod tests {
     fn only_cpdi_on_moving_points_in_the_plane_turns_its_domains() {
         let named = |name| Method::named(name).expect("a method");
         let (plane, column) = (Points::<2>::lattice(1.0, [1, 1], 1), Points::<1>::lattice(1.0, [1], 1));
-        assert!(Domains::of(named("CE-SRI-patch"), Configuration::Updated, &plane).is_some());
-        assert!(Domains::of(named("GIMP-SRI-patch"), Configuration::Updated, &plane).is_none());
-        assert!(Domains::of(named("CPDI-SRI-patch"), Configuration::Total, &plane).is_none());
-        assert!(Domains::of(named("CPDI-SRI-patch"), Configuration::Updated, &column).is_none());
+        assert!(Domains::for_method(named("CE-SRI-patch"), Configuration::Updated, &plane).is_some());
+        assert!(Domains::for_method(named("GIMP-SRI-patch"), Configuration::Updated, &plane).is_none());
+        assert!(Domains::for_method(named("CPDI-SRI-patch"), Configuration::Total, &plane).is_none());
+        assert!(Domains::for_method(named("CPDI-SRI-patch"), Configuration::Updated, &column).is_none());
     }
 }

@@ -34,12 +34,12 @@ impl<const D: usize> Operators<D> {
     /// Room for those of a method; they are built where the points are.
     pub fn new(method: Method, configuration: Configuration, grid: &Grid<D>, points: &Points<D>) -> Self {
         let count = points.len();
-        let domains = Domains::of(method, configuration, points);
+        let domains = Domains::for_method(method, configuration, points);
         Self {
             basis: if domains.is_some() { corner_stencils(count) } else { method.basis.stencils(count) },
-            strain: StrainOperator::of(method.strain, count),
+            strain: StrainOperator::new(method.strain, count),
             domains,
-            recovery: RecoveryOperator::of(method, grid, count),
+            recovery: RecoveryOperator::new(method, grid, count),
         }
     }
 }

@@ -8,8 +8,8 @@ pub struct SparseRows<T> {
 }
 
 impl<T: Copy> SparseRows<T> {
-    /// The operator of some rows.
-    pub fn of(rows: impl IntoIterator<Item = Vec<(usize, T)>>) -> Self {
+    /// The operator with the given rows.
+    pub fn from_rows(rows: impl IntoIterator<Item = Vec<(usize, T)>>) -> Self {
         let (mut starts, mut entries) = (vec![0], Vec::new());
         for row in rows {
             let numbered = |(column, value)| (u32::try_from(column).unwrap_or(u32::MAX), value);

@@ -26,7 +26,7 @@ pub struct StackedPoints {
 
 impl StackedPoints {
     /// The points of a lattice, row by row from the base.
-    pub fn of<const D: usize>(points: &Points<D>, domains_follow: bool) -> Self {
+    pub fn new<const D: usize>(points: &Points<D>, domains_follow: bool) -> Self {
         let height = |point: usize| points.initial_position[point][D - 1];
         let is_lowest =
             |point: &usize| (height(*point) - height(0)).abs() < 1e-6 * points.half_length[0][D - 1];
@@ -113,7 +113,7 @@ mod tests {
     /// A lattice whose volume ratios fall with the height.
     fn squeezed<const D: usize>(cells: [usize; D]) -> (Points<D>, StackedPoints) {
         let mut points = Points::lattice(0.25, cells, 2);
-        let stacked = StackedPoints::of(&points, true);
+        let stacked = StackedPoints::new(&points, true);
         for (ratio, place) in points.volume_ratio.iter_mut().zip(&points.initial_position) {
             *ratio = 1.0 - 0.4 * place[D - 1];
         }

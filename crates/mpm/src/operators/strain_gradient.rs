@@ -34,8 +34,8 @@ pub enum StrainOperator<const D: usize> {
 }
 
 impl<const D: usize> StrainOperator<D> {
-    /// The operator of a choice, with room for so many points.
-    pub fn of(strain: StrainGradient, points: usize) -> Self {
+    /// The operator of a strain gradient, sized for `points` points.
+    pub fn new(strain: StrainGradient, points: usize) -> Self {
         match strain {
             StrainGradient::Standard | StrainGradient::Bbar => Self::Basis,
             StrainGradient::Cmpm | StrainGradient::CmpmBbar => Self::Composite(Stencils::new(points, 1)),
@@ -133,7 +133,7 @@ pub(crate) struct CompositeRows<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> CompositeRows<'a, D> {
-    /// Of so many points that have been found in their cells.
+    /// The composite gradient at `points` points, whose cells are known.
     #[inline(always)]
     pub fn new(grid: &Grid<D>, cells: &'a Cells<D>, points: usize) -> Self {
         Self {

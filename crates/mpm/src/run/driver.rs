@@ -15,9 +15,9 @@ use crate::run::watch::Watch;
 const STEP_RENEWAL: u64 = 32;
 /// Share of the step that the estimate promises to be accurate enough.
 const SAFETY: f64 = 0.9;
-/// What a step may shrink to at once.
+/// Smallest ratio of a step to the one before.
 const SMALLEST_CHANGE: f64 = 0.2;
-/// What it may grow to at once.
+/// Largest ratio of a step to the one before.
 const LARGEST_CHANGE: f64 = 4.0;
 /// Share of an error that is left by a step of a fifth at most where the error is one of the start.
 const STAYS: f64 = 0.7;
@@ -47,8 +47,8 @@ impl<'a> Driver<'a> {
     pub fn new(stepper: &'a mut dyn Stepper, plan: &'a Plan<'a>, observer: Observer<'a>) -> Self {
         let end = plan.schedule.outputs.last().copied().unwrap_or(0.0);
         Self {
-            watch: Watch::of(plan),
-            history: History::of(&plan.schedule.history),
+            watch: Watch::new(plan),
+            history: History::new(&plan.schedule.history),
             time: 0.0,
             sizes: plan.sizes,
             counters: Counters { points: plan.points, nodes: plan.nodes, ..Counters::default() },
@@ -217,13 +217,13 @@ fn settled(stepper: &dyn Stepper, time: f64) -> HistoryPoint {
 #[derive(Clone, Debug)]
 pub struct History<'a> {
     due: &'a [f64],
-    /// What has been noted.
+    /// The samples so far.
     pub noted: Vec<HistoryPoint>,
 }
 
 impl<'a> History<'a> {
-    /// Nothing noted yet of the times due, s, ascending.
-    pub fn of(due: &'a [f64]) -> Self {
+    /// A history without samples, for ascending times `due`, s.
+    pub fn new(due: &'a [f64]) -> Self {
         Self { due, noted: Vec::with_capacity(due.len()) }
     }
 
@@ -258,7 +258,7 @@ mod tests {
         let settlement = |time: f64| 0.3 + 2.0 * time - 0.7 * time * time;
         let rate = |time: f64| 2.0 - 1.4 * time;
         let due = [0.1, 0.15, 0.2, 0.75, 1.0];
-        let mut history = History::of(&due);
+        let mut history = History::new(&due);
         let at =
             |time: f64| HistoryPoint { time, settlement: settlement(time), plate_force: Some(2.0 * time) };
         // Steps with three times, with none, and with one inside and one at its end.
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn without_a_rate_the_settlement_goes_straight() {
         let due = [0.25];
-        let mut history = History::of(&due);
+        let mut history = History::new(&due);
         let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| HistoryPoint {
             time,
             settlement,

@@ -284,7 +284,7 @@ mod tests {
     }
 
     fn agree(probes: &[Probe]) -> bool {
-        let found = CriticalStep {
+        let limit = CriticalStep {
             predicted: 1.0,
             creeping_from: None,
             unknown: None,
@@ -295,7 +295,7 @@ mod tests {
             probes: probes.to_vec(),
             asymmetry: None,
         };
-        found.probes_agree()
+        limit.probes_agree()
     }
 
     #[test]
@@ -319,7 +319,7 @@ mod tests {
         let (column, soil) = (Column::default(), Material::default());
         let problem =
             column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, 2).expect("a column");
-        let found = |steps: [f64; 2]| {
+        let observed_limit = |steps: [f64; 2]| {
             let probes = steps.map(|step| {
                 let (steps, failure) =
                     leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
@@ -330,10 +330,10 @@ mod tests {
                 .expect("a limit")
         };
         let predicted = predict(&problem, &settings, WHOLE_COLUMN).critical_step;
-        let about = found([0.97 * predicted, 1.03 * predicted]);
+        let about = observed_limit([0.97 * predicted, 1.03 * predicted]);
         assert!((about / predicted - 1.0).abs() < 0.02, "{about} for {predicted}");
         for [low, high] in [[1.9, 2.0], [0.2, 0.3]] {
-            let from_aside = found([low * predicted, high * predicted]);
+            let from_aside = observed_limit([low * predicted, high * predicted]);
             assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
         }
     }

@@ -19,7 +19,7 @@ const STEPS_TO_ACCOUNT: u64 = 1024;
 /// that is in motion while a load has worked for a few steps.
 const STEPS_TO_ENERGY: u64 = 32;
 
-/// What the last looks have seen.
+/// Checks of a running solution, with the results of the last ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Watch<'a> {
     plan: &'a Plan<'a>,
@@ -27,7 +27,7 @@ pub struct Watch<'a> {
     velocity: f64,
     /// Largest velocity over that of the look before, and the steps between them.
     growth: Option<(f64, u64)>,
-    /// What was seen of the energy, and the steps until it is looked at again.
+    /// Extremes of the energy, and the steps until the next check.
     energy: EnergyAccount,
     steps_to_account: u64,
     /// The steps before the last look, until an output takes account of them.
@@ -39,8 +39,8 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Nothing seen yet.
-    pub fn of(plan: &'a Plan<'a>) -> Self {
+    /// A watch over a run that has not begun.
+    pub fn new(plan: &'a Plan<'a>) -> Self {
         let energy = EnergyAccount::of_scale(plan.bounds.energy_scale);
         let (steps_to_account, seen, done) = (0, None, 0);
         Self { plan, velocity: 0.0, growth: None, energy, steps_to_account, seen, done, bounds: plan.bounds }

@@ -17,19 +17,19 @@ pub struct Arrangement {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub alternating: bool,
     /// Point sets: 1 carries skeleton and water, 2 are one of each (double-point MPM).
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "single_set", skip_serializing_if = "is_single_set")]
     pub sets: usize,
     /// Points of the water a cell and direction in double-point MPM; 0 otherwise.
     #[serde(default, skip_serializing_if = "is_default")]
     pub water_per_cell: usize,
 }
 
-pub(super) fn one() -> usize {
+pub(super) fn single_set() -> usize {
     1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-pub(super) fn is_one(count: &usize) -> bool {
+pub(super) fn is_single_set(count: &usize) -> bool {
     *count == 1
 }
 

@@ -1,6 +1,6 @@
 //! Geometry and load of the body of soil that a scene is about.
 
-use crate::scene::arrangement::{Arrangement, is_one, one};
+use crate::scene::arrangement::{Arrangement, is_single_set, single_set};
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
 use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
@@ -20,7 +20,7 @@ pub struct Column {
     pub load: f64,
     /// Directions that are solved, 1 or 2. Left out of the identity of a case where it is 1: older
     /// records keep theirs.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "single_set", skip_serializing_if = "is_single_set")]
     pub dimensions: usize,
     /// Time over which the load grows linearly, s; 0 where it acts at once.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -210,8 +210,8 @@ impl Column {
         if !self.footing.is_none() {
             return Some(cells_within(across));
         }
-        let whole = across.round();
-        (whole >= 1.0 && (across - whole).abs() <= WIDTH_TOLERANCE * whole).then_some(whole as usize)
+        let columns = across.round();
+        (columns >= 1.0 && (across - columns).abs() <= WIDTH_TOLERANCE * columns).then_some(columns as usize)
     }
 
     /// Cells over the height; a layer under a footing is at least as deep as it is said to be.

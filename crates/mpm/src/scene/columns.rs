@@ -219,9 +219,9 @@ mod tests {
             ),
         ] {
             let soil = Material { continuity, law, ..Material::default() };
-            let told = |reference| (XIE_LEO.model_difference)(reference, &soil);
-            assert_eq!(told(ReferenceKind::XieLeo), Some(cause), "{law:?} {continuity:?}");
-            assert_eq!(told(LARGE_STRAIN), None);
+            let difference = |reference| (XIE_LEO.model_difference)(reference, &soil);
+            assert_eq!(difference(ReferenceKind::XieLeo), Some(cause), "{law:?} {continuity:?}");
+            assert_eq!(difference(LARGE_STRAIN), None);
         }
     }
 }

@@ -39,7 +39,7 @@ pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
     ..OF_ALL
 };
 
-/// What the motions have in common: at the start nothing is displaced, presses or moves.
+/// Common definition of the motions: at the start there is no displacement, pressure or velocity.
 const OF_ALL: SceneDefinition = SceneDefinition {
     body: SceneBody::Square,
     strain: SceneStrain::Large,
@@ -79,7 +79,7 @@ pub(crate) fn square(motion: Option<Motion>) -> Column {
 #[derive(Clone, Debug)]
 struct MadeMotion {
     solution: Manufactured,
-    /// What the formulas take of the points' initial places, `[point]`.
+    /// Functions of the points' initial places in the formulas, `[point]`.
     spots: Vec<Spot>,
 }
 
@@ -212,9 +212,9 @@ impl<const D: usize> Forcing<D> for MadeMotion {
             |sites, count| {
                 let guesses = sites.map(|site| in_plane(&places[site]));
                 let there = sites.map(|site| in_plane(&present(site)));
-                let found = self.solution.material_places(&there, &moment, &guesses);
+                let material = self.solution.material_places(&there, &moment, &guesses);
                 for place in 0..count {
-                    places[sites[place]] = in_space(found[place]);
+                    places[sites[place]] = in_space(material[place]);
                 }
             }
         ));

@@ -400,18 +400,18 @@ impl SceneKind {
         self,
         column: &Column,
         soil: &Material,
-        own: Option<&Reference>,
-        (heights, found): (&[f64], &[f64]),
+        reference: Option<&Reference>,
+        (heights, pressures): (&[f64], &[f64]),
     ) -> Result<Vec<f64>, ExactError> {
-        match (&self.definition().start_pressure, own) {
-            (StartPressure::Uniform(pressure), _) => Ok(vec![pressure(column, soil); found.len()]),
+        match (&self.definition().start_pressure, reference) {
+            (StartPressure::Uniform(pressure), _) => Ok(vec![pressure(column, soil); pressures.len()]),
             (StartPressure::ZeroMean, _) => {
-                let mean = found.iter().sum::<f64>() / found.len() as f64;
-                Ok(found.iter().map(|pressure| pressure - mean).collect())
+                let mean = pressures.iter().sum::<f64>() / pressures.len() as f64;
+                Ok(pressures.iter().map(|pressure| pressure - mean).collect())
             }
-            (StartPressure::OfReference, None) => Ok(found.to_vec()),
-            (StartPressure::OfReference, Some(own)) => {
-                let at = |height: &f64| Ok(own.fields(0.0, 1.0 - height / column.height)?.pressure);
+            (StartPressure::OfReference, None) => Ok(pressures.to_vec()),
+            (StartPressure::OfReference, Some(reference)) => {
+                let at = |height: &f64| Ok(reference.fields(0.0, 1.0 - height / column.height)?.pressure);
                 heights.iter().map(at).collect()
             }
         }
@@ -466,16 +466,16 @@ mod tests {
 
     #[test]
     fn a_motion_has_the_amplitudes_of_its_kind_and_no_other() {
-        let (one, two) = (["amplitude"], ["amplitude_x", "amplitude_y"]);
+        let (vortex, stretches) = (["amplitude"], ["amplitude_x", "amplitude_y"]);
         for scene in SceneKind::ALL {
             let refused = |names: &[&str]| {
                 let all: Vec<_> = names.iter().map(|name| scene.refuses_input_of_motion(name)).collect();
-                assert!(all.iter().all(|one| one.is_some() == all[0].is_some()), "{}", scene.name());
+                assert!(all.iter().all(|refusal| refusal.is_some() == all[0].is_some()), "{}", scene.name());
                 all[0].is_some()
             };
             let is_vortex = scene == SceneKind::ManufacturedVortex;
             let expected = (scene.is_manufactured() && !is_vortex, is_vortex);
-            assert_eq!((refused(&one), refused(&two)), expected, "{}", scene.name());
+            assert_eq!((refused(&vortex), refused(&stretches)), expected, "{}", scene.name());
             assert_eq!(scene.refuses_input_of_motion("pressure"), None);
         }
     }

@@ -42,7 +42,7 @@ impl SceneProblem {
     ///
     /// # Errors
     /// When the parameters are impossible.
-    pub fn of(
+    pub fn new(
         scene: SceneKind,
         column: &Column,
         soil: &Material,
@@ -197,7 +197,7 @@ pub fn column_problem<const D: usize>(
     })
 }
 
-/// What the sets of points of a problem are made of.
+/// Choices from which the point sets of a problem are made.
 struct PointSets<'a, const D: usize> {
     column: &'a Column,
     soil: &'a Material,
@@ -332,7 +332,7 @@ mod tests {
                 column = column.with_extent(height);
                 column.points = Arrangement { offset, jitter, ..Arrangement::default() };
                 let cells = 3 + number % 5;
-                let problem = SceneProblem::of(scene, &column, &soil, method, cells, 2);
+                let problem = SceneProblem::new(scene, &column, &soil, method, cells, 2);
                 let problem = problem.unwrap_or_else(|error| panic!("{} {height}: {error}", scene.name()));
                 let is_inside = match &problem {
                     SceneProblem::Column(problem) => {

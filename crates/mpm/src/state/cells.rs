@@ -11,7 +11,7 @@ use oedometer_soil::tensor::{Tensor, Vector};
 /// Share of a cell that a domain must reach into it to count.
 const LEAST_REACH: f64 = 1e-6;
 
-/// What a cell knows of its points, flat index = cell.
+/// Quantities of a cell from its points, by flat index.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells<const D: usize> {
     /// Cell of each point.

@@ -14,14 +14,14 @@ const FACE_TOLERANCE: f64 = 1e-10;
 /// No division in the step's innermost loops.
 pub(crate) const SIXTH: f64 = 1.0 / 6.0;
 
-/// Whole part of a coordinate in cells; 32 bits convert several times faster than 64.
+/// Integer part of a coordinate in cells; 32 bits convert several times faster than 64.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "coordinates in cells are positive, the ghost layers see to it"
 )]
-pub(crate) fn whole(in_cells: f64) -> usize {
+pub(crate) fn integer_part(in_cells: f64) -> usize {
     in_cells as u32 as usize
 }
 
@@ -40,7 +40,7 @@ pub const fn power(base: usize, exponent: usize) -> usize {
 /// Index of the cell, in one direction, that holds a coordinate in cells.
 #[inline]
 pub fn cell_below(in_cells: f64) -> usize {
-    whole(in_cells + FACE_TOLERANCE)
+    integer_part(in_cells + FACE_TOLERANCE)
 }
 
 /// A regular grid of square cells.

@@ -428,11 +428,11 @@ mod tests {
         nodes.water_velocity.fill([0.25, 0.5]);
         nodes.take_masses(&soil, false);
         nodes.take_velocities(&soil);
-        let of = |row: usize| {
+        let velocities = |row: usize| {
             let node = grid.flat_node(&[3, row]);
             [nodes.solid_velocity[node], nodes.water_velocity[node]]
         };
-        let [at_base, above] = [of(2), of(3)];
+        let [at_base, above] = [velocities(2), velocities(3)];
         let expected = [[[0.0, 0.0], [0.25, 0.0]], [[3.0, 5.0], [3.25, 7.0]]];
         for (got, expected) in [at_base, above].as_flattened().iter().zip(expected.as_flattened()) {
             assert!((0..2).all(|d| (got[d] - expected[d]).abs() < 1e-14), "{got:?} for {expected:?}");
@@ -460,11 +460,11 @@ mod tests {
             for (got, expected) in of_node.iter().zip(expected) {
                 assert!((got - expected).abs() < 1e-14, "{got} for {expected}");
             }
-            let whole = if has_mass { 1.0 } else { 0.0 };
-            assert_eq!((nodes.free[4], nodes.water_free[4]), ([whole], [whole]));
+            let expected = if has_mass { 1.0 } else { 0.0 };
+            assert_eq!((nodes.free[4], nodes.water_free[4]), ([expected], [expected]));
             assert_eq!(
                 (nodes.volume[4], nodes.drag[4], nodes.water_mass[4] > 0.0),
-                (3.0 * whole, 5.0 * whole, has_mass)
+                (3.0 * expected, 5.0 * expected, has_mass)
             );
         }
     }

@@ -37,7 +37,7 @@ pub struct Points<const D: usize> {
     pub pressure: Vec<f64>,
     /// Number of the point's soil among those of its body.
     pub soil: Vec<u8>,
-    /// What the soil of a point keeps beside its stress; none at all in bodies whose laws have no history.
+    /// History variables of the points; empty in bodies whose laws have no history.
     pub history: Vec<History>,
 }
 

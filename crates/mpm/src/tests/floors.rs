@@ -91,8 +91,8 @@ fn used(name: &str, code: &str, known: &BTreeMap<String, String>) -> BTreeSet<St
         // Of `a::{b, c::d}` every branch.
         let inside = rest.strip_prefix('{').and_then(|rest| rest.split('}').next()).unwrap_or_default();
         for branch in inside.split(',') {
-            let whole = [stem, branch.trim()].join("::");
-            let steps: Vec<&str> = whole.split("::").filter(|step| !step.is_empty()).collect();
+            let full = [stem, branch.trim()].join("::");
+            let steps: Vec<&str> = full.split("::").filter(|step| !step.is_empty()).collect();
             let paths = (1..=steps.len()).rev().map(|count| steps[..count].join("/"));
             // The longest path that is a source.
             used.extend(paths.filter(|path| known.contains_key(path)).take(1));

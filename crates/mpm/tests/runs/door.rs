@@ -59,8 +59,8 @@ fn the_assembled_column_is_the_point_wise_step_to_round_off() {
             let settings =
                 ExplicitSettings { scheme, drag, flip, mapping_back, ..ExplicitSettings::default() };
             for problem_of in [problem, layered_problem] {
-                let of_kernel = |kernel| run(problem_of(name, 7, 3), &schedule(kernel, settings, 0.02));
-                let (fast, plain) = (of_kernel(Kernel::Fastest), of_kernel(Kernel::PointWise));
+                let outcome = |kernel| run(problem_of(name, 7, 3), &schedule(kernel, settings, 0.02));
+                let (fast, plain) = (outcome(Kernel::Fastest), outcome(Kernel::PointWise));
                 assert_eq!(fast.counters, plain.counters);
                 assert_eq!(fast.status, RunStatus::Ok);
                 let (fast, plain) = (fast.snapshots[2].clone(), plain.snapshots[2].clone());

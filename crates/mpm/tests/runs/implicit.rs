@@ -285,22 +285,22 @@ fn named(method: &str) -> Method {
 
 /// The seed column `across` cells wide in two dimensions, between rollers.
 fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
-    let one = seed(method, &Material::default(), cells);
-    let h = one.grid.cell_size;
+    let line = seed(method, &Material::default(), cells);
+    let h = line.grid.cell_size;
     let mut points = Points::<2>::lattice(h, [across, cells], 2);
-    let strain = one.initial_gradient[0][0];
-    points.pressure.fill(one.points.pressure[0]);
-    points.effective_stress.fill(one.material.stiffness().stress(&[[0.0, 0.0], [0.0, strain]]));
+    let strain = line.initial_gradient[0][0];
+    points.pressure.fill(line.points.pressure[0]);
+    points.effective_stress.fill(line.material.stiffness().stress(&[[0.0, 0.0], [0.0, strain]]));
     Problem {
         water: None,
         grid: Grid::new(h, [across, cells + 1]),
         support: Support::oedometer(),
         points,
-        material: one.material,
-        soils: one.soils,
-        method: one.method,
-        configuration: one.configuration,
-        load: one.load,
+        material: line.material,
+        soils: line.soils,
+        method: line.method,
+        configuration: line.configuration,
+        load: line.load,
         load_shape: oedometer_mpm::actions::surface_load::LoadShape::Uniform,
         driven_plate: None,
         plate_load: None,
@@ -308,7 +308,7 @@ fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
         undrained_start: false,
         loading_time: 0.0,
         initial_gradient: [[0.0, 0.0], [0.0, strain]],
-        pressure_scale: one.pressure_scale,
+        pressure_scale: line.pressure_scale,
         forcing: None,
         is_bounded: true,
         balanced_weight: Vec::new(),
@@ -439,8 +439,8 @@ fn the_error_in_time_is_what_was_tolerated() {
         let exact = pressure(exact).0;
         let mut steps = Vec::new();
         for tolerance in [1e-2, 1e-3, 1e-4] {
-            let (found, counters) = pressure(tolerance);
-            let error = difference(&found, &exact);
+            let (computed, counters) = pressure(tolerance);
+            let error = difference(&computed, &exact);
             assert!(error < 2.0 * tolerance && error > 0.01 * tolerance, "{error:.2e} for {tolerance:e}");
             assert!(counters.factorisations < counters.steps / 2 + 20, "{counters:?}");
             steps.push(counters.steps as f64);
@@ -474,9 +474,9 @@ fn the_semi_implicit_integrator_is_stable_up_to_its_limit_and_of_first_order() {
 fn the_semi_implicit_integrator_moves_points_too() {
     let problem = || large_strain("GIMP-SRI-patch", &xie_leo_soil(), 6);
     let fine = implicit(problem(), 0.02, &[0.1]).snapshots.remove(0);
-    let found = solve(problem(), IntegratorKind::SemiImplicit, TimeStepRule::Stable(0.02), &[0.1]);
-    assert!(difference(&found.snapshots[0].points.pressure, &fine.points.pressure) < 0.02);
-    assert!((found.snapshots[0].settlement / fine.settlement - 1.0).abs() < 0.02);
+    let semi_implicit = solve(problem(), IntegratorKind::SemiImplicit, TimeStepRule::Stable(0.02), &[0.1]);
+    assert!(difference(&semi_implicit.snapshots[0].points.pressure, &fine.points.pressure) < 0.02);
+    assert!((semi_implicit.snapshots[0].settlement / fine.settlement - 1.0).abs() < 0.02);
 }
 
 #[test]
@@ -522,7 +522,7 @@ fn the_two_surfaces_differ_by_what_the_composite_gradient_gives_the_last_half_le
 fn a_run_whose_time_is_over_ends_within_its_first_step() {
     let layer = || {
         let method = Method::named("GC-SRI-patch").expect("known");
-        SceneProblem::of(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
+        SceneProblem::new(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
             .expect("a layer")
     };
     let column = |method: &str| SceneProblem::from(seed(method, &Material::default(), 6));
@@ -552,12 +552,12 @@ fn steps_by_tolerance_start_from_points_off_their_lattice() {
             solve(problem(), IntegratorKind::Implicit, TimeStepRule::Tolerance(1e-5), &[0.1, 0.5]);
         let growing = solve(problem(), IntegratorKind::Implicit, TimeStepRule::Growth(0.01), &[0.1, 0.5]);
         assert_eq!(by_tolerance.status, RunStatus::Ok);
-        for (one, other) in by_tolerance.snapshots.iter().zip(&growing.snapshots) {
+        for (adaptive, reference) in by_tolerance.snapshots.iter().zip(&growing.snapshots) {
             assert!(
-                (one.settlement / other.settlement - 1.0).abs() < 1e-3,
+                (adaptive.settlement / reference.settlement - 1.0).abs() < 1e-3,
                 "{} {}",
-                one.settlement,
-                other.settlement
+                adaptive.settlement,
+                reference.settlement
             );
         }
     }

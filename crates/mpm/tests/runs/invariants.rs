@@ -30,7 +30,7 @@ struct Setup {
 }
 
 impl Setup {
-    fn of(method: &str) -> Self {
+    fn new(method: &str) -> Self {
         Self {
             scene: SceneKind::Terzaghi,
             column: Column::default(),
@@ -149,7 +149,7 @@ proptest! {
         drag in prop::sample::select(vec![Drag::Explicit, Drag::Implicit]),
         moving: bool,
     ) {
-        let mut setup = Setup::of(name);
+        let mut setup = Setup::new(name);
         setup.settings.drag = drag;
         setup.time_factors = vec![0.0, 0.02];
         let modulus = density + 2 * ratio;
@@ -171,7 +171,7 @@ proptest! {
         gravity in 0.5..2.0_f64,
         load in 0.1..1e3_f64,
     ) {
-        let setup = Setup::of(name);
+        let setup = Setup::new(name);
         let other = scaled(&setup, length, modulus, density, gravity, load);
         let largest = difference(&other.dimensionless(), &setup.dimensionless());
         prop_assert!(largest < 1e-9, "{}", largest);
@@ -184,21 +184,21 @@ proptest! {
         flip in prop::sample::select(vec![1.0, 0.99]),
         mapping_back: bool,
     ) {
-        let mut setup = Setup::of(name);
+        let mut setup = Setup::new(name);
         setup.settings = ExplicitSettings { drag: Drag::Implicit, flip, mapping_back, ..ExplicitSettings::default() };
         let mut other = setup.clone();
         let factor = f64::from(power).exp2();
         other.column.load *= factor;
-        let (one, more) = (setup.end(), other.end());
-        prop_assert_eq!(one.settlement * factor, more.settlement);
-        for (one, more) in [
-            (&one.points.pressure, &more.points.pressure),
-            (&one.points.effective_stress, &more.points.effective_stress),
-            (&one.points.displacement, &more.points.displacement),
-            (&one.nodes.displacement, &more.nodes.displacement),
+        let (base, scaled) = (setup.end(), other.end());
+        prop_assert_eq!(base.settlement * factor, scaled.settlement);
+        for (base, scaled) in [
+            (&base.points.pressure, &scaled.points.pressure),
+            (&base.points.effective_stress, &scaled.points.effective_stress),
+            (&base.points.displacement, &scaled.points.displacement),
+            (&base.nodes.displacement, &scaled.nodes.displacement),
         ] {
-            let times: Vec<f64> = one.iter().map(|value| value * factor).collect();
-            prop_assert_eq!(&times, more);
+            let times: Vec<f64> = base.iter().map(|value| value * factor).collect();
+            prop_assert_eq!(&times, scaled);
         }
     }
 
@@ -213,7 +213,7 @@ proptest! {
         poissons_ratio in 0.0..0.45_f64,
         height in 0.1..20.0_f64,
     ) {
-        let mut setup = Setup::of(name);
+        let mut setup = Setup::new(name);
         setup.column = Column { height, load, ..setup.column };
         setup.soil = Material { youngs_modulus, poissons_ratio, porosity, ..setup.soil };
         (setup.cells, setup.points_per_cell, setup.time_factors) = (cells, points_per_cell, vec![0.0]);
@@ -236,7 +236,7 @@ proptest! {
         load in 1.0..1e4_f64,
         moving: bool,
     ) {
-        let mut setup = Setup::of(name);
+        let mut setup = Setup::new(name);
         setup.points_per_cell = points_per_cell;
         setup.column.load = load;
         let setup = if moving { setup.moving() } else { setup };
@@ -256,7 +256,7 @@ proptest! {
         points_per_cell in 1..4_usize,
         mapping_back: bool,
     ) {
-        let mut setup = Setup::of(name);
+        let mut setup = Setup::new(name);
         setup.points_per_cell = points_per_cell;
         setup.settings.mapping_back = mapping_back;
         let end = setup.end();
@@ -275,17 +275,17 @@ proptest! {
         drag in prop::sample::select(vec![Drag::Explicit, Drag::Implicit]),
         porosity in 0.2..0.6_f64,
     ) {
-        let of = |name: &str, rule: TimeStepRule| {
-            let mut setup = Setup::of(name);
+        let solved = |name: &str, rule: TimeStepRule| {
+            let mut setup = Setup::new(name);
             (setup.cells, setup.points_per_cell, setup.settings.drag) = (cells, points_per_cell, drag);
             (setup.soil.porosity, setup.rule) = (porosity, rule);
             setup.solve()
         };
-        let mut full = of("GIMP", TimeStepRule::Stable(0.5));
+        let mut full = solved("GIMP", TimeStepRule::Stable(0.5));
         let same_step = TimeStepRule::Seconds(full.step_sizes.target);
         let full = full.snapshots.pop().expect("an output");
         for name in ["MPM", "GIMP-SRI", "uGIMP", "uGIMP-SRI"] {
-            let other = of(name, same_step).snapshots.pop().expect("an output");
+            let other = solved(name, same_step).snapshots.pop().expect("an output");
             let largest = field_difference(&other, &full);
             prop_assert!(largest < 1e-9, "{name}: {}", largest);
         }
@@ -294,17 +294,17 @@ proptest! {
 
 #[test]
 fn a_patch_and_cmpm_are_not_the_same_as_going_without() {
-    let plain = Setup::of("GIMP-SRI").end();
-    let patch = Setup::of("GIMP-SRI-patch").end();
-    let both = Setup::of("GC-SRI-patch").end();
+    let plain = Setup::new("GIMP-SRI").end();
+    let patch = Setup::new("GIMP-SRI-patch").end();
+    let gradient_and_patch = Setup::new("GC-SRI-patch").end();
     assert!(difference(&patch.points.pressure, &plain.points.pressure) > 1e-2);
-    assert!(difference(&both.points.effective_stress, &patch.points.effective_stress) > 1e-2);
+    assert!(difference(&gradient_and_patch.points.effective_stress, &patch.points.effective_stress) > 1e-2);
 }
 
 #[test]
 fn points_that_move_under_one_pascal_agree_with_points_that_do_not() {
     for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch", "uGIMP-SRI-patch"] {
-        let frozen = Setup::of(name);
+        let frozen = Setup::new(name);
         let (moving, frozen) = (frozen.clone().moving().end(), frozen.end());
         for (moved, held) in [
             (&moving.points.pressure, &frozen.points.pressure),
@@ -323,7 +323,7 @@ fn points_that_move_under_one_pascal_agree_with_points_that_do_not() {
 #[test]
 fn the_settlement_of_a_moving_surface_is_that_of_a_frozen_one() {
     let gap = |name: &str, cells: usize| {
-        let mut frozen = Setup::of(name);
+        let mut frozen = Setup::new(name);
         (frozen.cells, frozen.time_factors) = (cells, vec![0.05]);
         difference(&[frozen.clone().moving().end().settlement], &[frozen.end().settlement])
     };
@@ -337,7 +337,7 @@ fn the_settlement_of_a_moving_surface_is_that_of_a_frozen_one() {
 #[test]
 fn the_difference_that_motion_makes_is_proportional_to_the_strain() {
     let at = |load: f64| {
-        let mut frozen = Setup::of("GIMP-SRI-patch");
+        let mut frozen = Setup::new("GIMP-SRI-patch");
         frozen.column.load = load;
         difference(&frozen.clone().moving().end().points.pressure, &frozen.end().points.pressure)
     };
@@ -348,7 +348,7 @@ fn the_difference_that_motion_makes_is_proportional_to_the_strain() {
 /// Settlement with a share of FLIP over that with pure FLIP, at a step in seconds.
 fn settlement_kept(flip: f64, seconds: f64) -> f64 {
     let settlement = |flip: f64| {
-        let mut setup = Setup::of("GIMP-SRI-patch");
+        let mut setup = Setup::new("GIMP-SRI-patch");
         (setup.settings.flip, setup.rule) = (flip, TimeStepRule::Seconds(seconds));
         setup.time_factors = vec![0.01];
         setup.end().settlement
@@ -374,7 +374,7 @@ fn pic_hurts_the_more_the_smaller_the_step() {
 fn drag_at_old_and_at_new_velocities_consolidate_alike() {
     for name in ["GIMP", "GC-SRI-patch"] {
         let with = |drag: Drag, share: f64| {
-            let mut setup = Setup::of(name);
+            let mut setup = Setup::new(name);
             (setup.settings.drag, setup.rule) = (drag, TimeStepRule::Courant(share));
             setup.end()
         };
@@ -389,7 +389,7 @@ fn drag_at_old_and_at_new_velocities_consolidate_alike() {
 fn mapping_back_or_not_consolidates_alike() {
     for name in ["GIMP-SRI-patch", "GC-SRI-patch"] {
         let with = |mapping_back: bool| {
-            let mut setup = Setup::of(name);
+            let mut setup = Setup::new(name);
             (setup.settings.mapping_back, setup.rule) = (mapping_back, TimeStepRule::Courant(0.2));
             setup.end()
         };
@@ -402,7 +402,7 @@ fn mapping_back_or_not_consolidates_alike() {
 #[test]
 fn the_step_size_is_no_part_of_the_answer() {
     let at = |share: f64| {
-        let mut setup = Setup::of("GC-SRI-patch");
+        let mut setup = Setup::new("GC-SRI-patch");
         setup.rule = TimeStepRule::Stable(share);
         setup.end()
     };
@@ -412,7 +412,7 @@ fn the_step_size_is_no_part_of_the_answer() {
 
 #[test]
 fn the_same_run_has_the_same_bits() {
-    for setup in [Setup::of("GC-SRI-patch"), Setup::of("GC-SRI-patch").moving()] {
+    for setup in [Setup::new("GC-SRI-patch"), Setup::new("GC-SRI-patch").moving()] {
         assert_eq!(setup.solve(), setup.solve());
     }
 }
@@ -436,16 +436,16 @@ fn a_load_scaled_by_a_power_of_two_scales_every_result_to_the_bit() {
     for method in ["MPM", "GIMP-SRI", "GC-SRI-patch"] {
         for kernel in [Kernel::Fastest, Kernel::PointWise] {
             for drag in [Drag::Explicit, Drag::Implicit] {
-                let one = Setup {
+                let full = Setup {
                     kernel,
                     settings: ExplicitSettings { drag, flip: 0.99, ..ExplicitSettings::default() },
                     time_factors: vec![0.0, 0.002],
-                    ..Setup::of(method)
+                    ..Setup::new(method)
                 };
-                let mut small = one.clone();
+                let mut small = full.clone();
                 small.column.load *= tiny;
-                for (one, small) in one.solve().snapshots.iter().zip(&small.solve().snapshots) {
-                    let scaled: Vec<f64> = proportional_to_load(one).iter().map(|x| x * tiny).collect();
+                for (full, small) in full.solve().snapshots.iter().zip(&small.solve().snapshots) {
+                    let scaled: Vec<f64> = proportional_to_load(full).iter().map(|x| x * tiny).collect();
                     assert_eq!(proportional_to_load(small), scaled, "{method} {kernel:?} {drag:?}");
                 }
             }

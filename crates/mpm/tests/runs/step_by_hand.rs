@@ -62,7 +62,7 @@ struct ByHand {
 }
 
 impl ByHand {
-    fn of(problem: &Problem<1>, is_gimp: bool) -> Self {
+    fn new(problem: &Problem<1>, is_gimp: bool) -> Self {
         let given = &problem.points;
         let gradient = problem.initial_gradient[0][0];
         let point = |p: usize| {
@@ -266,7 +266,7 @@ fn difference_of(method: &str, soil: &Material, settings: &ExplicitSettings) -> 
     let method_of = Method::named(method).expect("a known method");
     let problem = column_problem::<1>(SceneKind::XieLeo, &column, soil, method_of, CELLS, POINTS_PER_CELL)
         .expect("a possible column");
-    let mut by_hand = ByHand::of(&problem, method != "MPM");
+    let mut by_hand = ByHand::new(&problem, method != "MPM");
     let mut last = 0.0;
     for _ in 0..STEPS {
         let kick = match settings.scheme {
@@ -291,15 +291,15 @@ fn difference_of(method: &str, soil: &Material, settings: &ExplicitSettings) -> 
     let outcome = run(problem, &schedule);
     assert_eq!(outcome.status, RunStatus::Ok, "{method}");
     assert_eq!(outcome.counters.steps, STEPS as u64);
-    let found = &outcome.snapshots.last().expect("an output").points;
+    let computed = &outcome.snapshots.last().expect("an output").points;
     let settled = by_hand.points.last().expect("points").displacement;
     assert!(-settled > 0.25 * by_hand.cell_size, "{method}: points cross cells: {settled}");
     let mut largest = [0.0; 3];
     for (p, point) in by_hand.points.iter().enumerate() {
         let differences = [
-            (found.pressure[p] - point.pressure) / column.load,
-            (found.effective_stress[p] - point.stress) / column.load,
-            (found.displacement[p] - point.displacement) / settled,
+            (computed.pressure[p] - point.pressure) / column.load,
+            (computed.effective_stress[p] - point.stress) / column.load,
+            (computed.displacement[p] - point.displacement) / settled,
         ];
         for (largest, difference) in largest.iter_mut().zip(differences) {
             *largest = f64::max(*largest, difference.abs());
@@ -320,7 +320,7 @@ fn moving_steps_are_those_of_the_equations() {
             let settings = ExplicitSettings { drag, scheme, ..ExplicitSettings::default() };
             let largest = difference_of(method, &soil, &settings);
             assert!(
-                largest.iter().all(|one| *one < 1e-11),
+                largest.iter().all(|difference| *difference < 1e-11),
                 "{method} {law:?} {drag:?} {scheme:?}: {largest:?}"
             );
         }

@@ -34,7 +34,7 @@ fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> Scene
     };
     let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
     let method = Method::named(method).expect("a known method");
-    SceneProblem::of(scene, &column, &soil, method, cells, 2).expect("a plane")
+    SceneProblem::new(scene, &column, &soil, method, cells, 2).expect("a plane")
 }
 
 /// Growth a step at a share of the predicted one; none where no limit is known.
@@ -72,12 +72,12 @@ fn without_limit(
 /// or before, and in one soil so has `-soils`.
 fn methods() -> Vec<String> {
     let same = ["-cells", "-moments", "-soils"];
-    let is_own = |name: &String| {
+    let is_distinct = |name: &String| {
         !name.starts_with(['u'])
             && !name.starts_with("TL-")
             && !same.iter().any(|ending| name.ends_with(ending))
     };
-    Method::names().into_iter().filter(is_own).collect()
+    Method::names().into_iter().filter(is_distinct).collect()
 }
 
 const DRAGS: [(Drag, f64); 3] = [(Drag::Explicit, 1e-3), (Drag::Centred, 1e-8), (Drag::Implicit, 1e-8)];
@@ -96,8 +96,8 @@ fn nothing_grows_on_a_smooth_base() {
 fn nothing_grows_under_a_plate() {
     // Rates of a patch are not the adjoint of the points' forces; where cubic splines meet next to no drag their waves grow,
     // and the program says that no limit is known.
-    let found = without_limit(&methods(), "plate", 4, &DRAGS);
-    assert_eq!(found, ["B3-SRI-patch plate 4 Explicit 1e-3 mapped back"]);
+    let unlimited = without_limit(&methods(), "plate", 4, &DRAGS);
+    assert_eq!(unlimited, ["B3-SRI-patch plate 4 Explicit 1e-3 mapped back"]);
 }
 
 #[test]
@@ -141,12 +141,12 @@ fn a_share_of_a_limit_that_nobody_knows_is_refused_where_growth_spoils_the_resul
 fn the_predicted_step_of_a_plane_is_the_observed_one_where_growth_begins_slowly() {
     let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
     let problem = plane("GC-SRI-patch", "rough", 8, 1e-7);
-    let found = problem.critical_step(&settings, 0.0, 0, &|_, _| true).expect("nobody stops it");
-    let deviation = found.deviation().expect("a step that fails");
-    assert!(found.probes_agree() && deviation.abs() < 0.03, "{found:?}");
+    let limit = problem.critical_step(&settings, 0.0, 0, &|_, _| true).expect("nobody stops it");
+    let deviation = limit.deviation().expect("a step that fails");
+    assert!(limit.probes_agree() && deviation.abs() < 0.03, "{limit:?}");
     // What the eigenvalues say of the probes themselves: a doubling in ten thousand steps beyond the limit alone.
     let grows = |probe: &Probe| probe.predicted_growth.map(|growth| growth > 1.0 + 6.9e-5);
-    assert!(found.probes.iter().all(|probe| grows(probe) == Some(probe.share > 1.0)), "{found:?}");
+    assert!(limit.probes.iter().all(|probe| grows(probe) == Some(probe.share > 1.0)), "{limit:?}");
 }
 
 #[test]
@@ -155,10 +155,10 @@ fn the_predicted_step_of_f_bar_is_the_observed_one_at_large_strain() {
     let column = Column { load: 1e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
     for name in ["GIMP-Bbar", "GC-Bbar-patch", "VP-Bbar", "TL-GC-Bbar-patch"] {
         let method = Method::named(name).expect("a known method");
-        let problem = SceneProblem::of(SceneKind::XieLeo, &column, &Material::default(), method, 6, 2);
-        let found = problem.expect("a column").critical_step(&settings, 0.0, 0, &|_, _| true);
-        let found = found.expect("nobody stops it");
-        let deviation = found.deviation().expect("a step that fails");
-        assert!(found.probes_agree() && deviation.abs() < 0.03, "{name}: {found:?}");
+        let problem = SceneProblem::new(SceneKind::XieLeo, &column, &Material::default(), method, 6, 2);
+        let limit = problem.expect("a column").critical_step(&settings, 0.0, 0, &|_, _| true);
+        let limit = limit.expect("nobody stops it");
+        let deviation = limit.deviation().expect("a step that fails");
+        assert!(limit.probes_agree() && deviation.abs() < 0.03, "{name}: {limit:?}");
     }
 }

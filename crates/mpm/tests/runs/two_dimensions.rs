@@ -20,7 +20,13 @@ const CELLS: usize = 10;
 const PER_CELL: usize = 2;
 
 /// Runs a scene in one and in two dimensions with the same steps.
-fn both(scene: SceneKind, method: Method, load: f64, end: f64, drag: Drag) -> (Outcome, Outcome) {
+fn run_in_both_dimensions(
+    scene: SceneKind,
+    method: Method,
+    load: f64,
+    end: f64,
+    drag: Drag,
+) -> (Outcome, Outcome) {
     let soil = Material { law: scene.default_law(), ..Material::default() };
     let column = Column { load, ..Column::default() };
     let plane = Column { dimensions: 2, ..column };
@@ -95,7 +101,7 @@ fn methods() -> Vec<Method> {
 fn the_paper_s_grid_is_its_column_at_small_strain_whatever_the_method() {
     for scene in [SceneKind::Terzaghi, SceneKind::SingleMode] {
         for method in methods().into_iter().filter(|method| method.configuration.is_none()) {
-            let (column, plane) = both(scene, method, 1e3, 0.01, Drag::Explicit);
+            let (column, plane) = run_in_both_dimensions(scene, method, 1e3, 0.01, Drag::Explicit);
             assert_same(&format!("{} {method}", scene.name()), &column, &plane, 1e-10);
         }
     }
@@ -106,7 +112,7 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
     // Points of a column share the length of their cell (`-cells`); domains that turn do so in the column alone.
     let turns = |method: &Method| method.basis == Basis::Cpdi && method.memory == Memory::Cells;
     for method in methods().into_iter().filter(|method| !turns(method)) {
-        let (column, plane) = both(SceneKind::XieLeo, method, 2e5, 0.03, Drag::Implicit);
+        let (column, plane) = run_in_both_dimensions(SceneKind::XieLeo, method, 2e5, 0.03, Drag::Implicit);
         assert_same(&format!("xie-leo {method}"), &column, &plane, 1e-9);
     }
 }

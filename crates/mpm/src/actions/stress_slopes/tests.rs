@@ -121,7 +121,7 @@ fn levers_are_means_over_the_domain() {
             weight += hat(distance + from_middle) / f64::from(count);
             lever += from_middle * hat(distance + from_middle) / f64::from(count);
         }
-        let got = Levers::of(distance, half_length / cell_size, weight, cell_size);
+        let got = Levers::new(distance, half_length / cell_size, weight, cell_size);
         let gradient = 0.5 * (hat(distance - half_length) + hat(distance + half_length)) - weight;
         assert!((got.value - lever).abs() < 1e-9, "{} for {lever}", got.value);
         assert!((got.gradient - gradient).abs() < 1e-9, "{} for {gradient}", got.gradient);

@@ -24,7 +24,7 @@ struct TiedRow {
 
 impl TiedRows {
     /// Those of a body, by the rows of its nodes.
-    pub fn of<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
+    pub fn new<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
         let tied = body.actions.plate.as_ref().map_or(&[][..], |plate| &plate.nodes);
         let fields = &body.nodes;
         let mass: f64 = tied.iter().map(|node| fields.solid_mass[*node] + fields.water_mass[*node]).sum();
@@ -92,7 +92,7 @@ struct SlidingComponent {
 
 impl SlidingRows {
     /// Those of a body, by the rows of its nodes.
-    pub fn of<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
+    pub fn new<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
         let fields = &body.nodes;
         let of_node = |(node, row): (usize, &Option<usize>)| {
             let (place, porosity) = (MARGIN + (*row)?, fields.porosity[node]);
@@ -102,21 +102,23 @@ impl SlidingRows {
         Self { components: number.iter().enumerate().filter_map(of_node).flatten().collect() }
     }
 
-    /// Takes the acceleration of what slides from what the points are given, once its velocity after the kick is known.
+    /// Removes the acceleration of sliding components from the points' update, once the velocity after the kick is known.
     pub fn keep_accelerations<const D: usize>(&self, state: &mut FrozenState<D>) {
-        for one in &self.components {
-            state.acceleration[WATER][one.place][one.direction] = 0.0;
+        for component in &self.components {
+            state.acceleration[WATER][component.place][component.direction] = 0.0;
         }
     }
 
     /// Gives what slides the velocity after the kick instead of one mapped back, and takes what it would have let through
     /// in a drift of `dt` seconds back to it where pressures see the mapped velocities.
     pub fn keep_velocities<const D: usize>(&self, state: &mut FrozenState<D>, dt: f64, mapping_back: bool) {
-        for one in &self.components {
-            let kicked = state.trial[WATER][one.place][one.direction];
-            let mapped = std::mem::replace(&mut state.velocity[WATER][one.place][one.direction], kicked);
+        for component in &self.components {
+            let kicked = state.trial[WATER][component.place][component.direction];
+            let mapped =
+                std::mem::replace(&mut state.velocity[WATER][component.place][component.direction], kicked);
             if mapping_back {
-                state.flux_displacement[one.place][one.direction] += dt * one.porosity * (kicked - mapped);
+                state.flux_displacement[component.place][component.direction] +=
+                    dt * component.porosity * (kicked - mapped);
             }
         }
     }

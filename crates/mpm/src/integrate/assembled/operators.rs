@@ -38,8 +38,8 @@ pub struct FrozenOperators<const D: usize> {
 }
 
 impl<const D: usize> FrozenOperators<D> {
-    /// Takes the present operators of a body.
-    pub fn of(body: &Body<D>) -> Self {
+    /// Assembles the present operators of a body.
+    pub fn new(body: &Body<D>) -> Self {
         let fields = &body.nodes;
         let is_free = |node: &usize| fields.free[*node] != [0.0; D] || fields.water_free[*node] != [0.0; D];
         let nodes: Vec<usize> = (0..fields.len()).filter(is_free).collect();
@@ -54,13 +54,13 @@ impl<const D: usize> FrozenOperators<D> {
         Self {
             free: nodes.iter().map(|node| [fields.free[*node], fields.water_free[*node]]).collect(),
             divergence: volumetric.divergence.iter().map(|row| numbered(row, &number)).collect(),
-            storage: ProjectedStorage::of(body, &volumetric.sites, &volumetric.projection),
+            storage: ProjectedStorage::from_body(body, &volumetric.sites, &volumetric.projection),
             pressure_force: nodes.iter().map(|node| forces[*node].clone()).collect(),
             skeleton_force: nodes.iter().map(|node| numbered(&skeleton[*node], &number)).collect(),
             projection: nodes.iter().map(|node| numbered(&projection[*node], &number)).collect(),
             settling: numbered(&body.settling_weights(), &number),
-            tied: TiedRows::of(body, &number),
-            sliding: SlidingRows::of(body, &number),
+            tied: TiedRows::new(body, &number),
+            sliding: SlidingRows::new(body, &number),
             node_count: fields.len(),
             volumetric,
             nodes,

@@ -33,8 +33,9 @@ pub enum RowStorage<const D: usize> {
 
 impl<const D: usize> RowStorage<D> {
     /// Takes the rows of a frozen body.
-    pub fn of(operators: &FrozenOperators<D>) -> Self {
-        BandedStorage::of(operators).map_or_else(|| Self::Sparse(SparseStorage::of(operators)), Self::Banded)
+    pub fn new(operators: &FrozenOperators<D>) -> Self {
+        BandedStorage::from_operators(operators)
+            .map_or_else(|| Self::Sparse(SparseStorage::from_operators(operators)), Self::Banded)
     }
 }
 
@@ -72,7 +73,7 @@ pub struct BandsWithin<'a, const D: usize, const R: usize>(pub &'a BandedStorage
 impl<const D: usize> BandedStorage<D> {
     /// Takes the rows of a frozen body; `None` where one reaches beyond the band, a component of its node is held, a
     /// projection of pressures reaches everywhere, or skeleton and water are projected each in its own way.
-    pub fn of(operators: &FrozenOperators<D>) -> Option<Self> {
+    pub fn from_operators(operators: &FrozenOperators<D>) -> Option<Self> {
         if operators.storage.is_some() || operators.free.iter().any(|free| *free != [[1.0; D]; 2]) {
             return None;
         }
@@ -214,12 +215,12 @@ pub struct SparseStorage<const D: usize> {
 fn placed<T: Copy>(rows: &[Vec<(usize, T)>], offset: usize) -> SparseRows<T> {
     let row = |row: &Vec<(usize, T)>| row.iter().map(|(column, value)| (column + offset, *value)).collect();
     let missing = rows.len().next_multiple_of(LANES) - rows.len();
-    SparseRows::of(rows.iter().map(row).chain(std::iter::repeat_n(Vec::new(), missing)))
+    SparseRows::from_rows(rows.iter().map(row).chain(std::iter::repeat_n(Vec::new(), missing)))
 }
 
 impl<const D: usize> SparseStorage<D> {
     /// Takes the rows of a frozen body.
-    pub fn of(operators: &FrozenOperators<D>) -> Self {
+    pub fn from_operators(operators: &FrozenOperators<D>) -> Self {
         let mut free = operators.free.clone();
         free.resize(free.len().next_multiple_of(LANES), [[0.0; D]; 2]);
         Self {

@@ -44,11 +44,11 @@ impl<const D: usize> FrozenState<D> {
     /// A state at rest.
     pub fn zero(rows: usize, sites: usize) -> Self {
         let zero = vec![[0.0; D]; rows.next_multiple_of(LANES) + 2 * MARGIN];
-        let both = [zero.clone(), zero.clone()];
+        let phases = [zero.clone(), zero.clone()];
         Self {
-            velocity: both.clone(),
-            acceleration: both.clone(),
-            trial: both,
+            velocity: phases.clone(),
+            acceleration: phases.clone(),
+            trial: phases,
             strain_displacement: zero.clone(),
             flux_displacement: zero.clone(),
             displacement: zero,

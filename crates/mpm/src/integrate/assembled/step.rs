@@ -68,7 +68,7 @@ pub(crate) struct BlockConstants<const D: usize> {
     /// `ρ_w V`, kg.
     water_inertia: Lanes,
     /// Mass of the water over that of the grains.
-    whole_water_share: Lanes,
+    full_water_share: Lanes,
     drag: Lanes,
     /// Acceleration of the water over its force for one kick and drag, 1/kg.
     per_water_inertia: [Lanes; D],
@@ -82,11 +82,11 @@ impl<const D: usize> AssembledStep<D> {
         let mut body = body.clone();
         body.map_velocities();
         body.map_forces();
-        let (operators, fields) = (FrozenOperators::of(&body), &body.nodes);
+        let (operators, fields) = (FrozenOperators::new(&body), &body.nodes);
         let count = operators.nodes.len();
         let mut step = Self {
             images: mirrored_rows(&body.grid, &operators.nodes),
-            rows: RowStorage::of(&operators),
+            rows: RowStorage::new(&operators),
             constants: vec![BlockConstants::zero(); count.div_ceil(LANES)],
             loaded: Vec::new(),
             state: FrozenState::zero(count, operators.volumetric.divergence.len()),
@@ -115,8 +115,8 @@ impl<const D: usize> AssembledStep<D> {
     pub fn set_step(&mut self, kick: f64, settings: &ExplicitSettings) {
         for block in &mut self.constants {
             for i in (0..LANES).filter(|i| block.water_inertia[*i] > 0.0) {
-                let (inertia, share) = (block.water_inertia[i], block.whole_water_share[i]);
-                let drag = NodalDrag::of(settings.drag, kick, block.drag[i], share, inertia);
+                let (inertia, share) = (block.water_inertia[i], block.full_water_share[i]);
+                let drag = NodalDrag::new(settings.drag, kick, block.drag[i], share, inertia);
                 block.implicit_drag[i] = drag.implicit;
                 for d in 0..D {
                     let (share, free) = (block.water_share[d][i], block.free[WATER][d][i]);
@@ -128,10 +128,11 @@ impl<const D: usize> AssembledStep<D> {
 
     /// Lets a share of the load act that was there at the assembly.
     pub fn set_load_share(&mut self, share: f64) {
-        for one in &self.loaded {
-            let block = &mut self.constants[one.row / LANES];
+        for node in &self.loaded {
+            let block = &mut self.constants[node.row / LANES];
             for d in 0..D {
-                block.mixture_force[d][one.row % LANES] = one.unloaded_force[d] + share * one.load_force[d];
+                block.mixture_force[d][node.row % LANES] =
+                    node.unloaded_force[d] + share * node.load_force[d];
             }
         }
     }
@@ -208,11 +209,11 @@ impl<const D: usize> AssembledStep<D> {
     pub fn body_now(&self, initial: &Body<D>) -> Body<D> {
         let mut body = initial.clone();
         let spread = |field: &[Vector<D>]| {
-            let mut whole = vec![[0.0; D]; self.node_count];
+            let mut nodal = vec![[0.0; D]; self.node_count];
             for (node, value) in self.nodes.iter().zip(&field[MARGIN..]) {
-                whole[*node] = *value;
+                nodal[*node] = *value;
             }
-            whole
+            nodal
         };
         let flux = spread(&self.state.flux_displacement);
         let strained = spread(&self.state.strain_displacement);
@@ -247,7 +248,7 @@ impl<const D: usize> BlockConstants<D> {
             per_solid_mass: zeros,
             water_share: zeros,
             water_inertia: zero,
-            whole_water_share: zero,
+            full_water_share: zero,
             drag: zero,
             per_water_inertia: zeros,
             implicit_drag: zero,
@@ -262,7 +263,7 @@ impl<const D: usize> BlockConstants<D> {
     /// Masses of skeleton and water of a row, kg.
     pub(crate) fn masses(&self, i: usize) -> [f64; 2] {
         let water = self.porosity[i] * self.water_inertia[i];
-        [water / self.whole_water_share[i], water]
+        [water / self.full_water_share[i], water]
     }
 
     /// Porosity at a row.
@@ -301,7 +302,7 @@ impl<const D: usize> BlockConstants<D> {
         }
         self.porosity[i] = fields.porosity[node];
         self.water_inertia[i] = body.material.water_density * fields.volume[node];
-        self.whole_water_share[i] = water_share;
+        self.full_water_share[i] = water_share;
         self.drag[i] = fields.drag[node];
     }
 }

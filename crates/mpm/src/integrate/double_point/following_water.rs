@@ -127,7 +127,7 @@ mod tests {
             double.water.mass[point] *= 1.0 + 1e-3 * point as f64;
             double.water.velocity[point] = [point as f64];
         }
-        let (masses, whole) = (double.water.mass.clone(), double.water.mass.iter().sum::<f64>());
+        let (masses, total) = (double.water.mass.clone(), double.water.mass.iter().sum::<f64>());
         let height = double.body.grid.cell_size * 5.0;
         double.water.position[3] = [height + 3.0 * double.water.half_length[3][0]];
         double.follow_water();
@@ -135,11 +135,11 @@ mod tests {
         assert_eq!(water.len(), masses.len() - 1);
         assert!((water.left_mass - masses[3]).abs() < 1e-12 * masses[3], "{}", water.left_mass);
         let stay: Vec<usize> = (0..masses.len()).filter(|point| *point != 3).collect();
-        let is_their_own = |(here, before): (usize, &usize)| {
+        let is_unchanged = |(here, before): (usize, &usize)| {
             water.mass[here] == masses[*before] && water.velocity[here] == [*before as f64]
         };
-        assert!(stay.iter().enumerate().all(is_their_own), "{:?} {:?}", water.mass, water.velocity);
-        assert!((water.mass.iter().sum::<f64>() + water.left_mass - whole).abs() < 1e-12 * whole);
+        assert!(stay.iter().enumerate().all(is_unchanged), "{:?} {:?}", water.mass, water.velocity);
+        assert!((water.mass.iter().sum::<f64>() + water.left_mass - total).abs() < 1e-12 * total);
         let places = [&water.position, &water.half_length, &water.slope, &water.place, &water.reach];
         assert!(places.iter().all(|field| field.len() == water.len()));
         let numbers = [&water.pressure, &water.porosity, &water.volume, &water.share];

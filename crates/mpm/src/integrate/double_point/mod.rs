@@ -72,7 +72,7 @@ impl<const D: usize> DoublePoint<D> {
     pub fn new(mut body: Body<D>, lattice: &Points<D>, gradient: &Tensor<D>, settled: bool) -> Self {
         let displacement = settled.then(|| body.nodes.displacement.clone());
         let moves = body.configuration.moves_points();
-        let water = WaterPoints::of(lattice, &body.material, moves.then_some(gradient));
+        let water = WaterPoints::new(lattice, &body.material, moves.then_some(gradient));
         let count = water.len();
         // The water carries them now.
         body.points.pressure.fill(0.0);
@@ -91,7 +91,7 @@ impl<const D: usize> DoublePoint<D> {
         let mut double = Self {
             basis: method.basis.stencils(count),
             cells: Cells::new(&body.grid, count),
-            recovery: RecoveryOperator::of(method, &body.grid, count),
+            recovery: RecoveryOperator::new(method, &body.grid, count),
             site_values: vec![0.0; sites],
             cell_sums: vec![[0.0; 4]; body.grid.cell_count()],
             middles: vec![[0.0; D]; body.grid.cell_count()],
@@ -285,20 +285,20 @@ mod tests {
         run(problem, &schedule, &|_, _| true)
     }
 
-    fn assert_same(one: &Outcome, two: &Outcome, name: &str) {
-        assert_eq!((&one.status, one.counters.steps), (&two.status, two.counters.steps), "{name}");
-        let totals = |one: &Outcome| one.snapshots[1].totals;
-        for total in [|one: Totals| one.surface_flux, |one: Totals| one.water_expansion] {
-            let (one, two) = (total(totals(one)), total(totals(two)));
+    fn assert_same(first: &Outcome, second: &Outcome, name: &str) {
+        assert_eq!((&first.status, first.counters.steps), (&second.status, second.counters.steps), "{name}");
+        let totals = |first: &Outcome| first.snapshots[1].totals;
+        for total in [|first: Totals| first.surface_flux, |first: Totals| first.water_expansion] {
+            let (first, second) = (total(totals(first)), total(totals(second)));
             // Of the order of a settlement of 1e-6 m: under a cosine nothing but round-off.
-            assert!((one - two).abs() <= 1e-10 * one.abs() + 1e-20, "{name}: {two} for {one}");
+            assert!((first - second).abs() <= 1e-10 * first.abs() + 1e-20, "{name}: {second} for {first}");
         }
-        for (one, two) in one.snapshots.iter().zip(&two.snapshots) {
+        for (first, second) in first.snapshots.iter().zip(&second.snapshots) {
             for (a, b) in [
-                (&*one.points.pressure, two.points.pressures().0),
-                (&one.points.effective_stress, &two.points.effective_stress),
-                (&one.points.displacement, &two.points.displacement),
-                (&one.nodes.pressure, two.nodes.pressures().0),
+                (&*first.points.pressure, second.points.pressures().0),
+                (&first.points.effective_stress, &second.points.effective_stress),
+                (&first.points.displacement, &second.points.displacement),
+                (&first.nodes.pressure, second.nodes.pressures().0),
             ] {
                 assert_eq!(a.len(), b.len(), "{name}");
                 let scale = a.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
@@ -388,7 +388,8 @@ mod tests {
             let plane = solved::<2>(problem(SceneKind::XieLeo, method, [2, 2], 2e5), implicit, 0.05);
             assert_eq!(plane.status, RunStatus::Ok, "{method}");
             let (line, plane) = (&line.snapshots[1], &plane.snapshots[1]);
-            let left = |one: &Snapshot| one.totals.double_point.expect("two sets of points").water_left;
+            let left =
+                |snapshot: &Snapshot| snapshot.totals.double_point.expect("two sets of points").water_left;
             // The steps differ with the limits that are predicted for a line and for a plane.
             assert!((plane.settlement / line.settlement - 1.0).abs() < 2e-3, "{method}");
             assert!((left(plane) / left(line) - 1.0).abs() < 1e-2 && left(line) > 0.0, "{method}");

@@ -13,7 +13,8 @@ use crate::integrate::double_point::DoublePoint;
 use crate::state::grid::{GHOST_LAYERS, Grid};
 use oedometer_soil::tensor::Vector;
 
-/// How often what a point carries beyond its cell's line falls by a factor `e` while the water goes through a cell.
+/// Number of times that the deviation of a point from the line of its cell falls by a factor `e` while the water crosses
+/// a cell.
 const FADINGS_PER_CELL: f64 = 2.0;
 
 impl<const D: usize> DoublePoint<D> {
@@ -31,11 +32,13 @@ impl<const D: usize> DoublePoint<D> {
         let mut slopes = std::mem::take(&mut self.slopes);
         let (stride, middles) = (*self.body.grid.cell_stride(), &self.middles);
         for cell in self.cells.occupied() {
-            let own = value(self, cell);
+            let centre = value(self, cell);
             slopes[cell] = std::array::from_fn(|d| {
-                let Some(own) = own else { return 0.0 };
-                let or_own = |other: usize| value(self, other).map_or((cell, own), |value| (other, value));
-                let ((lower, low), (upper, high)) = (or_own(cell - stride[d]), or_own(cell + stride[d]));
+                let Some(centre) = centre else { return 0.0 };
+                let or_centre =
+                    |other: usize| value(self, other).map_or((cell, centre), |value| (other, value));
+                let ((lower, low), (upper, high)) =
+                    (or_centre(cell - stride[d]), or_centre(cell + stride[d]));
                 if lower == upper { 0.0 } else { (high - low) / (middles[upper][d] - middles[lower][d]) }
             });
         }
@@ -114,8 +117,8 @@ mod tests {
         double.fade_beyond_lines(5.0);
         double.sum_cell_pressures(0);
         for cell in double.cells.of_point.clone() {
-            let ([one, ..], [two, ..]) = (before[cell], double.cell_sums[cell]);
-            assert!((two / one - 1.0).abs() < 1e-12, "{two} for {one}");
+            let ([before, ..], [after, ..]) = (before[cell], double.cell_sums[cell]);
+            assert!((after / before - 1.0).abs() < 1e-12, "{after} for {before}");
         }
         // The slope of one of three points moves what their cell presses with, and so the line that they fade to.
         let moved = 6e3 * (0.5 - double.water.place[7][0]) / 3.0;

@@ -37,10 +37,10 @@ impl<const D: usize> DoublePoint<D> {
             (of_nodes, &mut snapshot.nodes),
         ] {
             samples.water = Some(WaterSamples {
-                initial_height: means.of(&|point| places[point][D - 1]),
-                initial_distance: (D > 1).then(|| means.of(&|point| places[point][0])),
+                initial_height: means.average(&|point| places[point][D - 1]),
+                initial_distance: (D > 1).then(|| means.average(&|point| places[point][0])),
                 volume: means.volumes(),
-                pressure: means.of(&|point| water.pressure[point]),
+                pressure: means.average(&|point| water.pressure[point]),
             });
         }
         snapshot.totals = self.totals(snapshot.totals);

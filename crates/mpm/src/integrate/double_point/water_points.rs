@@ -44,7 +44,7 @@ pub struct WaterPoints<const D: usize> {
 impl<const D: usize> WaterPoints<D> {
     /// The water in the pores of a lattice: its pressures and velocities, and where points move, displaced by a
     /// uniform gradient with the soil.
-    pub fn of(lattice: &Points<D>, soil: &Material, gradient: Option<&Tensor<D>>) -> Self {
+    pub fn new(lattice: &Points<D>, soil: &Material, gradient: Option<&Tensor<D>>) -> Self {
         let (mut position, mut half_length) = (lattice.position.clone(), lattice.half_length.clone());
         let mut stretch = 1.0;
         if let Some(gradient) = gradient {

@@ -268,15 +268,19 @@ mod tests {
         let node = double.body.cells.first_node(cell);
         let mut field = vec![[0.0]; double.body.nodes.len()];
         field[node + 1..].fill([1.0]);
-        let own: Vec<usize> = (0..double.water.len()).filter(|w| double.cells.of_point[*w] == cell).collect();
-        let volume: f64 = own.iter().map(|point| double.water.volume_inside(*point)).sum();
-        let mean: f64 = own
+        let points: Vec<usize> =
+            (0..double.water.len()).filter(|w| double.cells.of_point[*w] == cell).collect();
+        let volume: f64 = points.iter().map(|point| double.water.volume_inside(*point)).sum();
+        let mean: f64 = points
             .iter()
             .map(|point| double.water.volume_inside(*point) * double.water.pressure[*point])
             .sum::<f64>()
             / volume;
-        let found = work(&field, &double);
-        assert!((found / mean - 1.0).abs() < 1e-9, "{found} for {mean}: a full cell dilates by its face");
+        let computed = work(&field, &double);
+        assert!(
+            (computed / mean - 1.0).abs() < 1e-9,
+            "{computed} for {mean}: a full cell dilates by its face"
+        );
     }
 
     #[test]
@@ -321,17 +325,18 @@ mod tests {
             double.update_pressure(1e-3);
             double.sum_cell_pressures(0);
             for cell in double.cells.of_point.clone() {
-                let ([one, volume, ..], [two, ..]) = (before[cell], double.cell_sums[cell]);
-                let (found, rate) = ((two - one) / volume, double.site_values[cell]);
-                assert!(rate > 0.0 && (found / rate - 1.0).abs() < 1e-6, "{found} for {rate}");
+                let ([start, volume, ..], [end, ..]) = (before[cell], double.cell_sums[cell]);
+                let (computed, rate) = ((end - start) / volume, double.site_values[cell]);
+                assert!(rate > 0.0 && (computed / rate - 1.0).abs() < 1e-6, "{computed} for {rate}");
             }
             // −Δt (K_w/n) ∇·v has the slope 2e-9 Δt K_w/n over the height, at n = 0.3: in what a point carries, and
             // from one point to another.
             let slope = double.water.slope[2 * of_water][0];
             assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
-            let of = |point: usize| double.water.pressure[point] - pressures[point];
+            let change = |point: usize| double.water.pressure[point] - pressures[point];
             let (low, high) = if of_water == 1 { (1, 2) } else { (6, 8) };
-            let slope = (of(high) - of(low)) / (double.water.place[high][0] - double.water.place[low][0]);
+            let slope =
+                (change(high) - change(low)) / (double.water.place[high][0] - double.water.place[low][0]);
             assert!((slope / 0.014_667 - 1.0).abs() < 0.01, "{slope}");
         }
     }

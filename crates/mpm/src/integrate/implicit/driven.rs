@@ -306,20 +306,20 @@ impl<const D: usize> Stepper for DrivenStepper<D> {
     }
 
     fn snapshot(&self, time: f64) -> Snapshot {
-        let mut told = self.body.clone();
+        let mut body = self.body.clone();
         if !self.plate.has_water {
             // Of one phase the mean stress is the pressure.
-            for point in 0..told.points.len() {
-                let stress = &mut told.points.effective_stress[point];
+            for point in 0..body.points.len() {
+                let stress = &mut body.points.effective_stress[point];
                 let in_plane = stress[0][0] + stress[D - 1][D - 1];
-                let pressure = -(in_plane + told.points.history[point].lateral_stress) / 3.0;
-                told.points.pressure[point] = pressure;
+                let pressure = -(in_plane + body.points.history[point].lateral_stress) / 3.0;
+                body.points.pressure[point] = pressure;
                 for d in 0..D {
                     stress[d][d] += pressure;
                 }
             }
         }
-        Snapshot { plate_force: Some(self.plate_force), ..told.snapshot(time, self.settlement, &self.start) }
+        Snapshot { plate_force: Some(self.plate_force), ..body.snapshot(time, self.settlement, &self.start) }
     }
 
     fn work(&self) -> Work {

@@ -25,8 +25,8 @@ pub struct StageGuess {
 }
 
 impl StageGuess {
-    /// A guess for so many unknowns, with no known rates.
-    pub fn of(count: usize) -> Self {
+    /// A guess for `count` unknowns, without known rates.
+    pub fn new(count: usize) -> Self {
         let rates = [(); 2].map(|()| [(); AGES].map(|()| vec![0.0; count]));
         Self { duration: 0.0, known: 0, rates, order: [0; 2] }
     }
@@ -122,7 +122,7 @@ mod tests {
 
     /// Guesses both stages of some steps of rates that are functions of the time; what the last ones missed.
     fn missed(rate: impl Fn(f64) -> f64, steps: usize, lag: f64) -> [f64; 2] {
-        let (mut guess, mut missed) = (StageGuess::of(1), [0.0; 2]);
+        let (mut guess, mut missed) = (StageGuess::new(1), [0.0; 2]);
         let mut before = [rate(0.0)];
         for step in 0..steps {
             guess.begin_step(0.5);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_jump_is_guessed_by_the_last_rate_and_other_durations_forget() {
-        let mut guess = StageGuess::of(1);
+        let mut guess = StageGuess::new(1);
         for rate in [1.0, 2.0, 3.0, 9.0] {
             guess.begin_step(1.0);
             guess.keep(0, &[9.0], &[0.0], &[rate]);

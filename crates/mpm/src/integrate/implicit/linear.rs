@@ -47,7 +47,7 @@ pub struct LinearStepper<const D: usize> {
 impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
     pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
-        let system = LinearSystem::of(&start);
+        let system = LinearSystem::new(&start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),
@@ -59,7 +59,7 @@ impl<const D: usize> LinearStepper<D> {
             residual: system.start_residual.clone(),
             first_increment: zero.clone(),
             before: (zero.clone(), zero.clone(), 0.0),
-            error_scales: ErrorScales::of(&system.unknowns.scales, plan),
+            error_scales: ErrorScales::new(&system.unknowns.scales, plan),
             increment: zero,
             rate_scale: 0.0,
             outflow: 0.0,

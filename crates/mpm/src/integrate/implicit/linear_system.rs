@@ -60,10 +60,10 @@ type Entry = (usize, usize, f64, f64);
 
 impl<const D: usize> LinearSystem<D> {
     /// Assembles the present operators and forces of a body.
-    pub fn of(body: &Body<D>) -> Self {
+    pub fn new(body: &Body<D>) -> Self {
         let mut loaded = body.clone();
         loaded.map_forces();
-        let unknowns = Unknowns::of(body);
+        let unknowns = Unknowns::new(body);
         let operators = Operators {
             stiffness: body.skeleton_stiffness(&unknowns.rows),
             pressure_forces: body.pressure_forces(&unknowns.rows),
@@ -95,11 +95,13 @@ impl<const D: usize> LinearSystem<D> {
         Self {
             fixed,
             proportional,
-            capacity: SparseRows::of((0..unknowns.pressure.len()).map(|site| operators.capacity_row(site))),
+            capacity: SparseRows::from_rows(
+                (0..unknowns.pressure.len()).map(|site| operators.capacity_row(site)),
+            ),
             start_residual: operators.start_residual(),
             surface_displacement: operators.displacement_row(&body.settling_weights()),
             mean_displacement: operators.displacement_row(&outflow_weights),
-            surface_outflow: SparseRows::of([outflow]),
+            surface_outflow: SparseRows::from_rows([outflow]),
             start_outflow,
             unknowns: operators.unknowns,
         }
@@ -216,7 +218,7 @@ impl<const D: usize> Operators<'_, D> {
     }
 
     fn displacement_row(&self, weights: &[(usize, Vector<D>)]) -> SparseRows<f64> {
-        SparseRows::of([self.weighted_displacements(weights)])
+        SparseRows::from_rows([self.weighted_displacements(weights)])
     }
 }
 

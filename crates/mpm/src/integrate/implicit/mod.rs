@@ -52,7 +52,7 @@ pub struct ErrorScales {
 
 impl ErrorScales {
     /// The scales of a problem.
-    pub fn of(scales: &Scales, plan: &Plan<'_>) -> Self {
+    pub fn new(scales: &Scales, plan: &Plan<'_>) -> Self {
         let pressure = plan.pressure_scale / scales.pressure;
         Self { displacement: plan.bounds.settlement_scale / scales.length, pressure }
     }

@@ -100,7 +100,7 @@ impl<const D: usize> NewtonStepper<D> {
             StepBound::AllWaves | StepBound::Accuracy => (Skeleton::Implicit, SDIRK_STAGES),
         };
         let trial = Trial::new(body, plan.schedule.formulation, skeleton);
-        let pattern = Pattern::of(&trial.body, &trial.unknowns);
+        let pattern = Pattern::new(&trial.body, &trial.unknowns);
         let tangent = pattern.zeros();
         let scales = trial.unknowns.scales;
         let cells = trial.body.grid.cells.iter().fold(0.0, |most: f64, count| most.max(*count as f64));
@@ -126,16 +126,16 @@ impl<const D: usize> NewtonStepper<D> {
                 (false, true) => SHARE_OF_STRAIN * strain,
                 (false, false) => DIFFERENCE,
             },
-            error_scales: ErrorScales::of(&scales, plan),
+            error_scales: ErrorScales::new(&scales, plan),
             stages,
             start: StageStart::default(),
-            guess: StageGuess::of(zero.len()),
+            guess: StageGuess::new(zero.len()),
             rate: zero.clone(),
             state: zero.clone(),
             residual: zero.clone(),
             scratch: zero,
             initial_height: plan.initial_height,
-            load: GrowingLoad::of(&trial.body, plan.loading_time),
+            load: GrowingLoad::new(&trial.body, plan.loading_time),
             time: 0.0,
             settlement_rate: 0.0,
             work: Work::default(),
@@ -234,7 +234,7 @@ impl<const D: usize> NewtonStepper<D> {
     fn solve_stage(&mut self, number: usize) -> Result<(), StepFailure> {
         self.guess.guess(number, &self.rate, &self.start.unknowns, &mut self.state);
         let is_bold = !self.guess.is_plain(number)
-            || (self.factored.is_some() && !self.pattern.is_of(&self.trial.body, &self.trial.unknowns));
+            || (self.factored.is_some() && !self.pattern.matches(&self.trial.body, &self.trial.unknowns));
         match self.iterate() {
             Err(failure) if is_bold && failure.kind != FailureKind::Stopped => {
                 self.guess.make_plain(number);
@@ -355,7 +355,7 @@ impl<const D: usize> NewtonStepper<D> {
     }
 
     fn renew_tangent(&mut self) -> Result<(), StepFailure> {
-        if !self.pattern.is_of(&self.trial.body, &self.trial.unknowns) {
+        if !self.pattern.matches(&self.trial.body, &self.trial.unknowns) {
             self.renew_pattern();
         }
         let (trial, start, time_limit) = (&mut self.trial, &self.start, self.time_limit);
@@ -417,7 +417,7 @@ impl<const D: usize> NewtonStepper<D> {
     /// converge well, unless the unknowns themselves have changed.
     fn follow_structure(&mut self) {
         let (body, unknowns) = (&self.trial.body, &self.trial.unknowns);
-        if self.pattern.is_of(body, unknowns) {
+        if self.pattern.matches(body, unknowns) {
             return;
         }
         self.contraction = self.contraction.max(SLOW);
@@ -426,7 +426,7 @@ impl<const D: usize> NewtonStepper<D> {
         }
         self.renew_pattern();
         let count = self.trial.unknowns.count;
-        self.guess = StageGuess::of(count);
+        self.guess = StageGuess::new(count);
         if count != self.state.len() {
             let scratch = [&mut self.scratch, &mut self.correction];
             for vector in [&mut self.rate, &mut self.state, &mut self.residual].into_iter().chain(scratch) {
@@ -439,7 +439,7 @@ impl<const D: usize> NewtonStepper<D> {
     /// Makes a new pattern, with room for its factors.
     fn renew_pattern(&mut self) {
         self.trial.unknowns.take_rows(&self.trial.body);
-        self.pattern = Pattern::of(&self.trial.body, &self.trial.unknowns);
+        self.pattern = Pattern::new(&self.trial.body, &self.trial.unknowns);
         self.tangent = self.pattern.zeros();
         self.factors = Factors::of_shape(&self.tangent, self.threads, self.time_limit);
         self.factored = None;

@@ -102,7 +102,7 @@ mod tests {
             }
             before = next;
         }
-        before.iter().fold(0.0, |size: f64, one| size.max(one.abs()))
+        before.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()))
     }
 
     #[test]
@@ -110,8 +110,8 @@ mod tests {
         let mut secants = Secants::default();
         assert!(left(6, None) > 1e-3, "{}", left(6, None));
         // Twice as many as rows that differ, and two (Gay 1979).
-        let told = left(6, Some(&mut secants));
-        assert!(told < 1e-14, "{told}");
+        let remainder = left(6, Some(&mut secants));
+        assert!(remainder < 1e-14, "{remainder}");
         // What is known of the rows serves on, until they are others.
         let known = left(2, Some(&mut secants));
         assert!(known < 0.1, "{known}");
@@ -124,7 +124,7 @@ mod tests {
     fn the_last_step_is_what_its_change_of_the_residual_asks_for() {
         let mut secants = Secants::default();
         let before = residual(&[0.0; COUNT]);
-        let after = residual(&before.iter().map(|one| -one).collect::<Vec<_>>());
+        let after = residual(&before.iter().map(|entry| -entry).collect::<Vec<_>>());
         let mut next = after.clone();
         secants.learn(&before, &mut next);
         let mut change: Vec<f64> = before.iter().zip(&after).map(|(before, after)| before - after).collect();
@@ -141,10 +141,10 @@ mod tests {
     fn a_correction_that_changed_nothing_and_what_is_no_number_tell_nothing() {
         let mut secants = Secants::default();
         for next in [[0.9, 0.0], [f64::NAN, 0.0], [f64::NEG_INFINITY, 0.0]] {
-            let mut told = next;
-            secants.learn(&[1.0, 0.0], &mut told);
+            let mut corrected = next;
+            secants.learn(&[1.0, 0.0], &mut corrected);
             assert_eq!(secants.count, 0, "{next:?}");
-            assert_eq!(told.map(f64::to_bits), next.map(f64::to_bits));
+            assert_eq!(corrected.map(f64::to_bits), next.map(f64::to_bits));
         }
         // No more of them are kept than there is room for.
         for _ in 0..=MOST_PAIRS {

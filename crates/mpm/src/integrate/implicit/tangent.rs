@@ -31,7 +31,7 @@ struct Structure {
 }
 
 impl Structure {
-    fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
+    fn new<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         Self {
             basis: body.operators.basis.reach(),
             strain: body.operators.strain.reach(),
@@ -58,7 +58,7 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern of a body on its present operators.
-    pub fn of<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
+    pub fn new<const D: usize>(body: &Body<D>, unknowns: &Unknowns<D>) -> Self {
         let columns_of_row = dependencies(body, unknowns);
         let rows_of_column = Lists::turned(&columns_of_row);
         let zeros = SystemMatrix::spanning(&unknowns.positions, unknowns.border, |visitor| {
@@ -75,11 +75,11 @@ impl Pattern {
             (0..unknowns.count).partition(|unknown| is_pressure[*unknown]);
         let mut groups = groups_of(&rows_of_column, &displacements);
         groups.extend(groups_of(&rows_of_column, &pressures));
-        Self { structure: Structure::of(body, unknowns), rows_of_column, groups, zeros }
+        Self { structure: Structure::new(body, unknowns), rows_of_column, groups, zeros }
     }
 
-    /// Whether it is still the pattern of a body; nothing is allocated.
-    pub fn is_of<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
+    /// Whether the pattern is still that of the body; allocates nothing.
+    pub fn matches<const D: usize>(&self, body: &Body<D>, unknowns: &Unknowns<D>) -> bool {
         if !body.configuration.moves_points() {
             return true;
         }
@@ -123,7 +123,7 @@ impl Pattern {
             residual(state, scratch);
             for column in group {
                 state[*column] -= difference;
-                for row in self.rows_of_column.of(*column) {
+                for row in self.rows_of_column.list(*column) {
                     tangent.add(*row, *column, (scratch[*row] - base[*row]) / difference);
                 }
             }
@@ -238,7 +238,7 @@ pub fn groups_of(rows_of_column: &Lists, columns: &[usize]) -> Vec<Vec<usize>> {
     let mut felt = vec![0_u64];
     for &column in columns {
         felt.fill(0);
-        for row in rows_of_column.of(column) {
+        for row in rows_of_column.list(column) {
             for (felt, taken) in felt.iter_mut().zip(&taken[row * words..]) {
                 *felt |= taken;
             }
@@ -251,7 +251,7 @@ pub fn groups_of(rows_of_column: &Lists, columns: &[usize]) -> Vec<Vec<usize>> {
             words - 1
         });
         let bit = felt[word].trailing_ones() as usize;
-        for row in rows_of_column.of(column) {
+        for row in rows_of_column.list(column) {
             taken[row * words + word] |= 1 << bit;
         }
         let group = word * u64::BITS as usize + bit;
@@ -296,8 +296,8 @@ impl Lists {
         self.starts.len() - 1
     }
 
-    /// One of the lists.
-    pub fn of(&self, number: usize) -> &[usize] {
+    /// The list with a number.
+    pub fn list(&self, number: usize) -> &[usize] {
         &self.items[self.starts[number]..self.starts[number + 1]]
     }
 }
@@ -320,14 +320,14 @@ mod tests {
                 columns
                     .iter()
                     .enumerate()
-                    .all(|(row, felt)| felt.iter().all(|one| rows.of(*one).contains(&row)))
+                    .all(|(row, felt)| felt.iter().all(|column| rows.list(*column).contains(&row)))
             );
             let groups = groups_of(&rows, &(0..count).collect::<Vec<_>>());
             assert_eq!(groups.len(), if full { count } else { 2 * reach + 1 });
             assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), count, "each unknown once");
             for (row, felt) in columns.iter().enumerate() {
                 for group in &groups {
-                    let shared = group.iter().filter(|one| felt.contains(one)).count();
+                    let shared = group.iter().filter(|column| felt.contains(column)).count();
                     assert!(shared < 2, "row {row} feels {shared} of a group");
                 }
             }

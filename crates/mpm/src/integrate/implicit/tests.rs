@@ -66,13 +66,13 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
                 .map(|error| error.expect("solvable"));
             assert!((estimates[0] / estimates[1] - 1.0).abs() < 1e-6, "{name}: {estimates:?}");
         }
-        let (one, other) = (linear.snapshot(0.6), newton.snapshot(0.6));
-        assert!(difference(&other.points.pressure, &one.points.pressure) < 1e-9, "{name}");
-        assert!((one.settlement / other.settlement - 1.0).abs() < 1e-9, "{name}");
+        let (by_linear, by_newton) = (linear.snapshot(0.6), newton.snapshot(0.6));
+        assert!(difference(&by_newton.points.pressure, &by_linear.points.pressure) < 1e-9, "{name}");
+        assert!((by_linear.settlement / by_newton.settlement - 1.0).abs() < 1e-9, "{name}");
         let rates = [linear.settlement_rate(), newton.settlement_rate()].map(|rate| rate.expect("a rate"));
         assert!((rates[0] / rates[1] - 1.0).abs() < 1e-6, "{name}");
-        let flux = one.totals.surface_flux - other.totals.surface_flux;
-        assert!(flux.abs() < 1e-8 * one.settlement, "{name}");
+        let flux = by_linear.totals.surface_flux - by_newton.totals.surface_flux;
+        assert!(flux.abs() < 1e-8 * by_linear.settlement, "{name}");
     }
 }
 
@@ -234,9 +234,9 @@ fn loading_unloading_and_reloading_follow_finite_volumes() {
         loads.push((share, seconds));
         let [coarse, fine] = [40, 80].map(|cells| finite_volumes(&soil, cells, &loads));
         // The seed starts undrained, and the settlement of that is in its start.
-        let found = newton.settlement() - start;
+        let settlement = newton.settlement() - start;
         references.push([
-            found,
+            settlement,
             coarse.0,
             fine.0,
             newton.snapshot(0.0).points.pressure[0],
@@ -271,7 +271,7 @@ fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
             }
             trial.begin_step(0.0);
             trial.end_step(&increments, 0.0);
-            let anew = Unknowns::of(&trial.body);
+            let anew = Unknowns::new(&trial.body);
             let followed = &trial.unknowns;
             assert_eq!(
                 (&followed.displacement, &followed.pressure, &followed.rows.sites, followed.count),

@@ -67,7 +67,7 @@ impl<const D: usize> Trial<D> {
             body.follow_points();
         }
         let mut trial = Self {
-            unknowns: Unknowns::of(&body),
+            unknowns: Unknowns::new(&body),
             start,
             anchor: Points::default(),
             anchor_deformation: Vec::new(),

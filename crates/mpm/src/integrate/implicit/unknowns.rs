@@ -22,7 +22,7 @@ pub struct Scales {
 
 impl Scales {
     /// The scales of a soil on cells of a size, m.
-    pub fn of<const D: usize>(soil: &Material, cell_size: f64) -> Self {
+    pub fn new<const D: usize>(soil: &Material, cell_size: f64) -> Self {
         let (length, pressure) = (cell_size, soil.oedometric_modulus());
         let face: f64 = (1..D).map(|_| length).product();
         Self { length, pressure, force: pressure * face }
@@ -60,7 +60,7 @@ enum UnknownKind {
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers displacements and pressures of a body on its present operators.
-    pub fn of(body: &Body<D>) -> Self {
+    pub fn new(body: &Body<D>) -> Self {
         let rows = body.volumetric_rows();
         let position = |site: &usize| match body.method.pressure {
             PressureIntegration::Points if body.method.has_projection() => body.grid.node_position(*site),
@@ -85,7 +85,7 @@ impl<const D: usize> Unknowns<D> {
             count: 0,
             positions: Vec::new(),
             border: usize::from(body.actions.plate.is_some()),
-            scales: Scales::of::<D>(&body.material, body.grid.cell_size),
+            scales: Scales::new::<D>(&body.material, body.grid.cell_size),
         };
         unknowns.number(body, sites);
         unknowns
@@ -95,7 +95,7 @@ impl<const D: usize> Unknowns<D> {
     /// tangent needs are updated with it.
     pub fn follow(&mut self, body: &Body<D>) {
         if !self.has_numbers_of(body) {
-            *self = Self::of(body);
+            *self = Self::new(body);
             return;
         }
         self.has_old_rows = true;

@@ -154,14 +154,14 @@ impl<const D: usize> Body<D> {
     /// Samples the body at `time`; water is balanced against the points of the `start`.
     pub fn snapshot(&self, time: f64, settlement: f64, start: &Points<D>) -> Snapshot {
         let in_excess = self.in_excess();
-        let told = in_excess.as_ref().unwrap_or(self);
+        let body = in_excess.as_ref().unwrap_or(self);
         Snapshot {
             time,
             settlement,
             plate_force: None,
-            points: told.sample_points(),
-            centres: told.sample_centres(),
-            nodes: told.sample_nodes(),
+            points: body.sample_points(),
+            centres: body.sample_centres(),
+            nodes: body.sample_nodes(),
             totals: self.totals(start),
         }
     }
@@ -283,7 +283,7 @@ pub(crate) struct Means {
 }
 
 impl Means {
-    /// No points yet at so many places.
+    /// Means at `places` places, without points yet.
     pub fn new(places: usize) -> Self {
         Self { volume: vec![0.0; places], shares: Vec::new() }
     }
@@ -294,19 +294,19 @@ impl Means {
         self.shares.push((place, point, volume));
     }
 
-    /// Places with more volume than a ghost of a point.
+    /// Places with more than a negligible volume of points.
     fn places(&self) -> Vec<usize> {
         let least = 1e-12 * self.volume.iter().copied().fold(0.0, f64::max);
         (0..self.volume.len()).filter(|place| self.volume[*place] > least).collect()
     }
 
-    /// Their volumes, m^D.
+    /// Volumes of the places, m^D.
     pub fn volumes(&self) -> Vec<f64> {
         self.places().into_iter().map(|place| self.volume[place]).collect()
     }
 
-    /// Means at them of what each point has.
-    pub fn of(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    /// Averages of a value of the points at each place, weighted by volume.
+    pub fn average(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.volume.len()];
         for (place, point, volume) in &self.shares {
             sums[*place] += volume * value(*point);
@@ -315,7 +315,7 @@ impl Means {
     }
 
     fn sample<const D: usize>(&self, points: &Points<D>) -> Samples {
-        samples_of(points, self.volumes(), &|value| self.of(value))
+        samples_of(points, self.volumes(), &|value| self.average(value))
     }
 }
 

@@ -85,8 +85,8 @@ fn the_undrained_start_is_skemptons_and_the_plate_is_in_balance() {
         let settled = exact.settlement(0.0).expect("a time");
         assert!((body.settlement(1.0) / settled - 1.0).abs() < 1e-9);
         let pressure = exact.fields(0.0, 1.0).expect("inside").pressure;
-        for found in &body.points.pressure {
-            assert!((found / pressure - 1.0).abs() < 1e-9, "{found} for {pressure}");
+        for computed in &body.points.pressure {
+            assert!((computed / pressure - 1.0).abs() < 1e-9, "{computed} for {pressure}");
         }
     }
 }
@@ -120,15 +120,15 @@ fn tying_keeps_momentum_and_makes_one_velocity() {
 #[test]
 fn a_second_row_of_cells_changes_nothing() {
     for method in ["GIMP", "GIMP-SRI-patch"] {
-        let one = implicit(slab(method, &soft(), 6, 1));
-        let two = implicit(slab(method, &soft(), 6, 2));
-        for (one, two) in one.snapshots.iter().zip(&two.snapshots) {
+        let single = implicit(slab(method, &soft(), 6, 1));
+        let double = implicit(slab(method, &soft(), 6, 2));
+        for (single, double) in single.snapshots.iter().zip(&double.snapshots) {
             // Twice as far between the plates: twice the way.
-            assert!((two.settlement / one.settlement - 2.0).abs() < 1e-9, "{method}");
+            assert!((double.settlement / single.settlement - 2.0).abs() < 1e-9, "{method}");
             let profile = |samples: &[f64], across: usize| -> Vec<f64> {
                 samples.iter().step_by(across).copied().collect()
             };
-            let (narrow, wide) = (profile(&one.points.pressure, 2), profile(&two.points.pressure, 4));
+            let (narrow, wide) = (profile(&single.points.pressure, 2), profile(&double.points.pressure, 4));
             assert!(apart(&wide, &narrow) < 1e-8, "{method}: {}", apart(&wide, &narrow));
         }
     }

@@ -66,8 +66,8 @@ fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
         let problem = column_problem::<1>(SceneKind::XieLeo, &column, &soil, method, 8, 2).expect("a column");
         let excess = problem.points.pressure[0];
         let mut body = Body::new(problem);
-        let told = body.in_excess().expect("it weighs");
-        for pressure in &told.points.pressure {
+        let in_excess = body.in_excess().expect("it weighs");
+        for pressure in &in_excess.points.pressure {
             assert!((pressure / excess - 1.0).abs() < 1e-12, "{pressure}");
         }
         // Half a metre down without a change of stress: the free water presses with γ_w/2 on both phases.
@@ -119,10 +119,12 @@ fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
                 [true, false].map(|weighs| start(SceneKind::Terzaghi, weighs, 1.0));
             weighing.map_forces();
             weightless.map_forces();
-            let pairs = |of: fn(&Body<1>) -> &Vec<Vector<1>>| -> f64 {
+            let pairs = |field: fn(&Body<1>) -> &Vec<Vector<1>>| -> f64 {
                 let free = weighing.nodes.free.iter();
-                let pairs = of(&weighing).iter().zip(of(&weightless)).zip(free);
-                pairs.map(|((one, other), free)| (one[0] - other[0]).abs() * free[0]).fold(0.0, f64::max)
+                let pairs = field(&weighing).iter().zip(field(&weightless)).zip(free);
+                pairs
+                    .map(|((with_weight, without), free)| (with_weight[0] - without[0]).abs() * free[0])
+                    .fold(0.0, f64::max)
             };
             let apart = [pairs(|body| &body.nodes.mixture_force), pairs(|body| &body.nodes.water_force)];
             assert!(

@@ -36,8 +36,8 @@ pub enum RecoveryOperator<const D: usize> {
 }
 
 impl<const D: usize> RecoveryOperator<D> {
-    /// The operator of a method, with room for a grid and `points` points.
-    pub fn of(method: Method, grid: &Grid<D>, points: usize) -> Self {
+    /// The operator of a method, sized for a grid and `points` points.
+    pub fn new(method: Method, grid: &Grid<D>, points: usize) -> Self {
         match (method.pressure.is_by_cells(), method.recovery) {
             (false, Recovery::NullSpace) => Self::NullSpace(CellPlanes::with_cells(grid.cell_count())),
             (false, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Points, grid.node_count())),
@@ -177,7 +177,7 @@ pub(crate) mod tests {
         let at = block.at();
         for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space", "VP", "PPP"] {
             let method = Method::named(name).expect("a known method");
-            let mut operator = RecoveryOperator::of(method, at.grid, at.positions.len());
+            let mut operator = RecoveryOperator::new(method, at.grid, at.positions.len());
             operator.build(at.grid, at.cells);
             let count = if method.pressure.is_by_cells() { at.grid.cell_count() } else { at.positions.len() };
             let count = if method.has_projection() { at.grid.node_count() } else { count };

@@ -85,9 +85,9 @@ impl<const D: usize> PatchRows<D> {
             held[*cell] |= 1 << soil;
         }
         for (point, soil) in soils.iter().enumerate() {
-            let is_own = |cell: usize| held[cell] >> soil & 1 == 1;
+            let holds_soil = |cell: usize| held[cell] >> soil & 1 == 1;
             let (home, place) = (cells.of_point[point], &cells.place[point]);
-            fit(grid, home, place, &mut self.shares[point], is_own);
+            fit(grid, home, place, &mut self.shares[point], holds_soil);
         }
     }
 

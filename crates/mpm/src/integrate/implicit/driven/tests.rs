@@ -49,7 +49,7 @@ fn load_factors(column: &Column, method: &str, cells: usize) -> Vec<f64> {
     let soil = SceneKind::Footing.default_material();
     let outcome = pushed(column, &soil, (method, cells), &[0.02, 0.05]);
     let half = 0.5 * column.footing.width * soil.undrained_strength;
-    outcome.snapshots.iter().map(|one| one.plate_force.expect("a plate") / half).collect()
+    outcome.snapshots.iter().map(|snapshot| snapshot.plate_force.expect("a plate") / half).collect()
 }
 
 #[test]
@@ -66,8 +66,8 @@ fn a_plate_over_the_whole_layer_strains_it_uniaxially_as_the_closed_form_says() 
             // s_yy = 4/3 G ε up to 2k/√3.
             let deviator = (4.0 / 3.0 * shear * strain).min(2.0 / 3.0_f64.sqrt() * soil.undrained_strength);
             let expected = (bulk * strain + deviator) / 3.0;
-            let found = snapshot.plate_force.expect("a plate");
-            assert!((found / expected - 1.0).abs() < 1e-8, "{method} {strain}: {found} for {expected}");
+            let force = snapshot.plate_force.expect("a plate");
+            assert!((force / expected - 1.0).abs() < 1e-8, "{method} {strain}: {force} for {expected}");
         }
     }
 }
@@ -105,8 +105,8 @@ fn water_that_stays_bears_the_load_that_total_stress_does() {
         outcome.snapshots[0].plate_force.expect("a plate") / half
     };
     for method in ["GIMP-Bbar", "GIMP-Bbar-patch"] {
-        let (found, dry) = (load(method), load_factors(&column, method, 4)[1]);
-        assert!((found / dry - 1.0).abs() < 0.02, "{method}: {found} with water, {dry} without");
+        let (saturated, dry) = (load(method), load_factors(&column, method, 4)[1]);
+        assert!((saturated / dry - 1.0).abs() < 0.02, "{method}: {saturated} with water, {dry} without");
     }
     // A flow that keeps the volume locks in the skeleton too, where the water alone is cured.
     let alone = load("GIMP-SRI");
@@ -118,15 +118,19 @@ fn water_that_stays_bears_the_load_that_total_stress_does() {
 fn a_step_that_finds_no_balance_is_taken_in_halves_and_ends_where_small_steps_do() {
     let column = Column::under_footing();
     let soil = SceneKind::Footing.default_material();
-    let whole = TimeStepRule::Seconds(column_parameters(&column, &soil).time(0.05));
-    let [one, small] = [whole, TimeStepRule::Growth(0.1)]
+    let single_step = TimeStepRule::Seconds(column_parameters(&column, &soil).time(0.05));
+    let [single, small] = [single_step, TimeStepRule::Growth(0.1)]
         .map(|rule| stepped(&column, &soil, ("GIMP-SRI", 4), &[0.05], rule));
-    assert!(one.counters.rejected_steps > 0 && small.counters.rejected_steps == 0, "{:?}", one.counters);
-    let of = |outcome: &Outcome| {
+    assert!(
+        single.counters.rejected_steps > 0 && small.counters.rejected_steps == 0,
+        "{:?}",
+        single.counters
+    );
+    let end_of = |outcome: &Outcome| {
         let end = &outcome.snapshots[0];
         (end.settlement, end.plate_force.expect("a plate"))
     };
-    let ((settled, force), (right, load)) = (of(&one), of(&small));
+    let ((settled, force), (right, load)) = (end_of(&single), end_of(&small));
     assert!((settled / right - 1.0).abs() < 1e-12, "{settled} for {right}");
     assert!((force / load - 1.0).abs() < 0.02, "{force} for {load}");
 }
