@@ -61,7 +61,7 @@ pub fn dotted_key(scene: &str, name: &str) -> Result<String, ApiError> {
     let found = tables.iter().find(|table| Key::named(name, table).is_some());
     found.map(|table| format!("{table}.{name}")).ok_or_else(|| {
         let names: Vec<&str> =
-            [body, "material"].iter().flat_map(|table| Key::of(table)).map(|key| key.name).collect();
+            [body, "material"].iter().flat_map(|table| Key::in_table(table)).map(|key| key.name).collect();
         let (scene, known) = (scene.name(), names.join(", "));
         ApiError::UnknownName(format!("no input of `{scene}` is called `{name}`; there are {known}"))
     })

@@ -149,7 +149,7 @@ fn levels_of(record: &Record, siblings: &[&Case], golden: &GoldenFile, row: &Err
         let errors: Vec<Option<f64>> = path.records.iter().map(|other| error(other)).collect();
         let sizes = path.records.iter().map(|other| level_size(other, axis));
         let known = sizes.zip(&errors).filter_map(|(size, error)| Some((size, (*error)?)));
-        let found = classify(&ErrorSeries::of(&known.collect::<Vec<_>>()), &Context::default());
+        let found = classify(&ErrorSeries::from_pairs(&known.collect::<Vec<_>>()), &Context::default());
         Some(LevelSeries {
             axis,
             labels: path.records.iter().map(|other| label(&other.case)).collect(),
@@ -191,7 +191,7 @@ pub struct ErrorPlace {
 /// When a reference refuses the case.
 pub fn place_of(record: &Record, row: &ErrorRow) -> Result<Option<ErrorPlace>, ExactError> {
     let case = &record.case;
-    let samples = record.snapshot(row.time_factor).and_then(|snapshot| row.sample.of(snapshot));
+    let samples = record.snapshot(row.time_factor).and_then(|snapshot| row.sample.samples(snapshot));
     let (Some(samples), Ok(kind)) = (samples, row.reference.parse::<ReferenceKind>()) else {
         return Ok(None);
     };

@@ -42,7 +42,7 @@ impl Path<'_> {
             |record: &&Record| ROUND_OFF * (record.case.cells as f64).sqrt() * record.case.cells as f64;
         let of_digits = |record: &&Record| {
             let snapshot = record.snapshot(measure.time_factor)?;
-            let samples = measure.sample.of(snapshot).unwrap_or(&snapshot.nodes);
+            let samples = measure.sample.samples(snapshot).unwrap_or(&snapshot.nodes);
             Some(2.0 * half_a_digit(measure.quantity.field(samples)?))
         };
         let read = self.records.iter().filter(|record| record.outside_run().is_some());
@@ -148,7 +148,7 @@ pub(crate) fn oscillation_of(record: &Record, measure: &Measure) -> Option<f64> 
         return field.filter(|_| is_measured).map(|field| field.oscillation_index());
     }
     let case = &record.case;
-    let samples = measure.sample.of(record.snapshot(measure.time_factor)?)?;
+    let samples = measure.sample.samples(record.snapshot(measure.time_factor)?)?;
     let kind = measure.reference.parse::<ReferenceKind>().ok()?.for_soil(&case.material);
     let reference = known_reference(case, kind, &[measure.time_factor]).ok()?;
     let exact = exact_samples(case, &reference, measure.time_factor, samples).ok()?;
@@ -158,7 +158,7 @@ pub(crate) fn oscillation_of(record: &Record, measure: &Measure) -> Option<f64> 
 /// Order in the cell size that a method's operators promise at small strain, where they promise
 /// one: constant fields in a cell are of first order at points and of second at the centres.
 fn formal_order(case: &Case, measure: &Measure) -> Option<f64> {
-    let method = case.method.own()?;
+    let method = case.method.built_in()?;
     let by_points = |second: bool| if second { 2.0 } else { 1.0 };
     match (measure.quantity, measure.sample) {
         (Quantity::Pressure, Sample::Points) => {
@@ -212,7 +212,7 @@ fn model_limiter(finest: &Record, measure: &Measure) -> Option<Limiter> {
         Some((settlement(&own)? / settlement(&other)? - 1.0).abs()).filter(|ratio| ratio.is_finite())?
     } else {
         let snapshot = finest.snapshot(measure.time_factor)?;
-        let samples = measure.sample.of(snapshot).unwrap_or(&snapshot.nodes);
+        let samples = measure.sample.samples(snapshot).unwrap_or(&snapshot.nodes);
         let exact = |reference| exact_samples(case, reference, measure.time_factor, samples).ok();
         let (own, other) = (exact(&own)?, exact(&other)?);
         let field = |samples| measure.quantity.field(samples);
@@ -325,7 +325,7 @@ mod tests {
             "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.2]\n[column]\nload = 3.6e4\n[[sweep]]\n\
              method = ['VP', 'MPM']\nintegrator = ['implicit']\ncells = [4]\n",
         );
-        let method = runs[0].case.method.own().expect("a method of this program");
+        let method = runs[0].case.method.built_in().expect("a method of this program");
         let configuration = Some(oedometer_mpm::method::Configuration::Updated);
         runs[0].case.method = SolverName::Own(oedometer_mpm::method::Method { configuration, ..method });
         let measure = first_measure(Quantity::Settlement, Sample::Surface, "terzaghi-incompressible", 0.2);

@@ -244,7 +244,7 @@ fn difference_of(record: &Record, finer: &Record, measure: &Measure) -> Option<f
     if measure.quantity == Quantity::LoadFactor {
         return finite(coarse.plate_force? / fine.plate_force? - 1.0);
     }
-    let (coarse, fine) = [coarse, fine].map(|one| measure.sample.of(one).unwrap_or(&one.nodes)).into();
+    let (coarse, fine) = [coarse, fine].map(|one| measure.sample.samples(one).unwrap_or(&one.nodes)).into();
     let (computed, exact) = (measure.quantity.field(coarse)?, measure.quantity.field(fine)?);
     relative_error(measure.norm, computed, exact, &fine.volume)
 }

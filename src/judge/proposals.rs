@@ -116,7 +116,7 @@ fn toml_of(value: Value) -> Option<String> {
     Some(match value {
         Value::Method(method) => {
             let name = method.to_string();
-            if method.own().is_some() && Method::named(&name).is_none() {
+            if method.built_in().is_some() && Method::named(&name).is_none() {
                 return None;
             }
             format!("{name:?}")

@@ -281,7 +281,7 @@ fn of_record(study: &Study, record: &Record) -> Vec<String> {
 
 /// A snapshot as the state that it was made of.
 fn state_of(snapshot: &Snapshot, record: &Record) -> SampledState {
-    let Some(samples) = record.main_sample().of(snapshot) else { return SampledState::default() };
+    let Some(samples) = record.main_sample().samples(snapshot) else { return SampledState::default() };
     let plane = samples.plane.clone().unwrap_or_default();
     SampledState {
         time: snapshot.time,

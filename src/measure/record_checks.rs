@@ -262,7 +262,7 @@ fn most_pressure(record: &Record) -> Result<f64, &'static str> {
     if case.scene.is_at_rest() {
         return Err("the pressures are those of the weight");
     }
-    let is_full = case.method.own().is_some_and(|method| !method.pressure.is_by_cells());
+    let is_full = case.method.built_in().is_some_and(|method| !method.pressure.is_by_cells());
     let is_footing = case.scene == SceneKind::Footing;
     let is_stiff = case.scene.is_a_layer() && case.material.poissons_ratio > LOCKING;
     if is_stiff || is_full && (is_footing || case.scene.is_a_layer()) {

@@ -126,7 +126,7 @@ pub fn theory_consolidation(
 /// A run's `p/q` at its points over depth, at the output of a time factor.
 pub fn computed_isochrone(record: &Record, time_factor: f64) -> Vec<(f64, f64)> {
     let Some(snapshot) = record.snapshot(time_factor) else { return Vec::new() };
-    let points = record.main_sample().of(snapshot).unwrap_or(&snapshot.points);
+    let points = record.main_sample().samples(snapshot).unwrap_or(&snapshot.points);
     let pairs = points.pressure.iter().zip(&points.initial_height);
     pairs
         .map(|(pressure, height)| {

@@ -50,7 +50,7 @@ pub fn cost_of(record: &Record) -> f64 {
 /// What a run is calibrated with.
 fn work_kind(record: &Record) -> WorkKind {
     let case = &record.case;
-    let kind = match StepKind::of(case) {
+    let kind = match StepKind::for_case(case) {
         // The undrained start alone.
         _ if record.counters.steps == 0 => "start",
         StepKind::Assembled => "assembled",
@@ -67,7 +67,7 @@ fn work_kind(record: &Record) -> WorkKind {
 /// Counted work by the nominal costs of the program's estimates, s.
 fn nominal_seconds(record: &Record) -> f64 {
     let (case, counters) = (&record.case, &record.counters);
-    let cost = StepKind::of(case).cost(case.column.dimensions);
+    let cost = StepKind::for_case(case).cost(case.column.dimensions);
     let points = counters.points as f64;
     let width =
         case.column.cells_across(case.cells).unwrap_or(1).min(case.column.cells_up(case.cells)) as f64;
@@ -162,7 +162,7 @@ mod tests {
             "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
              integrator = ['implicit']\ncells = [2]\n",
         );
-        let cost = StepKind::of(&records[0].case).cost(2);
+        let cost = StepKind::for_case(&records[0].case).cost(2);
         let seconds = |steps, factorisations| {
             let mut record = records[0].clone();
             (record.counters.steps, record.counters.iterations) = (steps, 0);

@@ -443,7 +443,7 @@ fn times(_: &mut SchemaGenerator) -> Schema {
 }
 
 fn axes(_: &mut SchemaGenerator) -> Schema {
-    let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
+    let names: Vec<&str> = Key::in_table("sweep").map(|key| key.name).collect();
     json_schema!({ "type": "array", "items": { "enum": names } })
 }
 

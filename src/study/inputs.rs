@@ -39,7 +39,7 @@ pub struct Inputs(pub Vec<(&'static Key, One)>);
 impl Inputs {
     /// Takes the inputs out of a table that takes those `of` a name; the remaining keys belong to the table.
     fn take(table: &mut DeTable<'_>, of: &str, are_lists: bool) -> Result<Self, Error> {
-        let taken = Key::of(of).filter_map(|key| Some((key, table.remove(key.name)?)));
+        let taken = Key::in_table(of).filter_map(|key| Some((key, table.remove(key.name)?)));
         let inputs = taken.map(|(key, value)| Ok((key, typed(key.kind, value, are_lists)?)));
         inputs.collect::<Result<_, Error>>().map(Self)
     }
@@ -126,7 +126,7 @@ pub fn add_inputs(schema: &mut Schema, of: &str, are_lists: bool) {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut generator = settings.with(|settings| settings.inline_subschemas = true).into_generator();
     let own = schema.ensure_object().entry("properties").or_insert(serde_json::json!({}));
-    for key in Key::of(of) {
+    for key in Key::in_table(of) {
         let value = schema_of_values(key, &mut generator);
         let mut one = if are_lists { json_schema!({ "type": "array", "items": value }) } else { value };
         one.insert("description".to_owned(), key.description().into());

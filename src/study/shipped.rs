@@ -131,7 +131,7 @@ mod tests {
         let studied: BTreeSet<(&str, &str)> = shipped_studies()
             .iter()
             .flat_map(|source| Study::check(source).expect("sound").planned)
-            .filter_map(|planned| planned.case.method.own())
+            .filter_map(|planned| planned.case.method.built_in())
             .flat_map(|method| parts(&method))
             .map(|part| (part.choice, part.word))
             .collect();

@@ -48,7 +48,7 @@ fn table(name: &str) -> Option<String> {
             "[column]" => inputs("column") + &own_rows("/properties/column/properties"),
             of => {
                 let table = of.strip_prefix('[')?.strip_suffix(']')?;
-                Key::of(table).next()?;
+                Key::in_table(table).next()?;
                 inputs(table)
             }
         },
@@ -81,7 +81,7 @@ fn inputs(table: &str) -> String {
     let seed = Case::seed(Task::Solve, scene);
     // A sweep takes the keys of the other tables too, which have them on the same page.
     let is_own = |key: &&Key| table != "sweep" || key.tables.len() == 1 || key.name == "cells";
-    let rows = Key::of(table).filter(is_own).map(|key| {
+    let rows = Key::in_table(table).filter(is_own).map(|key| {
         let left_out = match key.name {
             "method" | "cells" => "required".to_owned(),
             "time_step" => "the integrator's own".to_owned(),

@@ -232,8 +232,12 @@ fn a_spread_is_that_of_all_levels_and_a_share_the_largest() {
     for place in 0..4 {
         let mut errors = [1.0, 1.1, 1.05, 1.02];
         errors[place] = 4.0;
-        let series =
-            ErrorSeries::of(&[(1.0, errors[0]), (0.5, errors[1]), (0.25, errors[2]), (0.125, errors[3])]);
+        let series = ErrorSeries::from_pairs(&[
+            (1.0, errors[0]),
+            (0.5, errors[1]),
+            (0.25, errors[2]),
+            (0.125, errors[3]),
+        ]);
         let verdict = judge(&spread, &series, &oedometer_convergence::Context::default(), &Beside::default());
         let check = verdict.checks.iter().find(|check| check.name == "spread").expect("asked for");
         let least = if place == 0 { 1.02 } else { 1.0 };

@@ -9,7 +9,7 @@ use oedometer_soil::wording::short;
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);
-    ErrorSeries::of(&sizes.map(|size| (size, error(size))))
+    ErrorSeries::from_pairs(&sizes.map(|size| (size, error(size))))
 }
 
 fn second_order() -> SeriesDemand {

@@ -94,7 +94,7 @@ fn memory(memory: Memory) -> &'static str {
 
 /// What a case has of the options. Those of the explicit step mean nothing to the other integrators.
 fn choices_of(case: &Case) -> BTreeSet<Choice> {
-    let (column, soil, method) = (&case.column, &case.material, case.method.own().expect("a method"));
+    let (column, soil, method) = (&case.column, &case.material, case.method.built_in().expect("a method"));
     let mut choices: BTreeSet<Choice> = [
         ("scene", case.scene.name()),
         ("dimensions", if column.dimensions == 1 { "one" } else { "two" }),

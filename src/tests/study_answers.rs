@@ -640,7 +640,7 @@ fn options_that_exclude_each_other_say_why() {
     };
     let methods = Method::names();
     let own = "{ basis = 'bspline2', strain = 'standard', pressure = 'sri', recovery = 'patch' }";
-    let keys: Vec<_> = Key::of("sweep")
+    let keys: Vec<_> = Key::in_table("sweep")
         .filter(|key| !["method", "integrator", "cells", "time_step", "height", "load"].contains(&key.name))
         .collect();
     let mut told: BTreeMap<String, Vec<String>> = BTreeMap::new();

@@ -83,7 +83,7 @@ fn a_method_is_what_its_choices_say_or_refused_with_the_choice_that_is_wrong() {
             "title = 't'\nscene = '{scene}'\n[[sweep]]\nmethod = [{{ {choices} }}]\nintegrator = ['implicit']\ncells = [4]\n"
         );
         match checked(&study) {
-            Ok(study) => Ok(study.planned[0].case.method.own().expect("a method")),
+            Ok(study) => Ok(study.planned[0].case.method.built_in().expect("a method")),
             Err(found) => {
                 assert_eq!(found.len(), 1, "{found:?}");
                 Err((found[0].message.clone(), found[0].help.clone().unwrap_or_default()))

@@ -70,7 +70,7 @@ fn numbers_are_finite(record: &Record) -> Vec<Violation> {
 fn may_lock(record: &Record) -> bool {
     let case = &record.case;
     (case.scene.is_a_layer() || is_footing(case))
-        && case.method.own().is_some_and(|method| !method.pressure.is_by_cells())
+        && case.method.built_in().is_some_and(|method| !method.pressure.is_by_cells())
 }
 
 fn is_footing(case: &Case) -> bool {
@@ -122,7 +122,7 @@ fn settlements_are_bounded(record: &Record) -> Vec<Violation> {
     let is_varied = case.scene == SceneKind::YieldFront || !case.column.soils.is_empty();
     let whole = case.column.height * if is_varied { strain } else { case.material.law.shrinkage(strain) };
     // Points that cross cells under hats make stresses jump by a quarter of the load.
-    let is_hat = case.method.own().is_some_and(|method| method.basis == Basis::Hat);
+    let is_hat = case.method.built_in().is_some_and(|method| method.basis == Basis::Hat);
     let jumps = if is_hat && case.configuration() == Configuration::Updated { 0.25 } else { 0.0 };
     // Points out of place make a cell softer by a share of it, and a column of few cells with it.
     let softer = 2.0 * case.column.points.jitter / case.cells as f64;
@@ -153,7 +153,7 @@ fn explained_error(record: &Record) -> Option<f64> {
     if case.settings.flip < 1.0 || (has_waves(record) && !case.scene.has_waves()) {
         return None;
     }
-    let method = case.method.own()?;
+    let method = case.method.built_in()?;
     let mut most = if method.recovery.name() == "patch" { 0.05 } else { 0.12 };
     // A front within its first way through the column; steps of first order; what runs longer has another phase.
     if case.scene.has_waves() {

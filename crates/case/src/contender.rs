@@ -75,18 +75,22 @@ mod tests {
     #[test]
     fn every_contender_has_a_method_and_a_name_of_its_own_and_races_as_itself_in_every_scene() {
         assert!((14..=20).contains(&CONTENDERS.len()));
-        for (place, one) in CONTENDERS.iter().enumerate() {
-            assert!(CONTENDERS[..place].iter().all(|other| other.name != one.name), "{}", one.name);
-            assert_eq!(one.method().to_string(), one.name);
-            assert_eq!(one.is_total(), one.name.starts_with("TL-"), "{}", one.name);
+        for (place, contender) in CONTENDERS.iter().enumerate() {
+            assert!(
+                CONTENDERS[..place].iter().all(|other| other.name != contender.name),
+                "{}",
+                contender.name
+            );
+            assert_eq!(contender.method().to_string(), contender.name);
+            assert_eq!(contender.is_total(), contender.name.starts_with("TL-"), "{}", contender.name);
             for scene in [SceneKind::Terzaghi, SceneKind::XieLeo] {
                 let mut case = Case::seed(crate::Task::Solve, scene);
-                case.method = Method::named(one.name).expect("a method").into();
+                case.method = Method::named(contender.name).expect("a method").into();
                 let running: Vec<&str> =
                     CONTENDERS.iter().filter(|other| other.runs(&case)).map(|other| other.name).collect();
-                assert_eq!(running, [one.name], "no alias, in {scene:?}");
+                assert_eq!(running, [contender.name], "no alias, in {scene:?}");
             }
         }
-        assert!(CONTENDERS.iter().any(|one| one.name == PAPERS));
+        assert!(CONTENDERS.iter().any(|contender| contender.name == PAPERS));
     }
 }

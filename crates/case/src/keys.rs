@@ -88,7 +88,7 @@ pub enum Value {
 /// A type of the fields of a case: its value as an input, and back.
 trait Field: Sized {
     fn value(self) -> Value;
-    fn of(value: Value) -> Option<Self>;
+    fn from_value(value: Value) -> Option<Self>;
 }
 
 macro_rules! fields {
@@ -97,7 +97,7 @@ macro_rules! fields {
             fn value(self) -> Value {
                 Value::$variant(self)
             }
-            fn of(value: Value) -> Option<Self> {
+            fn from_value(value: Value) -> Option<Self> {
                 if let Value::$variant(value) = value { Some(value) } else { None }
             }
         }
@@ -112,7 +112,7 @@ macro_rules! word_fields {
             fn value(self) -> Value {
                 Value::Word(self.name())
             }
-            fn of(value: Value) -> Option<Self> {
+            fn from_value(value: Value) -> Option<Self> {
                 if let Value::Word(word) = value { Self::named(word) } else { None }
             }
         }
@@ -123,14 +123,14 @@ word_fields!(Base, ConductivityMean, Continuity, Drag, Formulation, IntegratorKi
 
 /// Reads or writes the field of a case that a key stands for: a path of fields, or a field of one shape of the body.
 macro_rules! field {
-    (get $case:ident, of $shape:ident $first:ident $(. $rest:ident)*) => {
+    (get $case:ident, shape $shape:ident $first:ident $(. $rest:ident)*) => {
         match $case.column.shape {
             Shape::$shape { $first, .. } => $first $(. $rest)*.value(),
             _ => Value::Absent,
         }
     };
     (get $case:ident, $($field:ident).+) => { $case.$($field).+.value() };
-    (set $case:ident, $value:ident, of $shape:ident $first:ident $(. $rest:ident)*) => {
+    (set $case:ident, $value:ident, shape $shape:ident $first:ident $(. $rest:ident)*) => {
         if let Shape::$shape { $first, .. } = &mut $case.column.shape {
             (*$first) $(. $rest)* = $value;
         }
@@ -151,7 +151,7 @@ macro_rules! keys {
             meaning: $meaning,
             get: |case| field!(get case, $($field)+),
             set: |case, value| {
-                if let Some(value) = Field::of(value) {
+                if let Some(value) = Field::from_value(value) {
                     field!(set case, value, $($field)+);
                     $(let then: fn(&mut Case) = $then; then(case);)?
                 }
@@ -247,16 +247,16 @@ keys! {
         "Point sets: 1 for skeleton and water together, 2 for one of each (double-point MPM)"
     water_per_cell in &["sweep", "points"], Kind::Count(MOST_POINTS), "", [column.points.water_per_cell];
         "Water points per cell and direction in double-point MPM; by default as many as of the skeleton"
-    length in &["sweep", "layer"], POSITIVE, "m", [of Layer length]; "Length"
+    length in &["sweep", "layer"], POSITIVE, "m", [shape Layer length]; "Length"
     height in &["sweep", "column", "layer"], POSITIVE, "m", [column.height]; "Initial height H"
-    width in &["sweep", "column"], POSITIVE, "m", [of Column width]; "Width; no effect in one dimension"
+    width in &["sweep", "column"], POSITIVE, "m", [shape Column width]; "Width; no effect in one dimension"
     plate_width in &["sweep", "layer"], POSITIVE, "m", [column.footing.width];
         "Width B of a footing, half of which is solved"
     plate in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [column.footing.contact];
         "Contact of soil and footing"
     undrained in &["sweep", "layer"], Kind::Word(&Undrained::NAMES), "", [column.footing.undrained];
         "Model of the undrained soil under a footing"
-    base in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [of Layer base]; "Contact of layer and base"
+    base in &["sweep", "layer"], Kind::Word(&Base::NAMES), "", [shape Layer base]; "Contact of layer and base"
     load in &["sweep", "column", "layer"], POSITIVE, "Pa", [column.load]; "Load q on the surface"
     dimensions in &["column"], Kind::Count(2), "", [column.dimensions]; "Dimensions that are solved"
     loading_time in &["column"], Kind::Number(Range::NotNegative), "s", [column.loading_time];
@@ -269,15 +269,15 @@ keys! {
         "Undrained shear strength of the law `von-mises`"
     preconsolidation in &["sweep", "material"], POSITIVE, "Pa", [material.preconsolidation];
         "Largest vertical effective stress in the past of a preconsolidated soil, compression positive"
-    amplitude_x in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_x];
+    amplitude_x in &["sweep", "manufactured"], STRETCH, "", [shape Square motion.amplitude_x];
         "Amplitude A of the stretch along x"
-    amplitude_y in &["sweep", "manufactured"], STRETCH, "", [of Square motion.amplitude_y];
+    amplitude_y in &["sweep", "manufactured"], STRETCH, "", [shape Square motion.amplitude_y];
         "Amplitude B of the stretch along y"
-    amplitude in &["sweep", "manufactured"], TURN, "rad", [of Square motion.amplitude];
+    amplitude in &["sweep", "manufactured"], TURN, "rad", [shape Square motion.amplitude];
         "Amplitude of the vortex: its largest angle"
-    frequency in &["sweep", "manufactured"], POSITIVE, "rad/s", [of Square motion.frequency];
+    frequency in &["sweep", "manufactured"], POSITIVE, "rad/s", [shape Square motion.frequency];
         "Frequency ω of the motion: largest at ωt = π/2, back at π"
-    pressure in &["sweep", "manufactured"], POSITIVE, "Pa", [of Square pressure];
+    pressure in &["sweep", "manufactured"], POSITIVE, "Pa", [shape Square pressure];
         "Amplitude P of the pressure; also the scale of absolute errors of pressure and stress"
     self_weight in &["column"], Kind::Flag, "", [column.self_weight];
         "Skeleton and water have weight; pressures are in excess of the hydrostatic one"
@@ -286,11 +286,11 @@ keys! {
 impl Key {
     /// The key of a table by its name.
     pub fn named(name: &str, table: &str) -> Option<&'static Self> {
-        Self::of(table).find(|key| key.name == name)
+        Self::in_table(table).find(|key| key.name == name)
     }
 
     /// The keys of a table.
-    pub fn of(table: &str) -> impl Iterator<Item = &'static Self> {
+    pub fn in_table(table: &str) -> impl Iterator<Item = &'static Self> {
         KEYS.iter().filter(move |key| key.tables.contains(&table))
     }
 
@@ -457,9 +457,10 @@ mod tests {
         assert_eq!(idle(&case), [""; 0]);
         case.method =
             crate::Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("plain");
-        let own = ["drag", "flip", "mapping_back", "affine", "stress_slopes", "formulation", "scheme"];
-        assert_eq!(idle(&case), [&["integrator", "time_step"], &own[..]].concat());
+        let idle_options =
+            ["drag", "flip", "mapping_back", "affine", "stress_slopes", "formulation", "scheme"];
+        assert_eq!(idle(&case), [&["integrator", "time_step"], &idle_options[..]].concat());
         case.time_step = TimeStepRule::Seconds(1.0);
-        assert_eq!(idle(&case), [&["integrator"], &own[..]].concat());
+        assert_eq!(idle(&case), [&["integrator"], &idle_options[..]].concat());
     }
 }

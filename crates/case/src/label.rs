@@ -159,9 +159,9 @@ mod tests {
             case.time_step = TimeStepRule::Courant(0.4);
             change(&mut case);
             let rest = if variant.is_empty() { String::new() } else { format!(" ({variant})") };
-            let own = format!("{} explicit cells=8 points=2", case.method);
-            assert_eq!(case.label(), format!("{own} courant=0.4{rest}"));
-            assert_eq!(case.label_without_step(), own + &rest);
+            let label = format!("{} explicit cells=8 points=2", case.method);
+            assert_eq!(case.label(), format!("{label} courant=0.4{rest}"));
+            assert_eq!(case.label_without_step(), label + &rest);
         }
         let ogs = Attached::new("ogs", "0123456789abcdef").map(SolverName::Attached).expect("a plain name");
         let mut case = Case { method: ogs, cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };

@@ -1,5 +1,6 @@
 //! A case: everything that decides a run, as plain data with an identity.
 
+pub mod complete_states;
 pub mod contender;
 pub mod grouping;
 pub mod keys;
@@ -11,7 +12,6 @@ pub mod outcome;
 pub mod planned;
 pub mod quantity;
 pub mod solver;
-pub mod whole_states;
 pub mod work_estimate;
 
 pub use keys::{KEYS, Key, Kind, Value};
@@ -143,7 +143,7 @@ impl Case {
 
     /// Whether an integrator of this program solves it, by steps and points that are known.
     pub fn has_integrator(&self) -> bool {
-        self.method.own().is_some()
+        self.method.built_in().is_some()
     }
 
     /// Whether its work is counted, and can be estimated.
@@ -154,7 +154,7 @@ impl Case {
     /// Configuration of the shape functions of this program's method: the method's own, or the scene's.
     pub fn configuration(&self) -> Configuration {
         let scene = self.scene.configuration();
-        self.method.own().map_or(scene, |method| method.configuration_in(scene))
+        self.method.built_in().map_or(scene, |method| method.configuration_in(scene))
     }
 
     /// The choices of the case that change nothing, because nothing moves in it: each as a sentence for the reader. The run is
@@ -162,14 +162,14 @@ impl Case {
     pub fn idle_choices(&self) -> Vec<&'static str> {
         let plain = self.without_idle_choices();
         let is_still = self.configuration() == Configuration::Frozen;
-        let own = self.method.own().filter(|_| is_still);
+        let method = self.method.built_in().filter(|_| is_still);
         let said = [
             (
-                own.is_some_and(|method| method.configuration == Some(Configuration::Total)),
+                method.is_some_and(|method| method.configuration == Some(Configuration::Total)),
                 "nothing moves here, so shape functions on the initial configuration (`TL-`) are those of the plain method",
             ),
             (
-                own.is_some_and(|method| method.memory == Memory::Cells),
+                method.is_some_and(|method| method.memory == Memory::Cells),
                 "nothing moves here, so points stay in their cells and `-cells` changes nothing",
             ),
             (
@@ -229,7 +229,7 @@ impl Case {
 
     /// Whether its shape functions are splines.
     pub fn is_spline(&self) -> bool {
-        self.method.own().is_some_and(|method| method.basis.is_spline())
+        self.method.built_in().is_some_and(|method| method.basis.is_spline())
     }
 
     /// Whether it is integrated explicitly.
@@ -271,7 +271,7 @@ impl Case {
 
     /// Whether some motion moves skeleton and water together, so that no drag damps it: what limits semi-implicit steps.
     pub fn has_undamped_motions(&self) -> bool {
-        self.column.dimensions > 1 || self.method.own().is_some_and(|method| method.has_projection())
+        self.column.dimensions > 1 || self.method.built_in().is_some_and(|method| method.has_projection())
     }
 
     /// Time, s, at which `T_v = 1`; of a motion half its period.
@@ -287,7 +287,7 @@ impl Case {
         let (short, long) = (across.min(up) as f64, across.max(up) as f64);
         let dimensions = self.column.dimensions as f64;
         let points_a_cell = elementary::powf(self.points_per_cell as f64, dimensions);
-        let is_by_cells = self.method.own().is_some_and(|method| method.pressure.is_by_cells());
+        let is_by_cells = self.method.built_in().is_some_and(|method| method.pressure.is_by_cells());
         let sites = if is_by_cells { 1.0 } else { points_a_cell };
         // Unknowns of one row of cells across the layer; a node couples to four rows above and below.
         let row = short * (dimensions + sites);

@@ -2,7 +2,7 @@
 
 use crate::{Case, Task};
 use oedometer_mpm::kernel::Drag;
-use oedometer_mpm::method::{Basis, Configuration, Memory};
+use oedometer_mpm::method::{Basis, Configuration, Memory, Method};
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::scene::SceneKind;
@@ -23,56 +23,82 @@ pub struct Refusal {
 const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or tie both axes with `path`";
 const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds";
 
+/// A refusal with its reason, if there is one.
+fn refusal(key: &'static str, why: Option<&'static str>, help: &'static str) -> Option<Refusal> {
+    why.map(|why| Refusal { key, why, help })
+}
+
+/// A refusal if a condition holds.
+fn refusal_if(key: &'static str, is_so: bool, why: &'static str, help: &'static str) -> Option<Refusal> {
+    refusal(key, is_so.then_some(why), help)
+}
+
 impl Case {
     /// Every reason why the case cannot be.
     pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
-        self.without_idle_choices().refusals_of_choices()
-    }
-
-    #[expect(clippy::too_many_lines, reason = "a table: one row per limit")]
-    fn refusals_of_choices(self) -> impl Iterator<Item = Refusal> {
-        let always = |key, why: Option<&'static str>, help| why.map(|why| Refusal { key, why, help });
-        let when = move |key, is_so: bool, why, help| always(key, is_so.then_some(why), help);
-        let Self { scene, integrator, formulation, settings, column, .. } = &self;
-        let is_stability = self.task == Task::Stability;
-        let Some(method) = self.method.own() else {
-            return vec![when(
+        let case = self.without_idle_choices();
+        let Some(method) = case.method.built_in() else {
+            let refusal = refusal_if(
                 "task",
-                is_stability,
+                case.task == Task::Stability,
                 "the critical step of an attached solver cannot be searched",
                 "name methods of this program alone, or leave `task` out",
-            )]
-            .into_iter()
-            .flatten();
+            );
+            return vec![refusal].into_iter().flatten();
         };
-        let (points, is_explicit) = (&column.points, *integrator == IntegratorKind::Explicit);
-        let (two, by_limit) = (points.has_two_sets(), matches!(self.time_step, TimeStepRule::Stable(_)));
-        let configuration = method.configuration_in(scene.configuration());
-        let moves = configuration == Configuration::Updated;
-        let has_moving_points = is_explicit && configuration.moves_points() && !two;
-        let has_domains = has_moving_points && method.basis == Basis::Cpgimp;
+        let choices = Choices::new(&case, method);
+        let mut refusals = choices.refusals_of_scheme().to_vec();
+        refusals.extend(choices.refusals_of_points());
+        refusals.extend(choices.refusals_of_two_sets());
+        refusals.extend(choices.refusals_of_footing());
+        refusals.extend(choices.refusals_of_soils());
+        refusals.into_iter().flatten()
+    }
+}
+
+/// The choices of a case that is solved by a method of this program. Its functions are tables: one row per limit.
+struct Choices<'a> {
+    case: &'a Case,
+    method: Method,
+    configuration: Configuration,
+    is_explicit: bool,
+    has_two_sets: bool,
+}
+
+impl<'a> Choices<'a> {
+    fn new(case: &'a Case, method: Method) -> Self {
+        Self {
+            case,
+            method,
+            configuration: method.configuration_in(case.scene.configuration()),
+            is_explicit: case.integrator == IntegratorKind::Explicit,
+            has_two_sets: case.column.points.has_two_sets(),
+        }
+    }
+
+    /// Time steps, integrators and formulations that a case cannot have.
+    fn refusals_of_scheme(&self) -> [Option<Refusal>; 5] {
+        let Case { scene, integrator, formulation, settings, .. } = self.case;
         let no_inertia = scene.needs_inertia() && *formulation == Formulation::QuasiStatic;
-        let chord = self.material.conductivity_mean == ConductivityMean::Chord;
-        let off_lattice = points.jitter != 0.0 || points.offset != 0.0;
-        vec![
-            always("time_step", integrator.refuses_rule(self.time_step), OWN_BLOCK),
-            always(
+        [
+            refusal("time_step", integrator.refuses_rule(self.case.time_step), OWN_BLOCK),
+            refusal(
                 "integrator",
                 scene.refuses_integrator(*integrator),
                 "take `integrator = [\"explicit\"]`, or leave the key out",
             ),
-            always(
+            refusal(
                 "formulation",
                 integrator.refuses_formulation(*formulation),
                 "give each integrator a [[sweep]] block of its own, or leave `formulation` out",
             ),
-            when(
+            refusal_if(
                 "formulation",
                 no_inertia,
                 "the quasi-static formulation leaves out the waves that this scene is about",
                 "take \"v-w\" or \"u-p\", or the scene \"terzaghi\"",
             ),
-            when(
+            refusal_if(
                 "drag",
                 *scene == SceneKind::SealedElement
                     && *integrator == IntegratorKind::Explicit
@@ -80,105 +106,130 @@ impl Case {
                 "explicit drag in a nearly impermeable soil needs steps below 1e-12 of those of the waves",
                 "take `drag = \"implicit\"`",
             ),
-            when(
+        ]
+    }
+
+    /// Features of explicitly moving points, and arrangements of points.
+    fn refusals_of_points(&self) -> [Option<Refusal>; 6] {
+        let Case { settings, column, time_step, .. } = self.case;
+        let (points, by_limit) = (&column.points, matches!(time_step, TimeStepRule::Stable(_)));
+        let has_moving_points = self.is_explicit && self.configuration.moves_points() && !self.has_two_sets;
+        let has_domains = has_moving_points && self.method.basis == Basis::Cpgimp;
+        [
+            refusal_if(
                 "affine",
                 settings.affine && !has_moving_points,
                 "APIC needs points that move by explicit steps, in one set: a case of this sweep has none",
                 "leave `affine` out there, or give those methods and integrators a [[sweep]] block of their own",
             ),
-            when(
+            refusal_if(
                 "affine",
                 settings.affine && has_moving_points && by_limit,
                 "the critical step with APIC is not predicted: `stable` cannot be used",
                 NAME_THE_STEP,
             ),
-            when(
+            refusal_if(
                 "stress_slopes",
                 settings.stress_slopes && !has_domains,
                 "stress slopes need GIMP domains that follow points which move by explicit steps, in one set: a case \
                  of this sweep has no such domains",
                 "leave `stress_slopes` out there, or give those methods and integrators a [[sweep]] block of their own",
             ),
-            when(
+            refusal_if(
                 "stress_slopes",
                 settings.stress_slopes && has_domains && by_limit,
                 "the critical step with stress slopes is not predicted: `stable` cannot be used",
                 NAME_THE_STEP,
             ),
-            when(
+            refusal_if(
                 "offset",
                 column.self_weight && points.offset != 0.0,
                 "domains shifted off their lattice do not integrate a weight exactly: the column would flow from the \
                  start",
                 "leave `offset` out, or take `self_weight = false`",
             ),
-            when(
+            refusal_if(
                 "alternating",
                 points.alternating && column.dimensions > 1,
                 "cells with unequal numbers of points are those of a column in one dimension",
                 "leave `alternating` out, or take a column with `dimensions = 1`",
             ),
-            when(
+        ]
+    }
+
+    /// Methods and scenes that two point sets exclude.
+    fn refusals_of_two_sets(&self) -> [Option<Refusal>; 7] {
+        let &Self { case: Case { scene, .. }, method, configuration, is_explicit, has_two_sets: two } = self;
+        let moves = configuration == Configuration::Updated;
+        [
+            refusal_if(
                 "sets",
                 two && !is_explicit,
                 "double-point MPM is integrated explicitly only",
                 "take the integrator \"explicit\", or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && configuration == Configuration::Total,
                 "shape functions on the initial configuration stay with the skeleton, and a second point set does not",
                 "take a method without the prefix TL-, or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && method.has_projection(),
                 "the projection needs pressures at the points of the skeleton",
                 "take the method \"VP\", or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && method.memory == Memory::Cells && configuration != Configuration::Frozen,
                 "cell averages need points that carry both phases, and here are two point sets",
                 "take a method without the suffix -cells, or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && moves && !matches!(method.basis, Basis::Cpgimp | Basis::Cpdi),
                 "the domains of water points follow the water where points move, and the domains of this basis do not",
                 "take the basis \"cpgimp\" or \"cpdi\", or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && *scene == SceneKind::Mandel,
                 "a rigid plate is tied to one point set",
                 "take another scene, or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && *scene == SceneKind::Footing,
                 "the water under a footing stays with its soil",
                 "take another scene, or `sets = 1`",
             ),
-            when(
+        ]
+    }
+
+    /// Limits of the footing.
+    fn refusals_of_footing(&self) -> [Option<Refusal>; 4] {
+        let (Case { scene, formulation, column, cells, .. }, method) = (self.case, self.method);
+        [
+            refusal_if(
                 "cells",
-                *scene == SceneKind::Footing && self.cells % 2 == 1,
+                *scene == SceneKind::Footing && cells % 2 == 1,
                 "an odd number of cells under a footing: half of it is solved, and its middle lies on a node",
                 "take an even number",
             ),
-            when(
+            refusal_if(
                 "plate_width",
                 *scene == SceneKind::Footing && column.footing.width >= 2.0 * column.extent(),
                 "the layer ends under the footing: half of the footing lies on it",
                 "make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough",
             ),
-            when(
+            refusal_if(
                 "formulation",
                 *scene == SceneKind::Footing && *formulation != Formulation::QuasiStatic,
                 "a footing is quasi-static: it has no inertia",
                 "leave `formulation` out",
             ),
-            when(
+            refusal_if(
                 "method",
                 *scene == SceneKind::Footing
                     && column.footing.undrained == Undrained::TotalStress
@@ -186,39 +237,46 @@ impl Case {
                 "the composite gradient between domain ends has no volume of its own: total stress needs one",
                 "take another method, or `undrained = \"two-phase\"`",
             ),
-            when(
+        ]
+    }
+
+    /// Limits of layers, self-weight and the chord mean, alone and with two point sets.
+    fn refusals_of_soils(&self) -> [Option<Refusal>; 5] {
+        let (Case { scene, column, material, .. }, two) = (self.case, self.has_two_sets);
+        let chord = material.conductivity_mean == ConductivityMean::Chord;
+        let off_lattice = column.points.jitter != 0.0 || column.points.offset != 0.0;
+        [
+            refusal_if(
                 "conductivity_mean",
                 chord && !column.soils.is_empty(),
                 "the chord mean is taken along the compression of one soil, and the column has layers",
                 "take `conductivity_mean = \"points\"`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && (*scene == SceneKind::Layered || !column.soils.is_empty()),
                 "two point sets take one soil",
                 "take another scene, or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && column.self_weight,
                 "the weight of a column needs points that carry both phases",
                 "leave `self_weight` out, or take `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && chord,
                 "the chord mean is taken over points that carry both phases",
                 "take `conductivity_mean = \"points\"`, or `sets = 1`",
             ),
-            when(
+            refusal_if(
                 "sets",
                 two && off_lattice,
                 "shifted domains of the water do not end where the soil does",
                 "leave `offset` and `jitter` out, or take `sets = 1`",
             ),
         ]
-        .into_iter()
-        .flatten()
     }
 }
 
@@ -226,7 +284,6 @@ impl Case {
 mod tests {
     use super::*;
     use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
-    use oedometer_mpm::method::Method;
 
     #[test]
     fn choices_of_moving_points_are_refused_where_points_move_and_nothing_heeds_them() {
@@ -244,15 +301,15 @@ mod tests {
             (XieLeo, "GIMP", SemiImplicit, 1, false, false),
             (XieLeo, "TL-GIMP", Explicit, 1, false, false),
         ] {
-            let of = |affine, stress_slopes, time_step| {
+            let refused = |affine, stress_slopes, time_step| {
                 let mut case = Case::seed(Task::Solve, scene);
                 case.method = Method::named(method).expect("a method").into();
                 (case.integrator, case.formulation) = (integrator, integrator.default_formulation());
                 case.time_step = time_step;
                 case.column.points.sets = sets;
                 (case.settings.affine, case.settings.stress_slopes) = (affine, stress_slopes);
-                let told = |refusal: Refusal| (refusal.key, refusal.help == NAME_THE_STEP);
-                case.refusals().map(told).collect::<Vec<_>>()
+                let with_step_named = |refusal: Refusal| (refusal.key, refusal.help == NAME_THE_STEP);
+                case.refusals().map(with_step_named).collect::<Vec<_>>()
             };
             let place = format!("{scene:?} {method} {integrator:?} {sets}");
             let (by_hand, by_limit) = (TimeStepRule::Seconds(1.0), TimeStepRule::Stable(0.5));
@@ -260,12 +317,12 @@ mod tests {
                 (!is_taken || is_by_limit).then_some((key, is_taken)).into_iter().collect::<Vec<_>>()
             };
             for (rule, is_by_limit) in [(by_hand, false), (by_limit, true)] {
-                assert_eq!(of(false, false, rule), [], "{place}");
+                assert_eq!(refused(false, false, rule), [], "{place}");
                 let affine = wanted("affine", takes_affine, is_by_limit);
                 let slopes = wanted("stress_slopes", takes_slopes, is_by_limit);
-                assert_eq!(of(true, false, rule), affine, "{place}");
-                assert_eq!(of(false, true, rule), slopes, "{place}");
-                assert_eq!(of(true, true, rule), [affine, slopes].concat(), "{place}");
+                assert_eq!(refused(true, false, rule), affine, "{place}");
+                assert_eq!(refused(false, true, rule), slopes, "{place}");
+                assert_eq!(refused(true, true, rule), [affine, slopes].concat(), "{place}");
             }
         }
     }
@@ -282,7 +339,7 @@ mod tests {
     }
 
     /// What is said of the cases of the table below that are refused, by their rows.
-    const TOLD: &str = r#"
+    const ALL_REFUSALS: &str = r#"
 0 task: the critical step of an attached solver cannot be searched: name methods of this program alone, or leave `task` out
 1 affine: the critical step with APIC is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
 2 stress_slopes: the critical step with stress slopes is not predicted: `stable` cannot be used: name the step: `time_step = [{ courant = 0.4 }]`, or in seconds
@@ -355,7 +412,7 @@ mod tests {
             (Footing, "CE-SRI-patch", two_phase),
             (Footing, "GC-SRI-patch", |_| {}),
         ];
-        let mut told = "\n".to_owned();
+        let mut listed = "\n".to_owned();
         for (place, (scene, method, change)) in table.into_iter().enumerate() {
             let mut case = Case { cells: 4, ..Case::seed(Task::Solve, scene) };
             case.method = Method::named(method).expect("a method").into();
@@ -363,11 +420,12 @@ mod tests {
                 case.time_step = TimeStepRule::Courant(0.4);
             }
             change(&mut case);
-            let lines =
-                case.refusals().map(|one| format!("{place} {}: {}: {}\n", one.key, one.why, one.help));
-            told.extend(lines);
+            let lines = case
+                .refusals()
+                .map(|refusal| format!("{place} {}: {}: {}\n", refusal.key, refusal.why, refusal.help));
+            listed.extend(lines);
         }
-        assert_eq!(told, TOLD);
+        assert_eq!(listed, ALL_REFUSALS);
     }
 
     #[test]

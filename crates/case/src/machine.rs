@@ -33,8 +33,8 @@ impl Machine {
 
 /// Name of this machine.
 pub fn host_name() -> String {
-    let told = ["/proc/sys/kernel/hostname", "/etc/hostname"]
+    let names = ["/proc/sys/kernel/hostname", "/etc/hostname"]
         .map(|file| std::fs::read_to_string(file).unwrap_or_default().trim().to_owned());
-    let host = told.into_iter().find(|name| !name.is_empty());
+    let host = names.into_iter().find(|name| !name.is_empty());
     host.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_else(|| "host".to_owned())
 }

@@ -156,8 +156,11 @@ mod tests {
             planner.put(case(cells, porosity), tier);
         }
         let planned = planner.into_cases();
-        assert_eq!(planned.iter().map(|one| one.case.cells).collect::<Vec<_>>(), [2, 2, 3]);
-        assert!(planned.iter().all(|one| one.tier == Tier::Ci), "the smallest tier that has it");
+        assert_eq!(planned.iter().map(|planned_case| planned_case.case.cells).collect::<Vec<_>>(), [2, 2, 3]);
+        assert!(
+            planned.iter().all(|planned_case| planned_case.tier == Tier::Ci),
+            "the smallest tier that has it"
+        );
         let [first, other, third] = [0, 1, 2].map(|place| &planned[place].case);
         assert_eq!(*first, case(2, 0.3));
         assert!(first.column.is_one_with(&third.column) && !first.material.is_one_with(&other.material));

@@ -65,7 +65,7 @@ words!(Sample: Points "points", Centres "centres", Nodes "nodes", Surface "surfa
 
 impl Sample {
     /// The samples of a state; the surface has none but its settlement.
-    pub fn of(self, snapshot: &Snapshot) -> Option<&Samples> {
+    pub fn samples(self, snapshot: &Snapshot) -> Option<&Samples> {
         match self {
             Self::Points => Some(&snapshot.points),
             Self::Centres => Some(&snapshot.centres),

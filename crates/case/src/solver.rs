@@ -16,7 +16,7 @@ pub enum SolverName {
 
 impl SolverName {
     /// The method, where it is one of this program.
-    pub fn own(&self) -> Option<Method> {
+    pub fn built_in(&self) -> Option<Method> {
         if let Self::Own(method) = self { Some(*method) } else { None }
     }
 }

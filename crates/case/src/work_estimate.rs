@@ -134,7 +134,7 @@ const FORCED_FACTOR: f64 = 2.0;
 
 impl StepKind {
     /// The kind of step that a case takes.
-    pub fn of(case: &Case) -> Self {
+    pub fn for_case(case: &Case) -> Self {
         let frozen = case.configuration() == Configuration::Frozen;
         match case.integrator {
             IntegratorKind::Explicit if frozen && !case.column.points.has_two_sets() => Self::Assembled,
@@ -165,12 +165,12 @@ impl StepKind {
 
 /// Time of one step of a case on one core, s.
 pub fn seconds_per_step(case: &Case) -> f64 {
-    let kind = StepKind::of(case);
+    let kind = StepKind::for_case(case);
     let cost = kind.cost(case.column.dimensions);
     let points = case.expected_points() as f64;
     let width =
         case.column.cells_across(case.cells).unwrap_or(1).min(case.column.cells_up(case.cells)) as f64;
-    let method = case.method.own().unwrap_or(Method::STANDARD);
+    let method = case.method.built_in().unwrap_or(Method::STANDARD);
     let follows = matches!(kind, StepKind::PointWise | StepKind::Newton);
     let fits = method.uses_patch() || method.strain != StrainGradient::Standard;
     let mut factor = 1.0;
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn the_kind_of_step_follows_what_moves_and_who_integrates() {
         use IntegratorKind::{Explicit, Implicit, SemiImplicit};
-        let kind = |scene, method, integrator| StepKind::of(&case(scene, method, integrator, 10));
+        let kind = |scene, method, integrator| StepKind::for_case(&case(scene, method, integrator, 10));
         assert_eq!(kind(SceneKind::Terzaghi, "MPM", Explicit), StepKind::Assembled);
         assert_eq!(kind(SceneKind::XieLeo, "MPM", Explicit), StepKind::PointWise);
         assert_eq!(kind(SceneKind::Terzaghi, "MPM", Implicit), StepKind::Linear);
@@ -230,13 +230,16 @@ mod tests {
         // Four times the points and twice the width.
         assert!(layer(80) > 6.0 * layer(40), "{} for {}", layer(80), layer(40));
         // A layer that lies costs what it does when it stands: a front is as wide as the shorter side.
-        let of = |height: f64, extent: f64, cells| {
+        let layer_seconds = |height: f64, extent: f64, cells| {
             let mut case = case(SceneKind::CosineLayer, "MPM", IntegratorKind::Implicit, cells);
             let column = Column { height, ..*case.column }.with_extent(extent);
             *case.column = column;
             seconds_per_step(&case)
         };
-        let (lying, standing) = (of(1.0, 4.0, 4), of(4.0, 1.0, 16));
-        assert!((lying / standing - 1.0).abs() < 1e-12 && lying < of(2.0, 2.0, 8), "{lying} {standing}");
+        let (lying, standing) = (layer_seconds(1.0, 4.0, 4), layer_seconds(4.0, 1.0, 16));
+        assert!(
+            (lying / standing - 1.0).abs() < 1e-12 && lying < layer_seconds(2.0, 2.0, 8),
+            "{lying} {standing}"
+        );
     }
 }

@@ -94,7 +94,7 @@ mod tests {
 
     fn halvings(error: impl Fn(f64) -> f64) -> ErrorSeries {
         let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0].map(|cells| 1.0 / cells);
-        ErrorSeries::of(&sizes.map(|size| (size, error(size))))
+        ErrorSeries::from_pairs(&sizes.map(|size| (size, error(size))))
     }
 
     fn all_orders(series: &ErrorSeries) -> Vec<f64> {
@@ -131,8 +131,8 @@ mod tests {
             (40, 2.0210753903062734),
             (201, 1.9718365067798593),
         ] {
-            let found = quantile_975(freedom).unwrap();
-            assert!((found / exact - 1.0).abs() < 1e-9, "{freedom}: {found} for {exact}");
+            let computed = quantile_975(freedom).unwrap();
+            assert!((computed / exact - 1.0).abs() < 1e-9, "{freedom}: {computed} for {exact}");
         }
         assert_eq!(quantile_975(0), None);
     }
@@ -142,7 +142,7 @@ mod tests {
         // x = 0, 1, 2, 3 and y = 0, 1.1, 1.9, 3.2: slope 1.04 about (1.5, 1.55), t(2) = 4.302653.
         let points = [(0.0, 0.0), (1.0, 1.1), (2.0, 1.9), (3.0, 3.2)];
         let points = points.map(|(x, y): (f64, f64)| (x.exp(), y.exp()));
-        let fit = slope(&ErrorSeries::of(&points)).unwrap();
+        let fit = slope(&ErrorSeries::from_pairs(&points)).unwrap();
         assert!((fit.order - 1.04).abs() < 1e-12);
         let line = |x: f64| 1.55 + 1.04 * (x - 1.5);
         let sum: f64 = [(0.0, 0.0), (1.0, 1.1), (2.0, 1.9), (3.0, 3.2)]
@@ -151,15 +151,15 @@ mod tests {
             .sum();
         let wanted = 4.302_652_729_911_275 * (sum / 2.0 / 5.0).sqrt();
         assert!((fit.half_width.unwrap() - wanted).abs() < 1e-9, "{fit:?}");
-        let two = slope(&ErrorSeries::of(&points[..2])).unwrap();
+        let two = slope(&ErrorSeries::from_pairs(&points[..2])).unwrap();
         assert_eq!(two.half_width, None);
     }
 
     #[test]
     fn a_window_that_cannot_be_used_is_named() {
-        let two = ErrorSeries::of(&[(0.2, 1.0), (0.1, 0.5)]);
+        let two = ErrorSeries::from_pairs(&[(0.2, 1.0), (0.1, 0.5)]);
         assert_eq!(finest_order(&two), Err(Undefined::TooFewLevels { levels: 2, needed: 3 }));
-        let zero = ErrorSeries::of(&[(0.4, 1.0), (0.2, 0.5), (0.1, 0.0)]);
+        let zero = ErrorSeries::from_pairs(&[(0.4, 1.0), (0.2, 0.5), (0.1, 0.0)]);
         assert_eq!(finest_order(&zero), Err(Undefined::Vanishing { size: 0.1 }));
         assert!(slope(&zero).is_err());
         let pairs = pair_orders(&zero);
@@ -181,10 +181,10 @@ mod tests {
         #[test]
         fn exact_power_laws_return_their_order(sizes in sizes(), p in -3.0..6.0_f64, c in -20.0..20.0_f64) {
             let points: Vec<_> = sizes.iter().map(|h| (*h, c.exp() * h.powf(p))).collect();
-            for order in all_orders(&ErrorSeries::of(&points)) {
+            for order in all_orders(&ErrorSeries::from_pairs(&points)) {
                 prop_assert!((order - p).abs() < 1e-12, "{} for {}", order, p);
             }
-            let fit = slope(&ErrorSeries::of(&points)).unwrap();
+            let fit = slope(&ErrorSeries::from_pairs(&points)).unwrap();
             prop_assert!((fit.coefficient / c.exp() - 1.0).abs() < 1e-10);
         }
 
@@ -195,12 +195,12 @@ mod tests {
             factor in -30.0..30.0_f64,
         ) {
             let points: Vec<_> = sizes.iter().zip(&logs).map(|(h, e)| (*h, e.exp())).collect();
-            let orders = all_orders(&ErrorSeries::of(&points));
+            let orders = all_orders(&ErrorSeries::from_pairs(&points));
             let k = factor.exp();
             let errors: Vec<_> = points.iter().map(|(h, e)| (*h, k * e)).collect();
             let meshes: Vec<_> = points.iter().map(|(h, e)| (k * h, *e)).collect();
             for scaled in [errors, meshes] {
-                for (a, b) in orders.iter().zip(all_orders(&ErrorSeries::of(&scaled))) {
+                for (a, b) in orders.iter().zip(all_orders(&ErrorSeries::from_pairs(&scaled))) {
                     prop_assert!((a - b).abs() < 1e-10 * (1.0 + a.abs()), "{} became {}", a, b);
                 }
             }

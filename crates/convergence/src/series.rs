@@ -16,7 +16,7 @@ pub struct SeriesLevel {
 /// ```
 /// use oedometer_convergence::{Class, Context, ErrorSeries, classify, finest_order};
 ///
-/// let series = ErrorSeries::of(&[0.2, 0.1, 0.05, 0.025].map(|h| (h, 0.3 * h * h)));
+/// let series = ErrorSeries::from_pairs(&[0.2, 0.1, 0.05, 0.025].map(|h| (h, 0.3 * h * h)));
 /// assert!((finest_order(&series)? - 2.0).abs() < 1e-12);
 /// let context = Context { formal_order: Some(2.0), ..Context::default() };
 /// assert_eq!(classify(&series, &context).class, Class::Asymptotic);
@@ -94,7 +94,7 @@ impl ErrorSeries {
     }
 
     /// A series without gaps from (size, error) pairs.
-    pub fn of(pairs: &[(f64, f64)]) -> Self {
+    pub fn from_pairs(pairs: &[(f64, f64)]) -> Self {
         let level = |&(size, error): &(f64, f64)| SeriesLevel { size, error: Some(error) };
         Self::new(pairs.iter().map(level).collect())
     }
@@ -155,7 +155,7 @@ impl SeriesLevel {
 /// # Errors
 /// A bad or repeated size, or a value that is not finite.
 pub(crate) fn finite_levels(levels: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, Undefined> {
-    let series = ErrorSeries::of(levels);
+    let series = ErrorSeries::from_pairs(levels);
     series.check_sizes()?;
     let finite = |level: &SeriesLevel| level.error.filter(|value| value.is_finite());
     let pair = |level: &SeriesLevel| {
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn levels_are_put_from_coarse_to_fine() {
-        let series = ErrorSeries::of(&[(0.1, 1.0), (0.4, 3.0), (0.2, 2.0)]);
+        let series = ErrorSeries::from_pairs(&[(0.1, 1.0), (0.4, 3.0), (0.2, 2.0)]);
         assert_eq!(series.points().unwrap(), vec![(0.4, 3.0), (0.2, 2.0), (0.1, 1.0)]);
         assert_eq!(series.at(0.2).unwrap().error, Some(2.0));
         assert_eq!(series.at(0.3), None);
@@ -178,17 +178,17 @@ mod tests {
 
     #[test]
     fn the_first_obstacle_is_named() {
-        let points = |error| ErrorSeries::of(&[(1.0, 1.0), (0.5, error)]).points();
+        let points = |error| ErrorSeries::from_pairs(&[(1.0, 1.0), (0.5, error)]).points();
         assert_eq!(points(f64::NAN), Err(Undefined::NotFinite { size: 0.5 }));
         assert_eq!(points(f64::INFINITY), Err(Undefined::NotFinite { size: 0.5 }));
         assert_eq!(points(-1.0), Err(Undefined::Negative { size: 0.5 }));
         assert_eq!(points(0.0), Err(Undefined::Vanishing { size: 0.5 }));
         assert_eq!(points(1e-310), Err(Undefined::Vanishing { size: 0.5 }));
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let series = ErrorSeries::of(&[(bad, 1.0)]);
+            let series = ErrorSeries::from_pairs(&[(bad, 1.0)]);
             assert_eq!(series.points(), Err(Undefined::BadSize { number: 1 }));
         }
-        let same = ErrorSeries::of(&[(0.5, 1.0), (0.5, 2.0)]);
+        let same = ErrorSeries::from_pairs(&[(0.5, 1.0), (0.5, 2.0)]);
         assert_eq!(same.points(), Err(Undefined::SameSize { size: 0.5 }));
         let gap = ErrorSeries::new(vec![SeriesLevel { size: 1.0, error: None }]);
         assert_eq!(gap.points(), Err(Undefined::Missing { size: 1.0 }));

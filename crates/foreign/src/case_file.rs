@@ -181,7 +181,7 @@ pub fn suggested_step(case: &Case) -> f64 {
 /// Units by places: those of the keys of study files, and of what is derived.
 fn units() -> BTreeMap<String, String> {
     let of_table = |table: &'static str, place: &'static str| {
-        Key::of(table)
+        Key::in_table(table)
             .filter(|key| !key.unit.is_empty())
             .map(move |key| (format!("{place}.{}", key.name), key.unit.to_owned()))
     };

@@ -18,7 +18,7 @@ use crate::process::{Ending, Finished, last_lines};
 use crate::reading::Unread;
 use crate::solver::ExternalSolver;
 use crate::started_processes::named;
-use oedometer_case::whole_states::SAME_TIME;
+use oedometer_case::complete_states::SAME_TIME;
 use oedometer_case::{Case, Sample};
 use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
 use oedometer_soil::wording::{short, typed};

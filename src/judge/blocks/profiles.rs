@@ -232,7 +232,7 @@ fn thinned(points: &[(f64, f64)], slot: usize, runs: usize) -> Vec<(f64, f64)> {
 fn sampling(shown: &[&Record]) -> Option<SamplingFinding> {
     let record = shown
         .iter()
-        .find(|record| record.case.method.own().is_some_and(|method| method.has_constant_recovery()))?;
+        .find(|record| record.case.method.built_in().is_some_and(|method| method.has_constant_recovery()))?;
     let own = record.references.first()?.name.as_str();
     let time_factor = *record.case.time_factors.iter().rfind(|factor| **factor <= 0.2)?;
     let error =

@@ -91,12 +91,15 @@ pub struct PeerSeries {
 impl PeerSeries {
     /// The order between neighbours.
     pub fn orders(&self) -> Vec<Result<f64, Undefined>> {
-        pair_orders(&ErrorSeries::of(&self.levels))
+        pair_orders(&ErrorSeries::from_pairs(&self.levels))
     }
 
     /// The class of the series, for elements of second order.
     pub fn classified(&self) -> Classification {
-        classify(&ErrorSeries::of(&self.levels), &Context { formal_order: Some(2.0), ..Context::default() })
+        classify(
+            &ErrorSeries::from_pairs(&self.levels),
+            &Context { formal_order: Some(2.0), ..Context::default() },
+        )
     }
 }
 

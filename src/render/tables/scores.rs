@@ -175,7 +175,7 @@ mod tests {
                     absolute: 0.5,
                 },
                 time_difference,
-                series: ErrorSeries::of(&[(0.5, 0.1), (0.25, 0.025)]),
+                series: ErrorSeries::from_pairs(&[(0.5, 0.1), (0.25, 0.025)]),
                 classification: Classification::new(Class::NotEvaluable, "two meshes"),
             });
             series_table(&series, &[2, 4]).notes

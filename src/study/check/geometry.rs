@@ -431,7 +431,7 @@ impl Checker<'_> {
     pub(super) fn projection_slows_waves(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         let cases = planned.iter().map(|planned| &planned.case).filter(|case| case.scene.has_waves());
         let shares = cases.filter_map(|case| {
-            let method = case.method.own()?;
+            let method = case.method.built_in()?;
             let share = method.share_of_wave_speed(&case.material, case.cells);
             Some((share, method, case.cells))
         });

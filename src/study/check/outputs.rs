@@ -1,6 +1,6 @@
 //! Checks when results are kept and judged: time factors, and times in units of the clock.
 
-use crate::case::whole_states::SAME_TIME;
+use crate::case::complete_states::SAME_TIME;
 use crate::case::{Case, PlannedCase, Shared};
 use crate::study::check::Checker;
 use crate::study::expectation::Selection;

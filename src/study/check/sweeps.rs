@@ -77,7 +77,7 @@ impl Checker<'_> {
             }
         }
         let mut keys = Vec::new();
-        for key in Key::of("sweep") {
+        for key in Key::in_table("sweep") {
             if let Some(value) =
                 entry.filter(|_| key.name == "method").map(|entry| Value::Method(entry.method()))
             {
@@ -96,7 +96,7 @@ impl Checker<'_> {
             }
         }
         self.swept_geometry(&table.inputs, base.scene);
-        let names: Vec<&str> = Key::of("sweep").map(|key| key.name).collect();
+        let names: Vec<&str> = Key::in_table("sweep").map(|key| key.name).collect();
         let mut path = Vec::new();
         if let Some(typed) = &table.path {
             self.is_filled("path", typed.span(), typed.len());
@@ -226,8 +226,9 @@ impl Checker<'_> {
         sweep: &mut Sweep,
     ) {
         // Who says how steps are taken has chosen.
-        let is_chosen =
-            Key::of("sweep").filter(|key| key.is_of_integrator() || key.name == "time_step").any(|key| {
+        let is_chosen = Key::in_table("sweep")
+            .filter(|key| key.is_of_integrator() || key.name == "time_step")
+            .any(|key| {
                 table.inputs.typed(key.name).is_some()
                     || common.given.iter().any(|(given, _)| given.name == key.name)
             });
@@ -271,7 +272,7 @@ fn gap_of(case: &Case) -> String {
 pub(super) fn tell_apart(planned: &mut [PlannedCase]) {
     // By the hash of its label: two labels with one hash make a name longer and no case another.
     let mut first_with: HashMap<u64, usize> = HashMap::new();
-    let mut alike_so_far: Vec<&Key> = Key::of("sweep").collect();
+    let mut alike_so_far: Vec<&Key> = Key::in_table("sweep").collect();
     for (place, PlannedCase { case, .. }) in planned.iter().enumerate() {
         let mut hasher = DefaultHasher::new();
         hasher.write(case.label().as_bytes());
@@ -280,7 +281,7 @@ pub(super) fn tell_apart(planned: &mut [PlannedCase]) {
             alike_so_far.retain(|key| key.get(&planned[first].case) == key.get(case));
         }
     }
-    let differ = Key::of("sweep").filter(|key| !alike_so_far.contains(key));
+    let differ = Key::in_table("sweep").filter(|key| !alike_so_far.contains(key));
     let names: Arc<[&'static str]> = differ.map(|key| key.name).collect();
     for planned in planned {
         planned.case.swept = Arc::clone(&names);

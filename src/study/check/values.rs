@@ -149,15 +149,15 @@ impl Checker<'_> {
 
     /// The method, where its scene allows it.
     fn method_fits(&mut self, method: SolverName, span: TextSpan, scene: SceneKind) -> Option<SolverName> {
-        let configuration = method.own().and_then(|method| method.configuration);
+        let configuration = method.built_in().and_then(|method| method.configuration);
         let refusal = if let Some(why) = configuration.and_then(|kind| scene.refuses_configuration(kind)) {
             (why, "take \"updated\" or \"total\", or leave the key out")
-        } else if method.own().is_none() && scene.is_manufactured() {
+        } else if method.built_in().is_none() && scene.is_manufactured() {
             (
                 "an external solver does not receive the body forces and the source of a manufactured motion",
                 "take a method of this program",
             )
-        } else if let Some(why) = method.own().and_then(|method| scene.refuses_method(method)) {
+        } else if let Some(why) = method.built_in().and_then(|method| scene.refuses_method(method)) {
             (why, "take \"GIMP-SRI-patch\", or another method without `TL-`")
         } else {
             return Some(method);

@@ -7,7 +7,7 @@
 use crate::class::evaluable_series::EvaluableSeries;
 use crate::class::{Class, Classification};
 use crate::fit::Exponent;
-use crate::fit::two_terms::both;
+use crate::fit::two_terms::two_coefficients;
 use crate::orders::quantile_975;
 use oedometer_soil::elementary::{exp, ln, powf, powi};
 use oedometer_soil::wording::{order, orders, short};
@@ -103,13 +103,15 @@ impl Candidate {
 }
 
 /// The classification of the finest window, unless all levels show a second term that it hides.
-pub fn judge_all_levels(case: &EvaluableSeries, of_window: Classification) -> Classification {
-    let judged = matches!(of_window.class, Class::Asymptotic | Class::PreAsymptotic);
+pub fn judge_all_levels(case: &EvaluableSeries, window_class: Classification) -> Classification {
+    let judged = matches!(window_class.class, Class::Asymptotic | Class::PreAsymptotic);
     if !judged || case.points.len() < LEAST_LEVELS {
-        return of_window;
+        return window_class;
     }
-    let found = hidden(case).and_then(|found| classified(case, &found));
-    found.or_else(|| runs_away(case).filter(|_| of_window.class == Class::Asymptotic)).unwrap_or(of_window)
+    let classification = hidden(case).and_then(|candidate| classified(case, &candidate));
+    classification
+        .or_else(|| runs_away(case).filter(|_| window_class.class == Class::Asymptotic))
+        .unwrap_or(window_class)
 }
 
 /// An order that rises faster from level to level: what settles slows down. A term of lower order and of the other sign
@@ -120,9 +122,9 @@ fn runs_away(case: &EvaluableSeries) -> Option<Classification> {
     let grows = |from: f64, to: f64| from > 0.0 && to > GROWS * from;
     (grows(first, second) && grows(second, last) && first + second + last >= GONE).then(|| {
         let reason = format!("the orders {} rise faster and faster", orders(&case.pairs));
-        let found = Classification::new(Class::PreAsymptotic, reason)
+        let classification = Classification::new(Class::PreAsymptotic, reason)
             .advise("add a finer level: a second term of the other sign takes over");
-        Classification { order: Some(case.order), ..found }
+        Classification { order: Some(case.order), ..classification }
     })
 }
 
@@ -133,27 +135,27 @@ fn hidden(case: &EvaluableSeries) -> Option<Candidate> {
     let size = |place: usize| case.points[place].0 / case.points[0].0;
     let [first, second, finest] = [0, 1, count - 1].map(size);
     // Without a formal order a term is the lower one where the higher one was seen first.
-    let is_seen_later = |one: &Candidate| {
-        one.second != Second::Lower
+    let is_seen_later = |candidate: &Candidate| {
+        candidate.second != Second::Lower
             || case.formal.is_some()
-            || [first, second].iter().all(|h| one.share(*h) < 0.49)
+            || [first, second].iter().all(|h| candidate.share(*h) < 0.49)
     };
-    let found = [Second::Floor, Second::Logarithm, Second::Lower]
+    let best = [Second::Floor, Second::Logarithm, Second::Lower]
         .into_iter()
         .filter_map(|second| levels.best(second, case.formal, case.order))
-        .filter(|one| one.governs(finest) && is_seen_later(one))
+        .filter(|candidate| candidate.governs(finest) && is_seen_later(candidate))
         .min_by(|a, b| a.scatter(count).total_cmp(&b.scatter(count)))?;
-    let scatter = found.scatter(count);
+    let scatter = best.scatter(count);
     let dies_out = |other: &Candidate| other.coefficients[0] > 0.0 && other.share(finest).abs() <= DYING;
     let harmless = levels.best(Second::Higher, case.formal, case.order).filter(dies_out);
     let is_better = harmless.is_none_or(|other| {
         BETTER * scatter < other.scatter(count)
-            || found.numbers < other.numbers && scatter < EQUAL * other.scatter(count)
+            || best.numbers < other.numbers && scatter < EQUAL * other.scatter(count)
     });
-    let quantile = quantile_975(count.checked_sub(found.numbers)?)?;
-    let gain = (levels.power_alone() - found.square) / (found.numbers as f64 - 2.0).max(1.0);
+    let quantile = quantile_975(count.checked_sub(best.numbers)?)?;
+    let gain = (levels.power_alone() - best.square) / (best.numbers as f64 - 2.0).max(1.0);
     let is_clear = gain > CLEARLY * quantile * quantile * scatter * scatter;
-    (scatter < POOR && is_better && is_clear).then_some(found)
+    (scatter < POOR && is_better && is_clear).then_some(best)
 }
 
 /// Levels prepared for fits of powers.
@@ -188,7 +190,7 @@ impl Levels {
     }
 
     /// Coefficients of a power and a second term, and the sum of squares of the relative residuals.
-    fn both(&self, second: Second, p: f64, q: f64) -> Option<([f64; 2], f64)> {
+    fn two_term_fit(&self, second: Second, p: f64, q: f64) -> Option<([f64; 2], f64)> {
         let first = self.power(p);
         let other: Vec<f64> = match second {
             Second::Logarithm => {
@@ -197,19 +199,19 @@ impl Levels {
             _ => self.power(q),
         };
         let columns: Vec<(f64, f64)> = first.into_iter().zip(other).collect();
-        let (a, b) = both(&columns)?;
+        let (a, b) = two_coefficients(&columns)?;
         Some(([a, b], columns.iter().map(|(u, v)| powi(a * u + b * v - 1.0, 2)).sum()))
     }
 
     /// The best fit with a second term of a kind.
-    fn best(&self, second: Second, formal: Option<f64>, of_window: f64) -> Option<Candidate> {
+    fn best(&self, second: Second, formal: Option<f64>, window_class: f64) -> Option<Candidate> {
         use Exponent::{Between, Fixed};
         let of_first = match (formal, second) {
             (Some(formal), Second::Floor) => Between(0.75 * formal, formal + 0.5),
             (Some(formal), _) => Fixed(formal),
             // The order that a logarithm lowers is a half or a whole one; a free one would fit any curve.
             (None, Second::Logarithm) => return self.best_logarithm(),
-            (None, Second::Higher) => Between((of_window - 0.6).max(0.2), of_window + 0.6),
+            (None, Second::Higher) => Between((window_class - 0.6).max(0.2), window_class + 0.6),
             (None, _) => Between(0.4, 6.0),
         };
         let of_second = |p: f64| match second {
@@ -218,11 +220,11 @@ impl Levels {
             Second::Higher => Between(p + 0.5, p + 3.0),
             Second::Logarithm => Fixed(p),
         };
-        let square = |p: f64, q: f64| self.both(second, p, q).map_or(f64::INFINITY, |found| found.1);
+        let square = |p: f64, q: f64| self.two_term_fit(second, p, q).map_or(f64::INFINITY, |fit| fit.1);
         let best_second = |p: f64| least(of_second(p), |q| square(p, q));
         let first_order = least(of_first, |p| square(p, best_second(p)));
         let second_order = best_second(first_order);
-        let (coefficients, square) = self.both(second, first_order, second_order)?;
+        let (coefficients, square) = self.two_term_fit(second, first_order, second_order)?;
         let free = |exponent: Exponent| usize::from(matches!(exponent, Between(..)));
         let numbers = 2 + free(of_first) + free(of_second(first_order));
         Some(Candidate { second, first_order, second_order, coefficients, square, numbers })
@@ -232,8 +234,8 @@ impl Levels {
     fn best_logarithm(&self) -> Option<Candidate> {
         let with = |halves: u32| {
             let p = 0.5 * f64::from(halves);
-            let found = self.best(Second::Logarithm, Some(p), p)?;
-            Some(Candidate { numbers: found.numbers + 1, ..found })
+            let candidate = self.best(Second::Logarithm, Some(p), p)?;
+            Some(Candidate { numbers: candidate.numbers + 1, ..candidate })
         };
         (1..=8).filter_map(with).min_by(|a, b| a.square.total_cmp(&b.square))
     }
@@ -252,9 +254,9 @@ fn least(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
         let width = (to - from) / f64::from(STEPS);
         for step in 0..=STEPS {
             let place = from + width * f64::from(step);
-            let found = value(place);
-            if found < best.0 {
-                best = (found, place);
+            let least = value(place);
+            if least < best.0 {
+                best = (least, place);
             }
         }
         (from, to) = ((best.1 - 1.2 * width).max(lowest), (best.1 + 1.2 * width).min(highest));
@@ -262,13 +264,13 @@ fn least(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
     best.1
 }
 
-fn classified(case: &EvaluableSeries, found: &Candidate) -> Option<Classification> {
+fn classified(case: &EvaluableSeries, candidate: &Candidate) -> Option<Classification> {
     let window = &case.pairs[case.pairs.len() - 2..];
     let window = format!("order {} on the finest window ({})", order(case.order), orders(window));
     let finest = case.finest().0 / case.coarsest().0;
-    let percent = 100.0 * found.share(finest);
+    let percent = 100.0 * candidate.share(finest);
     let levels = case.points.len();
-    match found.second {
+    match candidate.second {
         Second::Floor => {
             let reason = format!(
                 "{window}, and over all {levels} levels a floor makes up {percent:.0} % of the finest error"
@@ -278,23 +280,23 @@ fn classified(case: &EvaluableSeries, found: &Candidate) -> Option<Classificatio
         Second::Lower => {
             let reason = format!(
                 "{window}, and over all {levels} levels a term of order {} makes up {percent:.0} % of the finest error",
-                order(found.second_order)
+                order(candidate.second_order)
             );
             let advice = "look for a boundary, a recovery, an integrator or a refinement path of lower order";
-            let found = Classification::new(Class::Contaminated, reason).advise(advice);
-            Some(Classification { order: Some(case.order), ..found })
+            let classification = Classification::new(Class::Contaminated, reason).advise(advice);
+            Some(Classification { order: Some(case.order), ..classification })
         }
         Second::Logarithm => {
             let reason = format!(
                 "{window}, and all {levels} levels follow h^{} ln(1/h): the order is {} below its limit at size {}",
-                order(found.first_order),
-                order(found.lowering(finest)),
+                order(candidate.first_order),
+                order(candidate.lowering(finest)),
                 short(case.finest().0)
             );
             let advice =
                 "look for a singular point or a load that starts at once: a logarithm dies out slowly";
-            let found = Classification::new(Class::PreAsymptotic, reason).advise(advice);
-            Some(Classification { order: Some(case.order), ..found })
+            let classification = Classification::new(Class::PreAsymptotic, reason).advise(advice);
+            Some(Classification { order: Some(case.order), ..classification })
         }
         Second::Higher => None,
     }

@@ -51,15 +51,15 @@ const LOOK_FOR_NOISE: &str = "look for cell crossing, waves or a start that diff
 /// A single level that all others contradict is named beside any class. A reference no better than the
 /// smallest error turns a class of step 4, or `pre-asymptotic`, into `not-evaluable`.
 pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
-    let found = wrong_context(context)
+    let classification = wrong_context(context)
         .or_else(|| exact(series, context))
         .or_else(|| not_evaluable(series))
         .or_else(|| locked(context));
-    if let Some(found) = found {
-        return found;
+    if let Some(classification) = classification {
+        return classification;
     }
     let evaluated =
-        series.points().and_then(|points| Ok(EvaluableSeries::of(&points, context)?.classify(context)));
+        series.points().and_then(|points| Ok(EvaluableSeries::new(&points, context)?.classify(context)));
     evaluated.unwrap_or_else(|undefined| Classification::new(Class::NotEvaluable, undefined.to_string()))
 }
 
@@ -139,7 +139,7 @@ fn not_evaluable(series: &ErrorSeries) -> Option<Classification> {
 
 impl EvaluableSeries<'_> {
     fn classify(&self, context: &Context) -> Classification {
-        let found = self
+        let classification = self
             .round_off(context)
             .or_else(|| self.within_tolerance(context))
             .or_else(|| self.limit())
@@ -149,29 +149,29 @@ impl EvaluableSeries<'_> {
             .or_else(|| self.ups_and_downs())
             .or_else(|| self.alternation())
             .unwrap_or_else(|| judge_all_levels(self, judge_window(self)));
-        self.with_odd_level(self.poor_reference(context, &found).unwrap_or(found))
+        self.with_odd_level(self.poor_reference(context, &classification).unwrap_or(classification))
     }
 
     /// Names a level that the others contradict: the window of the finest levels may not see it.
-    fn with_odd_level(&self, found: Classification) -> Classification {
-        let Some(odd) = odd_level(self.points) else { return found };
+    fn with_odd_level(&self, classification: Classification) -> Classification {
+        let Some(odd) = odd_level(self.points) else { return classification };
         let [size, factor] = [odd.size, odd.factor].map(short);
         let reason = format!(
             "{}; the level of size {size} is an outlier: its error is {factor} times the value that the others suggest",
-            found.reason
+            classification.reason
         );
-        let advice = found
+        let advice = classification
             .advice
             .clone()
             .unwrap_or_else(|| format!("check whether the level of size {size} is a run of the same case"));
-        Classification { reason, ..found }.advise(advice)
+        Classification { reason, ..classification }.advise(advice)
     }
 
     /// A limit that is not zero, approached from either side.
     fn limit(&self) -> Option<Classification> {
         Some(match limit_of(&self.values)? {
-            Limit::Confirmed(found) => self.approaching(&found),
-            Limit::Suggested(found) => self.seen_floor().unwrap_or_else(|| self.may_approach(&found)),
+            Limit::Confirmed(approach) => self.approaching(&approach),
+            Limit::Suggested(approach) => self.seen_floor().unwrap_or_else(|| self.may_approach(&approach)),
             Limit::Reached => self.limited(&self.standstill()),
         })
     }
@@ -223,11 +223,14 @@ impl EvaluableSeries<'_> {
             "the errors of the finest levels, {error} at size {size}, do not fall and lie within a tolerance of {}",
             short(tolerance)
         );
-        let mut found = self.limited(&reason);
-        if let Some(floor) = &mut found.floor {
+        let mut classification = self.limited(&reason);
+        if let Some(floor) = &mut classification.floor {
             floor.limiter = Some(LimiterKind::RoundOff);
         }
-        Some(found.advise("look at the digits of the data and at the tolerance of the solver: they end here"))
+        Some(
+            classification
+                .advise("look at the digits of the data and at the tolerance of the solver: they end here"),
+        )
     }
 
     /// Rises that no fall makes up for, and that go on: a small rise before levels that stand still is a floor.
@@ -251,12 +254,12 @@ impl EvaluableSeries<'_> {
     fn round_off(&self, context: &Context) -> Option<Classification> {
         let round_off = context.round_off.filter(|round_off| self.finest().1 <= *round_off)?;
         let [.., size, error] = self.ends();
-        let mut found =
+        let mut classification =
             self.limited(&format!("the error at size {size}, {error}, is round-off ({})", short(round_off)));
-        if let Some(floor) = &mut found.floor {
+        if let Some(floor) = &mut classification.floor {
             floor.limiter = Some(LimiterKind::RoundOff);
         }
-        Some(found.advise("drop the finest levels: they show round-off"))
+        Some(classification.advise("drop the finest levels: they show round-off"))
     }
 
     /// The finest levels stand still.
@@ -321,11 +324,11 @@ impl EvaluableSeries<'_> {
     }
 
     /// Errors near the accuracy of the reference prove no order.
-    fn poor_reference(&self, context: &Context, found: &Classification) -> Option<Classification> {
+    fn poor_reference(&self, context: &Context, classification: &Classification) -> Option<Classification> {
         let judged = [Class::FloorLimited, Class::Divergent, Class::Oscillatory];
         let least = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
         let accuracy = context.reference_accuracy.filter(|accuracy| 10.0 * accuracy > least)?;
-        (!judged.contains(&found.class)).then(|| {
+        (!judged.contains(&classification.class)).then(|| {
             let [accuracy, least] = [accuracy, least].map(short);
             let reason =
                 format!("the reference is only accurate to {accuracy}, and the smallest error is {least}");

@@ -60,7 +60,7 @@ impl<'a> EvaluableSeries<'a> {
     ///
     /// # Errors
     /// [`Undefined`] where its finest levels have no slope.
-    pub fn of(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
+    pub fn new(points: &'a [(f64, f64)], context: &Context) -> Result<Self, Undefined> {
         let known = [
             (LimiterKind::Reference, "the reference's accuracy", context.reference_accuracy),
             (LimiterKind::RoundOff, "round-off", context.round_off),
@@ -115,10 +115,10 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A floor-limited classification: which levels a floor limits, its cause, and how to lower it to a target.
-    /// `told` is the first half of the sentence.
+    /// `reason` is the first half of the sentence.
     fn over_floor(
         &self,
-        told: &str,
+        reason: &str,
         order: Option<f64>,
         target: Option<f64>,
         floor: (f64, bool),
@@ -128,7 +128,7 @@ impl<'a> EvaluableSeries<'a> {
         let limits_from = self.points.iter().find(|(_, error)| *error <= 2.0 * value);
         let limits_from = limits_from.map_or(self.finest().0, |point| point.0);
         let cause = put_down_to(limiter);
-        let reason = format!("{told} limits the levels from size {} on{cause}", short(limits_from));
+        let reason = format!("{reason} limits the levels from size {} on{cause}", short(limits_from));
         let target = target.filter(|target| *target > 0.0);
         let floor = Floor { value, fitted, limits_from, limiter: limiter.map(|limiter| limiter.kind) };
         Classification { order, floor: Some(floor), ..Classification::new(Class::FloorLimited, reason) }
@@ -139,10 +139,10 @@ impl<'a> EvaluableSeries<'a> {
     pub fn cancelled(&self, fit: &CancellingFit) -> Classification {
         let target = 0.1 * fit.coefficient * powf(self.finest().0, fit.order);
         let [size, floor] = [fit.cancels_at, fit.floor].map(short);
-        let told = format!(
+        let reason = format!(
             "the error falls, cancels near size {size} and grows again to a floor of {floor} of opposite sign, which"
         );
-        self.over_floor(&told, Some(fit.order), Some(target), (fit.floor, true))
+        self.over_floor(&reason, Some(fit.order), Some(target), (fit.floor, true))
     }
 
     /// The first and the last value, in words.
@@ -152,29 +152,29 @@ impl<'a> EvaluableSeries<'a> {
     }
 
     /// A series that approaches a limit which is not zero.
-    pub fn approaching(&self, found: &Approach) -> Classification {
-        let target = 0.1 * (found.at(self.finest().0) - found.limit).abs();
-        let told = format!(
+    pub fn approaching(&self, approach: &Approach) -> Classification {
+        let target = 0.1 * (approach.at(self.finest().0) - approach.limit).abs();
+        let reason = format!(
             "{} at order {} towards a limit of {}, and the finest level lies where those before it say: a floor that",
             self.first_to_last(),
-            order(found.order),
-            short(found.limit)
+            order(approach.order),
+            short(approach.limit)
         );
-        self.over_floor(&told, Some(found.order), Some(target), (found.limit.abs(), true))
+        self.over_floor(&reason, Some(approach.order), Some(target), (approach.limit.abs(), true))
     }
 
     /// A limit that the three finest levels suggest and no other level confirms.
-    pub fn may_approach(&self, found: &Approach) -> Classification {
+    pub fn may_approach(&self, approach: &Approach) -> Classification {
         let next = 0.5 * self.finest().0;
         let reason = format!(
             "{} as if towards a limit of {} at order {}: {} levels cannot tell a limit from growth",
             self.first_to_last(),
-            short(found.limit),
-            order(found.order),
+            short(approach.limit),
+            order(approach.order),
             self.points.len()
         );
         let advice =
-            format!("add a level: at size {} the limit predicts {}", short(next), short(found.at(next)));
+            format!("add a level: at size {} the limit predicts {}", short(next), short(approach.at(next)));
         Classification::new(Class::PreAsymptotic, reason).advise(advice)
     }
 
@@ -206,7 +206,7 @@ impl<'a> EvaluableSeries<'a> {
         let value = fit.map_or(error, |fit| fit.floor);
         let target = fit.map(|fit| 0.1 * fit.coefficient * powf(size, fit.order));
         let height = if fit.is_some() { "a floor of" } else { "a floor not above" };
-        let told = format!("{reason}; {height} {}", short(value));
-        self.over_floor(&told, fit.map(|fit| fit.order), target, (value, fit.is_some()))
+        let reason = format!("{reason}; {height} {}", short(value));
+        self.over_floor(&reason, fit.map(|fit| fit.order), target, (value, fit.is_some()))
     }
 }

@@ -24,12 +24,12 @@ pub fn judge_window(case: &EvaluableSeries) -> Classification {
         return Classification::new(Class::NotEvaluable, "fewer than two pairs of levels");
     };
     let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
-    let found = match case.formal {
+    let classification = match case.formal {
         Some(formal) => with_formal(case, &window, formal, coarse, fine),
         None => without_formal(case, &window, fine),
     };
-    let counts = found.class != Class::FloorLimited && found.class != Class::NotEvaluable;
-    if counts { Classification { order: Some(case.order), ..found } } else { found }
+    let counts = classification.class != Class::FloorLimited && classification.class != Class::NotEvaluable;
+    if counts { Classification { order: Some(case.order), ..classification } } else { classification }
 }
 
 fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, fine: f64) -> Classification {
@@ -42,8 +42,8 @@ fn with_formal(case: &EvaluableSeries, window: &str, formal: f64, coarse: f64, f
     let stays_below = case.order < formal - tolerance && drift < 0.5 * SETTLED;
     let bend = || explain(case.points, Some(formal));
     if falls_away || stays_below {
-        if let Some(found) = bend().and_then(|bend| governed(case, &bend, window)) {
-            return found;
+        if let Some(classification) = bend().and_then(|bend| governed(case, &bend, window)) {
+            return classification;
         }
         if stays_below && drift.abs() <= SETTLED {
             let reason = format!("{window}: settled below the formal {wanted}");
@@ -81,11 +81,11 @@ fn without_formal(case: &EvaluableSeries, window: &str, fine: f64) -> Classifica
     if fall > 0.3 || drift < -SETTLED || may_be_floor {
         let bend = explain(case.points, None);
         let settled = |bend: &Bend| (fine - bend.terms().low).abs() <= SETTLED;
-        let found = bend
+        let classification = bend
             .filter(|bend| matches!(bend, Bend::Floor(_)) || !settled(bend))
             .and_then(|bend| governed(case, &bend, window));
-        if let Some(found) = found {
-            return found;
+        if let Some(classification) = classification {
+            return classification;
         }
     }
     if drift.abs() <= SETTLED && !may_be_floor {

@@ -7,7 +7,7 @@
 //! Errors without signs, `e = |C h^p − F|`, dip where the two terms cancel and then rise to the floor. The dip is a
 //! coincidence, and the rise is not divergence.
 
-use crate::fit::two_terms::both;
+use crate::fit::two_terms::two_coefficients;
 use crate::fit::{Exponent, best_power, fit_powers, minimum, order_of_differences};
 use crate::series::Undefined;
 use oedometer_soil::elementary::{powf, powi};
@@ -56,8 +56,8 @@ impl Approach {
         // Sizes in units of the coarsest keep powers in range.
         let finest = powf(h3 / h1, order);
         let scaled = (e2 - e3) / (powf(h2 / h1, order) - finest);
-        let found = Self { limit: e3 - scaled * finest, coefficient: scaled / powf(h1, order), order };
-        (ORDERS.0..=ORDERS.1).contains(&order).then_some(found)
+        let approach = Self { limit: e3 - scaled * finest, coefficient: scaled / powf(h1, order), order };
+        (ORDERS.0..=ORDERS.1).contains(&order).then_some(approach)
     }
 
     /// The best curve for more than three levels.
@@ -66,8 +66,8 @@ impl Approach {
         let scaled: Vec<_> = levels.iter().map(|(size, value)| (size / first, *value)).collect();
         let weights = vec![1.0; levels.len()];
         let order = best_power(&scaled, Exponent::Between(ORDERS.0, ORDERS.1), &weights);
-        let (found, _) = fit_powers(&scaled, &[order], &weights)?;
-        Some(Self { limit: found[0], coefficient: found[1] / powf(first, order), order })
+        let (coefficients, _) = fit_powers(&scaled, &[order], &weights)?;
+        Some(Self { limit: coefficients[0], coefficient: coefficients[1] / powf(first, order), order })
     }
 }
 
@@ -88,11 +88,11 @@ pub(crate) fn limit_of(values: &[(f64, f64)]) -> Option<Limit> {
         return None;
     }
     if let Some(four) = four
-        && let Some(told) = Approach::through(&four[..3])
+        && let Some(predicted) = Approach::through(&four[..3])
     {
-        let step = told.at(four[3].0) - four[2].1;
-        let miss = (finest - told.at(four[3].0)).abs();
-        if miss <= (MISS * step.abs()).max(NEAR * told.limit.abs()) {
+        let step = predicted.at(four[3].0) - four[2].1;
+        let miss = (finest - predicted.at(four[3].0)).abs();
+        if miss <= (MISS * step.abs()).max(NEAR * predicted.limit.abs()) {
             return Approach::fitted(four).map(Limit::Confirmed);
         }
     }
@@ -138,19 +138,19 @@ pub(crate) fn fit_cancelling(points: &[(f64, f64)]) -> Result<CancellingFit, Und
         };
         let solve = |order: f64| {
             let columns = columns(order);
-            let (floor, coefficient) = both(&columns)?;
+            let (floor, coefficient) = two_coefficients(&columns)?;
             let off = |(u, v): &(f64, f64)| powi(floor * u + coefficient * v - 1.0, 2);
             let square = columns.iter().map(off).sum::<f64>() / levels as f64;
             Some((-floor, coefficient, square.sqrt()))
         };
-        let residual = |order| solve(order).map_or(f64::INFINITY, |found| found.2);
+        let residual = |order| solve(order).map_or(f64::INFINITY, |solution| solution.2);
         let order = minimum(Exponent::Between(0.4, 6.0), residual);
         solve(order).map(|(floor, coefficient, residual)| (order, floor, coefficient, residual))
     };
     let (order, floor, coefficient, _) = [dip, dip + 1]
         .into_iter()
         .filter_map(fit)
-        .filter(|found| found.1 > 0.0 && found.2 > 0.0 && found.3 < POOR)
+        .filter(|solution| solution.1 > 0.0 && solution.2 > 0.0 && solution.3 < POOR)
         .min_by(|a, b| a.3.total_cmp(&b.3))
         .ok_or(Undefined::NotDetermined)?;
     Ok(CancellingFit {
@@ -174,12 +174,12 @@ mod tests {
         let sizes: [f64; 4] = [1.0 / 10.0, 1.0 / 15.0, 1.0 / 40.0, 1.0 / 70.0];
         for (limit, coefficient) in [(3e-3, -0.4), (-3e-3, 0.4), (2e-4, 0.1), (-2e-4, -0.1)] {
             let levels = sizes.map(|h| (h, limit + coefficient * h.powf(1.7)));
-            let found = Approach::through(&levels[1..]).expect("an approach");
+            let approach = Approach::through(&levels[1..]).expect("an approach");
             assert!(
-                (found.limit / limit - 1.0).abs() < 1e-9 && (found.order - 1.7).abs() < 1e-9,
-                "{found:?}"
+                (approach.limit / limit - 1.0).abs() < 1e-9 && (approach.order - 1.7).abs() < 1e-9,
+                "{approach:?}"
             );
-            assert!((found.at(0.1) / levels[0].1 - 1.0).abs() < 1e-9, "{found:?}");
+            assert!((approach.at(0.1) / levels[0].1 - 1.0).abs() < 1e-9, "{approach:?}");
             let fitted = Approach::fitted(&levels).expect("a fit");
             assert!((fitted.limit / limit - 1.0).abs() < 1e-6, "{fitted:?}");
         }
@@ -190,10 +190,10 @@ mod tests {
         let all = values(&[2.70e-5, 2.29e-3, 2.85e-3, 3.00e-3, 3.03e-3]);
         assert!(matches!(limit_of(&all[..3]), Some(Limit::Suggested(_))));
         for levels in [4, 5] {
-            let Some(Limit::Confirmed(found)) = limit_of(&all[..levels]) else {
+            let Some(Limit::Confirmed(approach)) = limit_of(&all[..levels]) else {
                 panic!("{levels}: {:?}", limit_of(&all[..levels]));
             };
-            assert!((found.limit - 3.04e-3).abs() < 3e-5, "{found:?}");
+            assert!((approach.limit - 3.04e-3).abs() < 3e-5, "{approach:?}");
         }
         // A fourth level that keeps on growing refutes what three said.
         assert!(!matches!(limit_of(&values(&[1.0, 2.0, 2.5, 4.0])), Some(Limit::Confirmed(_))));

@@ -202,16 +202,17 @@ mod tests {
         }
         let fit = fit_floor(&levels).unwrap();
         assert!(!fit.significant, "{fit:?}");
-        assert_eq!(hidden_floor(&ErrorSeries::of(&levels), None), 0.0);
+        assert_eq!(hidden_floor(&ErrorSeries::from_pairs(&levels), None), 0.0);
     }
 
     #[test]
     fn a_floor_that_bends_a_series_and_does_not_govern_it_is_hidden() {
         // A tenth of the finest error: the order falls from level to level, and the class is still that of the slope.
-        let hidden = |error: fn(f64) -> f64, formal| hidden_floor(&ErrorSeries::of(&points(error)), formal);
+        let hidden =
+            |error: fn(f64) -> f64, formal| hidden_floor(&ErrorSeries::from_pairs(&points(error)), formal);
         for formal in [None, Some(2.0)] {
-            let found = hidden(|h| h * h + 4e-6, formal);
-            assert!((found / 4e-6 - 1.0).abs() < 1e-6, "{formal:?}: {found:e}");
+            let floor = hidden(|h| h * h + 4e-6, formal);
+            assert!((floor / 4e-6 - 1.0).abs() < 1e-6, "{formal:?}: {floor:e}");
             assert_eq!(hidden(|h| h * h, formal), 0.0);
         }
     }
@@ -252,10 +253,10 @@ mod tests {
     fn the_nearest_candidate_is_taken_and_a_far_one_is_not() {
         let step = candidate(LimiterKind::Step, Some(2e-4));
         let model = candidate(LimiterKind::Model, Some(5e-5));
-        let both = [step.clone(), model.clone()];
-        assert_eq!(identify(1.5e-4, &both), Some(&step));
-        assert_eq!(identify(6e-5, &both), Some(&model));
-        assert_eq!(identify(1e-2, &both), None);
+        let candidates = [step.clone(), model.clone()];
+        assert_eq!(identify(1.5e-4, &candidates), Some(&step));
+        assert_eq!(identify(6e-5, &candidates), Some(&model));
+        assert_eq!(identify(1e-2, &candidates), None);
         let unknown = candidate(LimiterKind::PointsPerCell, None);
         assert_eq!(identify(1e-2, &[step.clone(), unknown.clone()]), Some(&unknown));
         assert_eq!(identify(1e-2, &[unknown.clone(), unknown]), None);

@@ -51,7 +51,7 @@ pub(crate) fn fit_powers(levels: &[(f64, f64)], exponents: &[f64], weights: &[f6
 
 /// The exponent `p` in a range for which `c_0 + c_1 h^p` fits the levels best.
 pub(crate) fn best_power(levels: &[(f64, f64)], range: Exponent, weights: &[f64]) -> f64 {
-    minimum(range, |p| fit_powers(levels, &[p], weights).map_or(f64::INFINITY, |found| found.1))
+    minimum(range, |p| fit_powers(levels, &[p], weights).map_or(f64::INFINITY, |fit| fit.1))
 }
 
 /// Minimises a function of one exponent: a scan, then golden sections about the best place.
@@ -115,8 +115,10 @@ mod tests {
     #[test]
     fn a_known_combination_is_found_and_a_singular_one_is_not() {
         let columns = [vec![1.0; 4], vec![1.0, 2.0, 3.0, 4.0]];
-        let (found, square) = solve(&columns, &[3.0, 5.0, 7.0, 9.0], &[1.0, 2.0, 3.0, 4.0]).unwrap();
-        assert!((found[0] - 1.0).abs() < 1e-12 && (found[1] - 2.0).abs() < 1e-12 && square < 1e-24);
+        let (coefficients, square) = solve(&columns, &[3.0, 5.0, 7.0, 9.0], &[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert!(
+            (coefficients[0] - 1.0).abs() < 1e-12 && (coefficients[1] - 2.0).abs() < 1e-12 && square < 1e-24
+        );
         let twice = [columns[0].clone(), columns[0].clone()];
         assert_eq!(solve(&twice, &[1.0; 4], &[1.0; 4]), None);
         assert_eq!(solve(&columns, &[f64::NAN; 4], &[1.0; 4]), None);

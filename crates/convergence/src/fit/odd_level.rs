@@ -147,8 +147,8 @@ mod tests {
         for ratio in [1.2, 2.0, 4.0] {
             for levels in 4..6 {
                 for (number, error) in smooth.iter().enumerate() {
-                    let found = odd_level(&points(ratio, levels, error));
-                    assert_eq!(found, None, "{ratio} {levels} {number}");
+                    let odd = odd_level(&points(ratio, levels, error));
+                    assert_eq!(odd, None, "{ratio} {levels} {number}");
                 }
             }
         }

@@ -34,8 +34,8 @@ impl TwoTerms {
 
     /// Size at which both terms are equal; the lower order governs below it.
     pub fn crossover(&self) -> Option<f64> {
-        let both = self.low_coefficient > 0.0 && self.high_coefficient > 0.0;
-        both.then(|| {
+        let are_positive = self.low_coefficient > 0.0 && self.high_coefficient > 0.0;
+        are_positive.then(|| {
             elementary::powf(self.low_coefficient / self.high_coefficient, 1.0 / (self.high - self.low))
         })
     }
@@ -97,7 +97,7 @@ fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
         sum / square
     };
     let candidates = [
-        both(&columns).filter(|(a, b)| *a >= 0.0 && *b >= 0.0),
+        two_coefficients(&columns).filter(|(a, b)| *a >= 0.0 && *b >= 0.0),
         Some((alone(|column| column.0), 0.0)),
         Some((0.0, alone(|column| column.1))),
     ];
@@ -114,7 +114,7 @@ fn project(points: &[(f64, f64)], low: f64, high: f64) -> TwoTerms {
 }
 
 /// Unconstrained least squares of `a u + b v = 1` by orthogonalisation.
-pub(crate) fn both(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
+pub(crate) fn two_coefficients(columns: &[(f64, f64)]) -> Option<(f64, f64)> {
     let norm = columns.iter().map(|(u, _)| u * u).sum::<f64>().sqrt();
     let along = columns.iter().map(|(u, v)| u / norm * v).sum::<f64>();
     let rest = || columns.iter().map(|(u, v)| v - along * u / norm);

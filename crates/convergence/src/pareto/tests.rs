@@ -36,12 +36,12 @@ proptest! {
 }
 
 /// Whether a point is nowhere worse than another and somewhere better.
-fn dominates(one: &CostPoint, other: &CostPoint) -> bool {
-    one.is_usable()
+fn dominates(point: &CostPoint, other: &CostPoint) -> bool {
+    point.is_usable()
         && other.is_usable()
-        && one.cost <= other.cost
-        && one.error <= other.error
-        && (one.cost < other.cost || one.error < other.error)
+        && point.cost <= other.cost
+        && point.error <= other.error
+        && (point.cost < other.cost || point.error < other.error)
 }
 
 proptest! {
@@ -56,7 +56,7 @@ proptest! {
             .collect();
         let by_pairs: Vec<bool> = points
             .iter()
-            .map(|one| one.is_usable() && !points.iter().any(|other| dominates(other, one)))
+            .map(|point| point.is_usable() && !points.iter().any(|other| dominates(other, point)))
             .collect();
         prop_assert_eq!(front(&points), by_pairs);
     }

@@ -8,11 +8,11 @@ use proptest::prelude::*;
 const SIZES: [f64; 6] = [1.0 / 5.0, 1.0 / 10.0, 1.0 / 20.0, 1.0 / 40.0, 1.0 / 80.0, 1.0 / 160.0];
 
 fn series(error: impl Fn(f64) -> f64) -> ErrorSeries {
-    ErrorSeries::of(&SIZES.map(|size| (size, error(size))))
+    ErrorSeries::from_pairs(&SIZES.map(|size| (size, error(size))))
 }
 
 fn listed(errors: &[f64]) -> ErrorSeries {
-    ErrorSeries::of(&SIZES.into_iter().zip(errors.iter().copied()).collect::<Vec<_>>())
+    ErrorSeries::from_pairs(&SIZES.into_iter().zip(errors.iter().copied()).collect::<Vec<_>>())
 }
 
 fn formal(order: f64) -> Context {
@@ -24,7 +24,7 @@ fn class(series: &ErrorSeries) -> [Class; 2] {
         .map(|formal_order| classify(series, &Context { formal_order, ..Context::default() }).class)
 }
 
-fn both(class: Class) -> [Class; 2] {
+fn with_and_without_order(class: Class) -> [Class; 2] {
     [class; 2]
 }
 
@@ -55,13 +55,16 @@ fn the_four_series_of_the_issue() {
 
 #[test]
 fn clean_series_are_asymptotic_at_any_ratio() {
-    assert_eq!(class(&series(|h| h * h)), both(Class::Asymptotic));
+    assert_eq!(class(&series(|h| h * h)), with_and_without_order(Class::Asymptotic));
     let mixed = [5.0, 8.0, 11.0, 30.0, 37.0_f64].map(|n| (1.0 / n, 3.0 / n / n));
-    let found = classify(&ErrorSeries::of(&mixed), &formal(2.0));
-    assert_eq!(found.class, Class::Asymptotic, "{found:?}");
-    assert!((found.order.unwrap() - 2.0).abs() < 1e-12);
+    let classification = classify(&ErrorSeries::from_pairs(&mixed), &formal(2.0));
+    assert_eq!(classification.class, Class::Asymptotic, "{classification:?}");
+    assert!((classification.order.unwrap() - 2.0).abs() < 1e-12);
     // Second order with three digits and a few per cent of noise.
-    assert_eq!(class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])), both(Class::Asymptotic));
+    assert_eq!(
+        class(&listed(&[1.36e-2, 3.6e-3, 8.9e-4, 2.23e-4])),
+        with_and_without_order(Class::Asymptotic)
+    );
 }
 
 #[test]
@@ -70,17 +73,21 @@ fn nonsense_is_not_evaluable() {
         for place in 0..6 {
             let mut errors = SIZES.map(|h| h * h);
             errors[place] = bad;
-            assert_eq!(class(&listed(&errors)), both(Class::NotEvaluable), "{bad} at {place}");
+            assert_eq!(
+                class(&listed(&errors)),
+                with_and_without_order(Class::NotEvaluable),
+                "{bad} at {place}"
+            );
         }
     }
-    assert_eq!(class(&listed(&[f64::NAN; 6])), both(Class::NotEvaluable));
-    assert_eq!(class(&ErrorSeries::default()), both(Class::NotEvaluable));
-    assert_eq!(class(&listed(&[0.04])), both(Class::NotEvaluable));
-    assert_eq!(class(&listed(&[0.04, 0.01])), both(Class::NotEvaluable));
+    assert_eq!(class(&listed(&[f64::NAN; 6])), with_and_without_order(Class::NotEvaluable));
+    assert_eq!(class(&ErrorSeries::default()), with_and_without_order(Class::NotEvaluable));
+    assert_eq!(class(&listed(&[0.04])), with_and_without_order(Class::NotEvaluable));
+    assert_eq!(class(&listed(&[0.04, 0.01])), with_and_without_order(Class::NotEvaluable));
     let close = [100.0, 110.0, 121.0, 133.0_f64].map(|n| (1.0 / n, 1.0 / n / n));
-    assert_eq!(class(&ErrorSeries::of(&close)), both(Class::NotEvaluable));
+    assert_eq!(class(&ErrorSeries::from_pairs(&close)), with_and_without_order(Class::NotEvaluable));
     let same = [(0.2, 0.04), (0.1, 0.01), (0.1, 0.01), (0.05, 0.0025)];
-    assert_eq!(class(&ErrorSeries::of(&same)), both(Class::NotEvaluable));
+    assert_eq!(class(&ErrorSeries::from_pairs(&same)), with_and_without_order(Class::NotEvaluable));
     let mut levels = series(|h| h * h).levels().to_vec();
     levels[5].error = None;
     let gap = classify(&ErrorSeries::new(levels), &Context::default());
@@ -88,42 +95,42 @@ fn nonsense_is_not_evaluable() {
     assert!(gap.reason.contains("missing"), "{gap:?}");
     for size in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let sizes = [(0.2, 0.04), (0.1, 0.01), (0.05, 0.0025), (size, 0.1)];
-        assert_eq!(class(&ErrorSeries::of(&sizes)), both(Class::NotEvaluable));
+        assert_eq!(class(&ErrorSeries::from_pairs(&sizes)), with_and_without_order(Class::NotEvaluable));
     }
 }
 
 #[test]
 fn round_off_is_exact_and_not_an_order() {
-    assert_eq!(class(&listed(&[0.0; 4])), both(Class::Exact));
-    assert_eq!(class(&listed(&[1e-310; 4])), both(Class::Exact));
+    assert_eq!(class(&listed(&[0.0; 4])), with_and_without_order(Class::Exact));
+    assert_eq!(class(&listed(&[1e-310; 4])), with_and_without_order(Class::Exact));
     let noise = listed(&[3e-16, 1e-16, 2e-16, 5e-17]);
     let context = Context { round_off: Some(1e-14), ..Context::default() };
     assert_eq!(classify(&noise, &context).class, Class::Exact);
     let reaching = listed(&[1e-6, 1e-9, 1e-12, 1e-15]);
-    let found = classify(&reaching, &context);
-    assert_eq!(found.class, Class::FloorLimited, "{found:?}");
-    assert_eq!(found.floor.unwrap().limiter, Some(LimiterKind::RoundOff));
+    let classification = classify(&reaching, &context);
+    assert_eq!(classification.class, Class::FloorLimited, "{classification:?}");
+    assert_eq!(classification.floor.unwrap().limiter, Some(LimiterKind::RoundOff));
 }
 
 #[test]
 fn standing_still_is_a_floor() {
-    assert_eq!(class(&listed(&[0.3; 6])), both(Class::FloorLimited));
-    assert_eq!(class(&listed(&[0.3; 4])), both(Class::FloorLimited));
-    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])), both(Class::FloorLimited));
+    assert_eq!(class(&listed(&[0.3; 6])), with_and_without_order(Class::FloorLimited));
+    assert_eq!(class(&listed(&[0.3; 4])), with_and_without_order(Class::FloorLimited));
+    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.7e-3, 2.2e-3])), with_and_without_order(Class::FloorLimited));
     let noisy = listed(&[4e-2, 1e-2, 2.6e-3, 2.1e-3, 2.5e-3, 2.2e-3]);
-    assert_eq!(class(&noisy), both(Class::FloorLimited));
-    assert_eq!(class(&series(|h| h.powf(0.2))), both(Class::FloorLimited));
+    assert_eq!(class(&noisy), with_and_without_order(Class::FloorLimited));
+    assert_eq!(class(&series(|h| h.powf(0.2))), with_and_without_order(Class::FloorLimited));
     // A dip that six levels fit, though the last four do not confirm its limit.
     let dipping = listed(&[2.63e-2, 5.78e-3, 8.04e-4, 4.32e-4, 7.37e-4, 8.13e-4]);
-    assert_eq!(class(&dipping), both(Class::FloorLimited));
+    assert_eq!(class(&dipping), with_and_without_order(Class::FloorLimited));
     // Against water that cannot be compressed, on 10 to 640 cells.
     let sizes = [10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0_f64].map(f64::recip);
     let errors = [5.512e-3, 1.31e-3, 3.11e-4, 1.34e-4, 1.35e-4, 1.403e-4, 1.42e-4];
-    let model = ErrorSeries::of(&sizes.into_iter().zip(errors).collect::<Vec<_>>());
-    assert_eq!(class(&model), both(Class::FloorLimited));
+    let model = ErrorSeries::from_pairs(&sizes.into_iter().zip(errors).collect::<Vec<_>>());
+    assert_eq!(class(&model), with_and_without_order(Class::FloorLimited));
     // Creeping up over the last levels, by no more than before: still a floor.
     let creeping = listed(&[1.24e-2, 3.0e-3, 6.9e-4, 1.5e-4, 1.2e-4, 1.36e-4]);
-    assert_eq!(class(&creeping), both(Class::FloorLimited));
+    assert_eq!(class(&creeping), with_and_without_order(Class::FloorLimited));
     // A floor of opposite sign: the error dips at 1/80 and comes up again to 2e-4.
     let dip = classify(&series(|h| (h * h - 2e-4).abs()), &formal(2.0));
     assert_eq!(dip.class, Class::FloorLimited, "{dip:?}");
@@ -144,7 +151,7 @@ const GO_TO_A_LIMIT: [(&[f64], f64); 5] = [
 fn with_signs(values: &[f64]) -> (ErrorSeries, Context) {
     let sizes = [10.0, 20.0, 40.0, 80.0, 160.0_f64].map(f64::recip);
     let points: Vec<_> = sizes.into_iter().zip(values.iter().map(|value| value.abs())).collect();
-    (ErrorSeries::of(&points), Context { signed: values.to_vec(), ..Context::default() })
+    (ErrorSeries::from_pairs(&points), Context { signed: values.to_vec(), ..Context::default() })
 }
 
 #[test]
@@ -152,17 +159,20 @@ fn a_limit_other_than_zero_is_a_floor_from_either_side() {
     for (values, limit) in GO_TO_A_LIMIT {
         for formal_order in [None, Some(2.0)] {
             let (series, context) = with_signs(values);
-            let found = classify(&series, &Context { formal_order, ..context });
-            assert_eq!(found.class, Class::FloorLimited, "{found:?}");
-            let floor = found.floor.expect("a floor");
+            let classification = classify(&series, &Context { formal_order, ..context });
+            assert_eq!(classification.class, Class::FloorLimited, "{classification:?}");
+            let floor = classification.floor.expect("a floor");
             assert!((floor.value / f64::abs(limit) - 1.0).abs() < 0.02 && floor.fitted, "{floor:?}");
-            assert!((found.order.expect("an order") - 2.0).abs() < 0.3, "{values:?}");
+            assert!((classification.order.expect("an order") - 2.0).abs() < 0.3, "{values:?}");
             // The same on three levels is told, and is no floor and no divergence.
             let (series, context) = with_signs(&values[..3]);
-            let found = classify(&series, &Context { formal_order, ..context });
-            assert_eq!(found.class, Class::PreAsymptotic, "{found:?}");
-            assert!(found.reason.contains("3 levels cannot tell a limit from growth"), "{found:?}");
-            assert!(found.advice.expect("advice").contains("add a level: at size 0.0125"));
+            let classification = classify(&series, &Context { formal_order, ..context });
+            assert_eq!(classification.class, Class::PreAsymptotic, "{classification:?}");
+            assert!(
+                classification.reason.contains("3 levels cannot tell a limit from growth"),
+                "{classification:?}"
+            );
+            assert!(classification.advice.expect("advice").contains("add a level: at size 0.0125"));
         }
     }
 }
@@ -187,13 +197,16 @@ fn three_levels_claim_no_floor_and_four_do() {
     for formal_order in [None, Some(2.0)] {
         let context = Context { formal_order, ..Context::default() };
         for errors in [[0.3, 0.3, 0.3], [4e-3, 1.2e-3, 1.0e-3], [3e-3, 3.6e-4, 8.9e-5]] {
-            let found = classify(&listed(&errors), &context);
-            assert!(found.floor.is_none() && found.class != Class::FloorLimited, "{found:?}");
+            let classification = classify(&listed(&errors), &context);
+            assert!(
+                classification.floor.is_none() && classification.class != Class::FloorLimited,
+                "{classification:?}"
+            );
         }
     }
     let floored = |levels: usize| {
         let points: Vec<_> = SIZES[..levels].iter().map(|h| (*h, h * h + 1e-3)).collect();
-        classify(&ErrorSeries::of(&points), &formal(2.0))
+        classify(&ErrorSeries::from_pairs(&points), &formal(2.0))
     };
     let three = floored(3);
     assert_eq!(three.class, Class::PreAsymptotic, "{three:?}");
@@ -209,44 +222,44 @@ fn three_levels_claim_no_floor_and_four_do() {
 
 #[test]
 fn of_two_classes_that_fit_the_documented_one_is_given() {
-    let of = |errors: &[f64], context: Context| classify(&listed(errors), &context).class;
+    let class_of = |errors: &[f64], context: Context| classify(&listed(errors), &context).class;
     let plain = Context::default;
     // Nonsense in the context before round-off, and round-off before everything else.
     let all_round_off = Context { round_off: Some(1e-12), ..plain() };
-    assert_eq!(of(&[1e-15, 4e-15, 2e-14, 9e-14], all_round_off.clone()), Class::Exact);
+    assert_eq!(class_of(&[1e-15, 4e-15, 2e-14, 9e-14], all_round_off.clone()), Class::Exact);
     let nonsense = Context { formal_order: Some(-1.0), ..all_round_off.clone() };
-    assert_eq!(of(&[1e-15, 4e-15, 2e-14, 9e-14], nonsense), Class::NotEvaluable);
+    assert_eq!(class_of(&[1e-15, 4e-15, 2e-14, 9e-14], nonsense), Class::NotEvaluable);
     // A locked body is locked, whatever its errors do; but a hole is told before.
     let stuck = Context { mobility: vec![0.01, 0.02, 0.03], ..plain() };
-    assert_eq!(of(&[1.0, 2.0, 4.0], stuck.clone()), Class::Locked);
-    assert_eq!(of(&[1.0, f64::NAN, 4.0], stuck.clone()), Class::NotEvaluable);
-    assert_eq!(of(&[1e-15; 3], Context { round_off: Some(1e-12), ..stuck }), Class::Exact);
+    assert_eq!(class_of(&[1.0, 2.0, 4.0], stuck.clone()), Class::Locked);
+    assert_eq!(class_of(&[1.0, f64::NAN, 4.0], stuck.clone()), Class::NotEvaluable);
+    assert_eq!(class_of(&[1e-15; 3], Context { round_off: Some(1e-12), ..stuck }), Class::Exact);
     let loosened = Context { mobility: vec![0.01, 0.3, 0.8], ..plain() };
-    assert_ne!(of(&[1.0, 0.7, 0.2], loosened), Class::Locked, "the finest mesh moves");
+    assert_ne!(class_of(&[1.0, 0.7, 0.2], loosened), Class::Locked, "the finest mesh moves");
     // One level of round-off is a floor before it is an order, on three levels too.
-    assert_eq!(of(&[1e-6, 1e-9, 1e-13], all_round_off), Class::FloorLimited);
+    assert_eq!(class_of(&[1e-6, 1e-9, 1e-13], all_round_off), Class::FloorLimited);
     // A limit comes before growth, and growth before a standstill.
-    assert_eq!(of(&[1.0, 2.0, 2.5, 2.75], plain()), Class::FloorLimited);
-    assert_eq!(of(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5], plain()), Class::Divergent);
+    assert_eq!(class_of(&[1.0, 2.0, 2.5, 2.75], plain()), Class::FloorLimited);
+    assert_eq!(class_of(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5], plain()), Class::Divergent);
     // Ups and downs come before an alternating order.
-    assert_eq!(of(&[1.0, 0.5, 1.0, 0.5, 1.0], plain()), Class::Oscillatory);
+    assert_eq!(class_of(&[1.0, 0.5, 1.0, 0.5, 1.0], plain()), Class::Oscillatory);
     // A poor reference unmakes an order, not a divergence.
     let poor = Context { reference_accuracy: Some(1.0), ..plain() };
-    assert_eq!(of(&[4e-2, 1e-2, 2.5e-3, 6.25e-4], poor.clone()), Class::NotEvaluable);
-    assert_eq!(of(&[1.0, 2.0, 4.0, 8.0], poor), Class::Divergent);
+    assert_eq!(class_of(&[4e-2, 1e-2, 2.5e-3, 6.25e-4], poor.clone()), Class::NotEvaluable);
+    assert_eq!(class_of(&[1.0, 2.0, 4.0, 8.0], poor), Class::Divergent);
 }
 
 #[test]
 fn growing_and_oscillating_are_told_apart() {
-    assert_eq!(class(&listed(&[1.0, 2.0, 4.0])), both(Class::Divergent));
-    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])), both(Class::Divergent));
-    assert_eq!(class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])), both(Class::Divergent));
-    assert_eq!(class(&listed(&[1.0, 0.5, 1.0, 0.5, 1.0, 0.5])), both(Class::Oscillatory));
-    assert_eq!(class(&listed(&[1.0, 0.3, 0.6, 0.1, 0.2])), both(Class::Oscillatory));
+    assert_eq!(class(&listed(&[1.0, 2.0, 4.0])), with_and_without_order(Class::Divergent));
+    assert_eq!(class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])), with_and_without_order(Class::Divergent));
+    assert_eq!(class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])), with_and_without_order(Class::Divergent));
+    assert_eq!(class(&listed(&[1.0, 0.5, 1.0, 0.5, 1.0, 0.5])), with_and_without_order(Class::Oscillatory));
+    assert_eq!(class(&listed(&[1.0, 0.3, 0.6, 0.1, 0.2])), with_and_without_order(Class::Oscillatory));
     // Falling all the way, with an order that jumps: 0.4, 3.6, 0.4, 3.6, …
     let jumping = [1.5, 0.5, 1.5, 0.5, 1.5, 0.5];
     let errors: Vec<_> = SIZES.iter().zip(jumping).map(|(h, factor)| factor * h * h).collect();
-    assert_eq!(class(&listed(&errors)), both(Class::Oscillatory));
+    assert_eq!(class(&listed(&errors)), with_and_without_order(Class::Oscillatory));
 }
 
 #[test]
@@ -273,7 +286,7 @@ fn round_off_does_not_choose_between_explanations() {
         let noisy = |(h, log): (&f64, f64)| {
             (*h, unit * h.powf(3.090_663_476_155_412_6) * (0.041_887_047_716_129_21 * log).exp())
         };
-        ErrorSeries::of(&SIZES.iter().zip(logs).map(noisy).collect::<Vec<_>>())
+        ErrorSeries::from_pairs(&SIZES.iter().zip(logs).map(noisy).collect::<Vec<_>>())
     };
     let context = formal(3.986_613_621_413_895);
     for unit in [1.0, 12.208_959_938_961_737_f64.exp(), 1e3, 1e-3, 0.7] {
@@ -292,7 +305,7 @@ fn a_second_term_is_told_before_the_order_leaves_the_band() {
 #[test]
 fn a_lower_order_that_has_settled_is_wrong_only_where_another_is_expected() {
     let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0_f64].map(f64::recip);
-    let late = ErrorSeries::of(&sizes.map(|h| (h, h * h + 0.05 * h)));
+    let late = ErrorSeries::from_pairs(&sizes.map(|h| (h, h * h + 0.05 * h)));
     assert_eq!(class(&late), [Class::Asymptotic, Class::Contaminated]);
 }
 
@@ -306,20 +319,20 @@ fn a_floor_is_put_down_to_what_fits_it_with_advice() {
         let context = Context { limiters: limiters.to_vec(), ..formal(2.0) };
         classify(&series(|h| h * h + floor), &context)
     };
-    let found = floored(2e-4, &[step.clone(), model.clone()]);
-    assert_eq!(found.floor.clone().unwrap().limiter, Some(LimiterKind::Step), "{found:?}");
-    assert_eq!(found.advice.unwrap(), "lower the time step by 64");
-    let found = floored(1.4e-4, &[step.clone(), model]);
-    assert_eq!(found.floor.clone().unwrap().limiter, Some(LimiterKind::Model));
-    assert!(found.advice.unwrap().contains("its own equations"));
-    let found = floored(1e-2, std::slice::from_ref(&step));
-    assert_eq!(found.floor.unwrap().limiter, None);
+    let classification = floored(2e-4, &[step.clone(), model.clone()]);
+    assert_eq!(classification.floor.clone().unwrap().limiter, Some(LimiterKind::Step), "{classification:?}");
+    assert_eq!(classification.advice.unwrap(), "lower the time step by 64");
+    let classification = floored(1.4e-4, &[step.clone(), model]);
+    assert_eq!(classification.floor.clone().unwrap().limiter, Some(LimiterKind::Model));
+    assert!(classification.advice.unwrap().contains("its own equations"));
+    let classification = floored(1e-2, std::slice::from_ref(&step));
+    assert_eq!(classification.floor.unwrap().limiter, None);
     // A step rule of unknown height is put forward where nothing else is left, and only as likely.
     let rule = limiter(LimiterKind::Step, "`tolerance`", None);
-    let found = floored(1e-2, &[step, rule]);
-    assert_eq!(found.floor.unwrap().limiter, Some(LimiterKind::Step));
-    assert!(found.reason.contains("most likely by `tolerance`"), "{}", found.reason);
-    assert!(found.advice.unwrap().starts_with("lower `tolerance` by"));
+    let classification = floored(1e-2, &[step, rule]);
+    assert_eq!(classification.floor.unwrap().limiter, Some(LimiterKind::Step));
+    assert!(classification.reason.contains("most likely by `tolerance`"), "{}", classification.reason);
+    assert!(classification.advice.unwrap().starts_with("lower `tolerance` by"));
 }
 
 #[test]
@@ -359,9 +372,9 @@ fn any_error() -> impl Strategy<Value = Option<f64>> {
     ]
 }
 
-fn never_wrong(found: &Classification, levels: &[SeriesLevel]) -> Result<(), TestCaseError> {
-    prop_assert!(!found.reason.is_empty());
-    if found.class == Class::Asymptotic {
+fn never_wrong(classification: &Classification, levels: &[SeriesLevel]) -> Result<(), TestCaseError> {
+    prop_assert!(!classification.reason.is_empty());
+    if classification.class == Class::Asymptotic {
         // Counted anew, apart from the code: steady positive orders on sound finest levels.
         let order = |pair: &[SeriesLevel]| {
             let (a, b) = (pair[0].error.unwrap(), pair[1].error.unwrap());
@@ -370,12 +383,12 @@ fn never_wrong(found: &Classification, levels: &[SeriesLevel]) -> Result<(), Tes
         let pairs: Vec<_> = levels.windows(2).map(order).collect();
         let (coarse, fine) = (pairs[pairs.len() - 2], pairs[pairs.len() - 1]);
         prop_assert!(levels.iter().all(|level| level.error.unwrap().is_normal()));
-        prop_assert!((coarse - fine).abs() <= 0.2501 && fine > 0.29, "{:?} {:?}", found, pairs);
+        prop_assert!((coarse - fine).abs() <= 0.2501 && fine > 0.29, "{:?} {:?}", classification, pairs);
     }
-    if let Some(order) = found.order {
+    if let Some(order) = classification.order {
         prop_assert!(order.is_finite());
         let without = [Class::NotEvaluable, Class::Exact, Class::Divergent, Class::Oscillatory];
-        prop_assert!(!without.contains(&found.class));
+        prop_assert!(!without.contains(&classification.class));
     }
     Ok(())
 }
@@ -411,7 +424,7 @@ proptest! {
             points.push((*size, error));
         }
         let context = Context { formal_order, ..Context::default() };
-        let series = ErrorSeries::of(&points);
+        let series = ErrorSeries::from_pairs(&points);
         never_wrong(&classify(&series, &context), series.levels())?;
     }
 
@@ -427,11 +440,11 @@ proptest! {
             .map(|(log, h)| (h, h.powf(slope) * (noise * log).exp())).collect();
         let context = Context { formal_order, ..Context::default() };
         let k = factor.exp();
-        let plain = classify(&ErrorSeries::of(&points), &context).class;
+        let plain = classify(&ErrorSeries::from_pairs(&points), &context).class;
         let errors: Vec<_> = points.iter().map(|(h, e)| (*h, k * e)).collect();
         let meshes: Vec<_> = points.iter().map(|(h, e)| (k * h, *e)).collect();
-        prop_assert_eq!(classify(&ErrorSeries::of(&errors), &context).class, plain);
-        prop_assert_eq!(classify(&ErrorSeries::of(&meshes), &context).class, plain);
+        prop_assert_eq!(classify(&ErrorSeries::from_pairs(&errors), &context).class, plain);
+        prop_assert_eq!(classify(&ErrorSeries::from_pairs(&meshes), &context).class, plain);
     }
 
     #[test]
@@ -441,8 +454,8 @@ proptest! {
         // 1 % of noise is 0.02/ln 2 = 0.03 in a pair order at most.
         let points: Vec<_> = SIZES.iter().zip(&noise)
             .map(|(h, noise)| (*h, c.exp() * h.powf(p) * (1.0 + 0.01 * noise))).collect();
-        let found = classify(&ErrorSeries::of(&points), &formal(p));
-        prop_assert_eq!(found.class, Class::Asymptotic, "{:?}", found);
+        let classification = classify(&ErrorSeries::from_pairs(&points), &formal(p));
+        prop_assert_eq!(classification.class, Class::Asymptotic, "{:?}", classification);
     }
 }
 
@@ -457,10 +470,11 @@ fn the_share_of_a_second_term_is_told_at_the_finest_level() {
         (2.0, 1.5, 0.4, Class::Contaminated),
     ] {
         let coefficient = share / (1.0 - share) * SIZES[5].powf(p - q);
-        let found = classify(&series(|h| h.powf(p) + coefficient * h.powf(q)), &Context::default());
-        assert_eq!(found.class, class, "{share}: {found:?}");
-        let told = format!(" makes up {:.0} % of the finest error", 100.0 * share);
-        let is_told = found.reason.contains("over all 6 levels") && found.reason.contains(&told);
-        assert!(is_told, "{share}: {}", found.reason);
+        let classification = classify(&series(|h| h.powf(p) + coefficient * h.powf(q)), &Context::default());
+        assert_eq!(classification.class, class, "{share}: {classification:?}");
+        let share_text = format!(" makes up {:.0} % of the finest error", 100.0 * share);
+        let is_named = classification.reason.contains("over all 6 levels")
+            && classification.reason.contains(&share_text);
+        assert!(is_named, "{share}: {}", classification.reason);
     }
 }

@@ -22,7 +22,7 @@ impl Draw {
         from + (to - from) * self.0 as f64 / 2_147_483_647.0
     }
 
-    pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
+    pub fn choose<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.place(choices.len() as f64).min(choices.len() - 1)]
     }
 
@@ -47,7 +47,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    fn of(points: Vec<(f64, f64)>, formal: Option<f64>, right: &'static [Class]) -> Self {
+    fn new(points: Vec<(f64, f64)>, formal: Option<f64>, right: &'static [Class]) -> Self {
         Self { points, formal, right, order: (f64::NAN, f64::INFINITY), named: None }
     }
 
@@ -59,26 +59,26 @@ impl Known {
         let magnitudes: Vec<_> = self.points.iter().map(|(size, error)| (*size, error.abs())).collect();
         let signed = self.points.iter().map(|point| point.1).collect();
         let context = Context { formal_order: self.formal, signed, ..Context::default() };
-        classify(&ErrorSeries::of(&magnitudes), &context)
+        classify(&ErrorSeries::from_pairs(&magnitudes), &context)
     }
 
     /// What is wrong with a classification.
-    fn wrong(&self, found: &Classification) -> Option<String> {
+    fn wrong(&self, classification: &Classification) -> Option<String> {
         let (wanted, within) = self.order;
-        if !self.right.contains(&found.class) {
-            return Some(found.class.to_string());
+        if !self.right.contains(&classification.class) {
+            return Some(classification.class.to_string());
         }
-        let off = found.order.map_or(f64::NAN, |order| (order - wanted).abs());
+        let off = classification.order.map_or(f64::NAN, |order| (order - wanted).abs());
         let is_near = off <= within;
-        if found.class == Class::Asymptotic && wanted.is_finite() && !is_near {
-            return Some(format!("asymptotic with order {:?} for {wanted:.2}", found.order));
+        if classification.class == Class::Asymptotic && wanted.is_finite() && !is_near {
+            return Some(format!("asymptotic with order {:?} for {wanted:.2}", classification.order));
         }
         let unnamed = self.named.filter(|size| {
-            !found
+            !classification
                 .reason
                 .contains(&format!("level of size {} is an outlier", oedometer_soil::wording::short(*size)))
         });
-        unnamed.map(|size| format!("{} without a word on size {size:.4}", found.class))
+        unnamed.map(|size| format!("{} without a word on size {size:.4}", classification.class))
     }
 }
 
@@ -113,109 +113,109 @@ pub(super) const KINDS: [Kind; 19] = [
     ("one power, order known", |draw, ratio| {
         let p = draw.between(0.5, 4.0);
         let c = draw.between(0.1, 10.0);
-        let points = levels(ratio, draw.one_of(&[3, 4, 6]), |h| c * h.powf(p));
-        Known::of(points, Some(p), &[Asymptotic]).with_order(p, 1e-9)
+        let points = levels(ratio, draw.choose(&[3, 4, 6]), |h| c * h.powf(p));
+        Known::new(points, Some(p), &[Asymptotic]).with_order(p, 1e-9)
     }),
     ("one power, order unknown", |draw, ratio| {
         let p = draw.between(0.5, 4.0);
-        let points = levels(ratio, draw.one_of(&[3, 4, 6]), |h| 3.0 * h.powf(p));
-        Known::of(points, None, &[Asymptotic]).with_order(p, 1e-9)
+        let points = levels(ratio, draw.choose(&[3, 4, 6]), |h| 3.0 * h.powf(p));
+        Known::new(points, None, &[Asymptotic]).with_order(p, 1e-9)
     }),
     ("a higher order nearly gone", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[1.0, 2.0]), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.001, 0.03), ratio, count, p, p + 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p + 1.0));
-        let formal = draw.one_of(&[None, Some(p)]);
-        Known::of(points, formal, &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
+        let formal = draw.choose(&[None, Some(p)]);
+        Known::new(points, formal, &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
     }),
     ("a higher order that governs", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[1.0, 2.0]), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.4, 0.9), ratio, count, p, p + 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p + 1.0));
-        Known::of(points, Some(p), &[PreAsymptotic, Superconvergent])
+        Known::new(points, Some(p), &[PreAsymptotic, Superconvergent])
     }),
     ("a lower order that governs, order known", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[2.0, 3.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[2.0, 3.0]), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.4, 0.95), ratio, count, p, p - 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
-        Known::of(points, Some(p), &[Contaminated, PreAsymptotic])
+        Known::new(points, Some(p), &[Contaminated, PreAsymptotic])
     }),
     ("a lower order that governs, order unknown", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[2.0, 3.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[2.0, 3.0]), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.6, 0.95), ratio, count, p, p - 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
         let right = &[Contaminated, PreAsymptotic, Asymptotic];
-        Known::of(points, None, right).with_order(p - 1.0, 0.35)
+        Known::new(points, None, right).with_order(p - 1.0, 0.35)
     }),
     ("a floor that governs, order known", |draw, ratio| {
-        let (p, count) = (draw.between(0.5, 3.0), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.5, 3.0), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.3, 0.9), ratio, count, p, 0.0);
         let points = levels(ratio, count, |h| h.powf(p) + b);
-        Known::of(points, Some(p), &[FloorLimited, PreAsymptotic, Contaminated])
+        Known::new(points, Some(p), &[FloorLimited, PreAsymptotic, Contaminated])
     }),
     ("a floor that governs, order unknown", |draw, ratio| {
-        let (p, count) = (draw.between(0.5, 3.0), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.5, 3.0), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.3, 0.9), ratio, count, p, 0.0);
         let points = levels(ratio, count, |h| h.powf(p) + b);
-        Known::of(points, None, &[FloorLimited])
+        Known::new(points, None, &[FloorLimited])
     }),
     ("a floor on three levels", |draw, ratio| {
         let p = draw.between(0.5, 3.0);
         let b = coefficient(draw.between(0.4, 0.9), ratio, 3, p, 0.0);
         let points = levels(ratio, 3, |h| h.powf(p) + b);
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[PreAsymptotic, Contaminated])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[PreAsymptotic, Contaminated])
     }),
     ("a floor of a hundredth", |draw, ratio| {
-        let (p, count) = (draw.between(0.5, 3.0), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.5, 3.0), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.0, 0.01), ratio, count, p, 0.0);
         let points = levels(ratio, count, |h| h.powf(p) + b);
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Asymptotic]).with_order(p, 0.1)
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Asymptotic]).with_order(p, 0.1)
     }),
     ("half a per cent of noise", |draw, ratio| {
-        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.8, 2.5), draw.choose(&[4, 5, 6]));
         let mut points = levels(ratio, count, |h| h.powf(p));
         noisy(draw, &mut points, 0.005);
-        let formal = draw.one_of(&[None, Some(p)]);
+        let formal = draw.choose(&[None, Some(p)]);
         let right: &[Class] = if ratio < 1.9 { &[Asymptotic, PreAsymptotic] } else { &[Asymptotic] };
-        Known::of(points, formal, right).with_order(p, 0.15)
+        Known::new(points, formal, right).with_order(p, 0.15)
     }),
     ("two per cent of noise", |draw, ratio| {
-        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.8, 2.5), draw.choose(&[4, 5, 6]));
         let mut points = levels(ratio, count, |h| h.powf(p));
         noisy(draw, &mut points, 0.02);
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
     }),
     ("a floor with a per cent of noise", |draw, ratio| {
-        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.8, 2.5), draw.choose(&[4, 5, 6]));
         let b = coefficient(draw.between(0.5, 0.9), ratio, count, p, 0.0);
         let mut points = levels(ratio, count, |h| h.powf(p) + b);
         noisy(draw, &mut points, 0.01);
         let right = &[FloorLimited, PreAsymptotic, Contaminated];
-        Known::of(points, draw.one_of(&[None, Some(p)]), right)
+        Known::new(points, draw.choose(&[None, Some(p)]), right)
     }),
     ("a logarithm", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[1.0, 2.0]), draw.choose(&[4, 5, 6]));
         let points = levels(ratio, count, |h| h.powf(p) * (1.0 / h).ln());
         let right = &[Asymptotic, PreAsymptotic, Contaminated];
-        Known::of(points, draw.one_of(&[None, Some(p)]), right).with_order(p, 0.45)
+        Known::new(points, draw.choose(&[None, Some(p)]), right).with_order(p, 0.45)
     }),
     ("signs in turn", |draw, ratio| {
-        let (p, count) = (draw.between(0.5, 3.0), draw.one_of(&[3, 4, 6]));
+        let (p, count) = (draw.between(0.5, 3.0), draw.choose(&[3, 4, 6]));
         let mut points = levels(ratio, count, |h| h.powf(p));
         points.iter_mut().step_by(2).for_each(|point| point.1 *= -1.0);
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Oscillatory])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Oscillatory])
     }),
     ("through zero to a limit", |draw, ratio| {
-        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.between(0.8, 2.5), draw.choose(&[4, 5, 6]));
         let zero = 0.125 / ratio.powf(draw.between(0.3, count as f64 - 1.3));
         let points = levels(ratio, count, |h| zero.powf(p) - h.powf(p));
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[FloorLimited, PreAsymptotic])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[FloorLimited, PreAsymptotic])
     }),
     ("one wrong level", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[4, 5, 6]));
+        let (p, count) = (draw.choose(&[1.0, 2.0]), draw.choose(&[4, 5, 6]));
         let mut points = levels(ratio, count, |h| h.powf(p));
         let place = draw.place(count as f64 - 1.001);
-        points[place].1 *= draw.one_of(&[0.2, 0.5, 2.0, 5.0]);
+        points[place].1 *= draw.choose(&[0.2, 0.5, 2.0, 5.0]);
         let named = Some(points[place].0);
         // Beyond the window the order is that of the finest levels, and the level is named beside it.
         let is_beyond = place + 3 < count;
@@ -224,55 +224,55 @@ pub(super) const KINDS: [Kind; 19] = [
         } else {
             &[PreAsymptotic, Oscillatory, Divergent, Contaminated, Superconvergent, FloorLimited]
         };
-        Known { named, ..Known::of(points, draw.one_of(&[None, Some(p)]), right).with_order(p, 0.1) }
+        Known { named, ..Known::new(points, draw.choose(&[None, Some(p)]), right).with_order(p, 0.1) }
     }),
     ("growth", |draw, ratio| {
         let p = draw.between(0.3, 2.0);
-        let points = levels(ratio, draw.one_of(&[3, 4, 6]), |h| h.powf(-p));
-        Known::of(points, draw.one_of(&[None, Some(2.0)]), &[Divergent])
+        let points = levels(ratio, draw.choose(&[3, 4, 6]), |h| h.powf(-p));
+        Known::new(points, draw.choose(&[None, Some(2.0)]), &[Divergent])
     }),
     ("a standstill", |draw, ratio| {
-        let mut points = levels(ratio, draw.one_of(&[4, 5, 6]), |_| 0.1);
+        let mut points = levels(ratio, draw.choose(&[4, 5, 6]), |_| 0.1);
         noisy(draw, &mut points, 0.005);
-        Known::of(points, draw.one_of(&[None, Some(2.0)]), &[FloorLimited])
+        Known::new(points, draw.choose(&[None, Some(2.0)]), &[FloorLimited])
     }),
 ];
 
 /// What the finest three levels hide and five show, what must not be taken for it, and floors that are reached from below.
 const HIDDEN_KINDS: [Kind; 7] = [
     ("a floor of a quarter on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let (p, count) = (draw.choose(&[1.0, 1.5, 2.0, 3.0]), draw.choose(&[5, 6, 7]));
         let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, 0.0);
         let points = levels(ratio, count, |h| h.powf(p) + b);
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[FloorLimited, PreAsymptotic, Contaminated])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[FloorLimited, PreAsymptotic, Contaminated])
     }),
     ("a lower order of a quarter on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let (p, count) = (draw.choose(&[1.5, 2.0, 3.0]), draw.choose(&[5, 6, 7]));
         let b = coefficient(draw.between(0.22, 0.3), ratio, count, p, p - 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
     }),
     ("a lower order of the other sign on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let (p, count) = (draw.choose(&[1.5, 2.0, 3.0]), draw.choose(&[5, 6, 7]));
         let b = coefficient(-draw.between(0.22, 0.3), ratio, count, p, p - 1.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p - 1.0));
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Contaminated, PreAsymptotic])
     }),
     ("a logarithm on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 1.5, 2.0, 3.0]), draw.one_of(&[5, 6, 7]));
+        let (p, count) = (draw.choose(&[1.0, 1.5, 2.0, 3.0]), draw.choose(&[5, 6, 7]));
         let points = levels(ratio, count, |h| h.powf(p) * (1.0 / h).ln());
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[PreAsymptotic, Contaminated])
+        Known::new(points, draw.choose(&[None, Some(p)]), &[PreAsymptotic, Contaminated])
     }),
     ("a higher order of either sign on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.one_of(&[1.0, 2.0]), draw.one_of(&[5, 6, 7]));
-        let b = coefficient(draw.between(0.001, 0.03), ratio, count, p, p + 1.0) * draw.one_of(&[-1.0, 1.0]);
+        let (p, count) = (draw.choose(&[1.0, 2.0]), draw.choose(&[5, 6, 7]));
+        let b = coefficient(draw.between(0.001, 0.03), ratio, count, p, p + 1.0) * draw.choose(&[-1.0, 1.0]);
         // At a ratio of 4 the coarse levels would vanish.
         let b = b.max(-6.0);
         let points = levels(ratio, count, |h| h.powf(p) + b * h.powf(p + 1.0));
-        Known::of(points, draw.one_of(&[None, Some(p)]), &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
+        Known::new(points, draw.choose(&[None, Some(p)]), &[Asymptotic, PreAsymptotic]).with_order(p, 0.25)
     }),
     ("five per cent of noise on five levels and more", |draw, ratio| {
-        let (p, count) = (draw.between(0.8, 2.5), draw.one_of(&[5, 6, 7]));
+        let (p, count) = (draw.between(0.8, 2.5), draw.choose(&[5, 6, 7]));
         let mut points = levels(ratio, count, |h| h.powf(p));
         noisy(draw, &mut points, 0.05);
         let right: &[Class] = if ratio < 1.9 {
@@ -280,14 +280,14 @@ const HIDDEN_KINDS: [Kind; 7] = [
         } else {
             &[Asymptotic, PreAsymptotic]
         };
-        Known::of(points, draw.one_of(&[None, Some(p)]), right).with_order(p, 0.4)
+        Known::new(points, draw.choose(&[None, Some(p)]), right).with_order(p, 0.4)
     }),
     ("a small rise to a floor", |draw, ratio| {
-        let count = draw.one_of(&[4, 5, 6]);
+        let count = draw.choose(&[4, 5, 6]);
         let mut points = levels(ratio, count, |_| 2.15e-4);
         noisy(draw, &mut points[1..], 0.02 * ratio.ln());
         points[0].1 *= draw.between(0.8, 0.95);
-        Known::of(points, draw.one_of(&[None, Some(2.0)]), &[FloorLimited])
+        Known::new(points, draw.choose(&[None, Some(2.0)]), &[FloorLimited])
     }),
 ];
 
@@ -300,17 +300,17 @@ fn series_of_known_truth_get_their_class() {
     for ratio in RATIOS {
         write!(table, "{ratio:8}").expect("memory");
     }
-    for (kind, of) in KINDS.into_iter().chain(HIDDEN_KINDS) {
+    for (kind, make) in KINDS.into_iter().chain(HIDDEN_KINDS) {
         write!(table, "\n{kind:44}").expect("memory");
         for ratio in RATIOS {
             let (mut met, mut undecided) = (0, 0);
             for _ in 0..TIMES {
-                let known = of(&mut draw, ratio);
-                let found = known.classified();
-                undecided += usize::from(found.class == PreAsymptotic);
-                match known.wrong(&found) {
+                let known = make(&mut draw, ratio);
+                let classification = known.classified();
+                undecided += usize::from(classification.class == PreAsymptotic);
+                match known.wrong(&classification) {
                     None => met += 1,
-                    Some(told) => {
+                    Some(complaint) => {
                         let errors: Vec<_> = known
                             .points
                             .iter()
@@ -318,7 +318,7 @@ fn series_of_known_truth_get_their_class() {
                             .collect();
                         writeln!(
                             wrong,
-                            "{kind}, ratio {ratio}, order {:?}: {told}: {}",
+                            "{kind}, ratio {ratio}, order {:?}: {complaint}: {}",
                             known.formal,
                             errors.join(" ")
                         )
@@ -356,8 +356,8 @@ fn digits_that_move_are_exact_or_a_floor_and_never_divergence() {
     ] {
         let points: Vec<_> = (0..).zip(errors).map(|(level, error)| (0.5_f64.powi(level), *error)).collect();
         let context = Context { round_off: Some(1e-12), tolerance: Some(1e-6), ..Context::default() };
-        let found = classify(&ErrorSeries::of(&points), &context);
-        assert_eq!(found.class, class, "{errors:?}: {found:?}");
+        let classification = classify(&ErrorSeries::from_pairs(&points), &context);
+        assert_eq!(classification.class, class, "{errors:?}: {classification:?}");
     }
 }
 
@@ -367,11 +367,11 @@ fn the_floor_that_was_called_an_order_is_a_floor() {
     let points = [8.0, 12.0, 18.0, 27.0_f64].map(|cells| (1.0 / cells, 0.4 / cells + 0.8 / 27.0));
     for formal_order in [None, Some(1.0), Some(2.0)] {
         let context = Context { formal_order, ..Context::default() };
-        let found = classify(&ErrorSeries::of(&points), &context);
+        let classification = classify(&ErrorSeries::from_pairs(&points), &context);
         // Where second order is expected, a term of low order is as good a name.
         let right = if formal_order == Some(2.0) { Class::Contaminated } else { Class::FloorLimited };
-        assert_eq!(found.class, right, "{found:?}");
-        let off = found.floor.map(|floor| (floor.value * 27.0 / 0.8 - 1.0).abs());
+        assert_eq!(classification.class, right, "{classification:?}");
+        let off = classification.floor.map(|floor| (floor.value * 27.0 / 0.8 - 1.0).abs());
         assert!(off.is_none_or(|off| off < 1e-3), "{off:?}");
     }
 }
@@ -387,9 +387,9 @@ fn values_that_go_to_and_fro_have_no_order() {
         assert!(signed.windows(2).all(|pair| pair[0] * pair[1] < 0.0), "{signed:?}");
         for formal_order in [None, Some(2.0)] {
             let context = Context { formal_order, signed: signed.clone(), ..Context::default() };
-            let found = classify(&series.differences(), &context);
-            assert_eq!(found.class, Class::Oscillatory, "{found:?}");
-            assert_eq!(found.order, None);
+            let classification = classify(&series.differences(), &context);
+            assert_eq!(classification.class, Class::Oscillatory, "{classification:?}");
+            assert_eq!(classification.order, None);
         }
         let uncertainty = series.uncertainty(2.0).expect("numbers");
         assert_eq!(uncertainty.finest_three.behaviour, Behaviour::Oscillatory);
@@ -399,7 +399,10 @@ fn values_that_go_to_and_fro_have_no_order() {
 #[test]
 fn a_single_change_of_sign_on_the_finest_window_has_no_order() {
     let points = [(0.1, 0.05), (0.05, -0.0125), (0.025, -0.003_125)];
-    let known = Known::of(points.to_vec(), None, &[PreAsymptotic]);
-    let found = known.classified();
-    assert!(found.class == PreAsymptotic && found.reason.contains("sign changes"), "{found:?}");
+    let known = Known::new(points.to_vec(), None, &[PreAsymptotic]);
+    let classification = known.classified();
+    assert!(
+        classification.class == PreAsymptotic && classification.reason.contains("sign changes"),
+        "{classification:?}"
+    );
 }

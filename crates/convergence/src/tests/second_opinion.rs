@@ -25,9 +25,9 @@ fn normal_equations(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> (V
     let dot = |a: &[f64], b: &[f64]| -> f64 { (0..a.len()).map(|row| weights[row] * a[row] * b[row]).sum() };
     let mut system: Vec<Vec<f64>> = columns
         .iter()
-        .map(|one| {
-            let mut row: Vec<f64> = columns.iter().map(|other| dot(one, other)).collect();
-            row.push(dot(one, target));
+        .map(|column| {
+            let mut row: Vec<f64> = columns.iter().map(|other| dot(column, other)).collect();
+            row.push(dot(column, target));
             row
         })
         .collect();
@@ -43,13 +43,13 @@ fn normal_equations(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> (V
             }
         }
     }
-    let found: Vec<f64> = (0..count).map(|row| system[row][count] / system[row][row]).collect();
+    let solution: Vec<f64> = (0..count).map(|row| system[row][count] / system[row][row]).collect();
     let left = |row: usize| -> f64 {
-        let model: f64 = (0..count).map(|column| found[column] * columns[column][row]).sum();
+        let model: f64 = (0..count).map(|column| solution[column] * columns[column][row]).sum();
         weights[row] * (target[row] - model).powi(2)
     };
     let square = (0..target.len()).map(left).sum();
-    (found, square)
+    (solution, square)
 }
 
 /// Where a function of one number is least, by scans that close in.
@@ -62,8 +62,8 @@ fn least(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
     0.5 * (from + to)
 }
 
-fn near(found: f64, wanted: f64, within: f64, what: &str) {
-    assert!((found / wanted - 1.0).abs() < within, "{what}: {found} for {wanted}");
+fn near(computed: f64, wanted: f64, within: f64, what: &str) {
+    assert!((computed / wanted - 1.0).abs() < within, "{what}: {computed} for {wanted}");
 }
 
 #[test]
@@ -94,20 +94,26 @@ fn slopes_and_their_intervals_are_those_of_normal_equations() {
         let points = &noisy(|h| 0.03 * h.powf(1.7), 5.0)[..levels];
         let x: Vec<f64> = points.iter().map(|point| point.0.ln()).collect();
         let y: Vec<f64> = points.iter().map(|point| point.1.ln()).collect();
-        let (found, square) = normal_equations(&[vec![1.0; levels], x.clone()], &y, &vec![1.0; levels]);
+        let (coefficients, square) =
+            normal_equations(&[vec![1.0; levels], x.clone()], &y, &vec![1.0; levels]);
         let mean = x.iter().sum::<f64>() / levels as f64;
-        let spread: f64 = x.iter().map(|one| (one - mean).powi(2)).sum();
+        let spread: f64 = x.iter().map(|place| (place - mean).powi(2)).sum();
         let freedom = levels - 2;
         let half_width = table[freedom - 1] * (square / freedom as f64 / spread).sqrt();
-        let fit = slope(&ErrorSeries::of(points)).expect("a slope");
-        near(fit.order, found[1], 1e-9, "order");
-        near(fit.coefficient, found[0].exp(), 1e-8, "coefficient");
+        let fit = slope(&ErrorSeries::from_pairs(points)).expect("a slope");
+        near(fit.order, coefficients[1], 1e-9, "order");
+        near(fit.coefficient, coefficients[0].exp(), 1e-8, "coefficient");
         near(fit.half_width.expect("an interval"), half_width, 1e-5, "half-width");
         assert_eq!(fit.levels, levels);
         let last: Vec<usize> = (levels - 3..levels).collect();
         let pick = |from: &[f64]| last.iter().map(|place| from[*place]).collect::<Vec<f64>>();
         let (window, _) = normal_equations(&[vec![1.0; 3], pick(&x)], &pick(&y), &[1.0; 3]);
-        near(finest_order(&ErrorSeries::of(points)).expect("an order"), window[1], 1e-9, "finest order");
+        near(
+            finest_order(&ErrorSeries::from_pairs(points)).expect("an order"),
+            window[1],
+            1e-9,
+            "finest order",
+        );
     }
 }
 
@@ -115,22 +121,22 @@ fn slopes_and_their_intervals_are_those_of_normal_equations() {
 fn two_powers(points: &[(f64, f64)], p: f64, q: f64) -> (Vec<f64>, f64) {
     let column = |power: f64| points.iter().map(|(h, e)| h.powf(power) / e).collect::<Vec<f64>>();
     let ones = vec![1.0; points.len()];
-    let (found, square) = normal_equations(&[column(p), column(q)], &ones, &ones);
-    (found, (square / points.len() as f64).sqrt())
+    let (coefficients, square) = normal_equations(&[column(p), column(q)], &ones, &ones);
+    (coefficients, (square / points.len() as f64).sqrt())
 }
 
 #[test]
 fn two_powers_are_those_of_normal_equations() {
     let points = noisy(|h| 0.02 * h + 0.05 * h * h, 1.0);
     let fit = fit_two_terms(&points, Exponent::Fixed(1.0), Exponent::Fixed(2.0)).expect("a fit");
-    let (found, residual) = two_powers(&points, 1.0, 2.0);
-    near(fit.low_coefficient, found[0], 1e-9, "low");
-    near(fit.high_coefficient, found[1], 1e-9, "high");
+    let (coefficients, residual) = two_powers(&points, 1.0, 2.0);
+    near(fit.low_coefficient, coefficients[0], 1e-9, "low");
+    near(fit.high_coefficient, coefficients[1], 1e-9, "high");
     near(fit.residual, residual, 1e-9, "residual");
     let size = 1.3;
-    let share = found[0] * size / (found[0] * size + found[1] * size * size);
+    let share = coefficients[0] * size / (coefficients[0] * size + coefficients[1] * size * size);
     near(fit.low_share(size), share, 1e-9, "share");
-    near(fit.crossover().expect("both terms"), found[0] / found[1], 1e-9, "crossover");
+    near(fit.crossover().expect("both terms"), coefficients[0] / coefficients[1], 1e-9, "crossover");
 }
 
 #[test]
@@ -139,13 +145,13 @@ fn floors_their_exponents_and_their_tests_are_those_of_a_scan() {
         let points = noisy(|h| floor + 0.04 * h.powf(1.8), noise);
         let fit = fit_floor(&points).expect("a fit");
         let order = least(0.3, 6.0, |p| two_powers(&points, 0.0, p).1);
-        let (found, residual) = two_powers(&points, 0.0, order);
+        let (coefficients, residual) = two_powers(&points, 0.0, order);
         if noise > 0.0 {
             near(fit.residual, residual, 1e-4, "residual");
         }
         near(fit.order, order, 1e-4, "order");
-        near(fit.floor, found[0], 1e-3, "floor");
-        near(fit.coefficient, found[1], 1e-3, "coefficient");
+        near(fit.floor, coefficients[0], 1e-3, "floor");
+        near(fit.coefficient, coefficients[1], 1e-3, "coefficient");
         // Fisher's test of one more number: three are fitted to six levels, and F(1, 3) at 95 % is 10.128.
         let x: Vec<f64> = points.iter().map(|point| point.0.ln()).collect();
         let y: Vec<f64> = points.iter().map(|point| point.1.ln()).collect();
@@ -166,28 +172,28 @@ fn a_dip_is_where_normal_equations_put_it() {
     let signed: Vec<(f64, f64)> =
         points.iter().map(|(h, e)| (*h, if 0.04 * h * h < 0.3 { -e } else { *e })).collect();
     let order = least(0.5, 5.0, |p| two_powers(&signed, 0.0, p).1);
-    let (found, _) = two_powers(&signed, 0.0, order);
+    let (coefficients, _) = two_powers(&signed, 0.0, order);
     near(fit.order, order, 1e-4, "order");
-    near(fit.floor, -found[0], 1e-3, "floor");
-    near(fit.coefficient, found[1], 1e-3, "coefficient");
-    near(fit.cancels_at, (-found[0] / found[1]).powf(1.0 / order), 1e-3, "place");
+    near(fit.floor, -coefficients[0], 1e-3, "floor");
+    near(fit.coefficient, coefficients[1], 1e-3, "coefficient");
+    near(fit.cancels_at, (-coefficients[0] / coefficients[1]).powf(1.0 / order), 1e-3, "place");
 }
 
 #[test]
 fn a_limit_is_the_one_of_normal_equations_on_the_last_four_levels() {
     let values: Vec<(f64, f64)> =
         SIZES.iter().zip(NOISE).map(|(h, noise)| (*h, 0.3 - 0.004 * h.powf(1.6) + 2e-6 * noise)).collect();
-    let Some(Limit::Confirmed(found)) = limit_of(&values) else { panic!("{:?}", limit_of(&values)) };
+    let Some(Limit::Confirmed(approach)) = limit_of(&values) else { panic!("{:?}", limit_of(&values)) };
     let four = &values[2..];
     let target: Vec<f64> = four.iter().map(|value| value.1).collect();
-    let of = |p: f64| {
+    let fit = |p: f64| {
         let powers = four.iter().map(|value| value.0.powf(p)).collect();
         normal_equations(&[vec![1.0; 4], powers], &target, &[1.0; 4])
     };
-    let order = least(0.5, 5.0, |p| of(p).1);
-    near(found.limit, of(order).0[0], 1e-6, "limit");
-    near(found.order, order, 1e-3, "order");
-    near(found.at(0.3), of(order).0[0] + of(order).0[1] * 0.3_f64.powf(order), 1e-6, "value");
+    let order = least(0.5, 5.0, |p| fit(p).1);
+    near(approach.limit, fit(order).0[0], 1e-6, "limit");
+    near(approach.order, order, 1e-3, "order");
+    near(approach.at(0.3), fit(order).0[0] + fit(order).0[1] * 0.3_f64.powf(order), 1e-6, "value");
 }
 
 /// A model of Eça & Hoekstra by normal equations: exponents, whether weighted, coefficients, deviation.
@@ -205,12 +211,12 @@ fn models_of(values: &[(f64, f64)]) -> Vec<Model> {
         // Appendix A: w_i = (1/h_i)/Σ(1/h), which times n keeps the deviation in the unit of the value.
         let weight = |value: &(f64, f64)| if weighted { count / value.0 / sum } else { 1.0 };
         let weights: Vec<f64> = values.iter().map(weight).collect();
-        let of = |exponents: &[f64]| {
+        let fit = |exponents: &[f64]| {
             let mut columns = vec![vec![1.0; values.len()]];
             columns.extend(exponents.iter().map(|p| values.iter().map(|value| value.0.powf(*p)).collect()));
             normal_equations(&columns, &target, &weights)
         };
-        let p = least(0.01, 8.0, |p| of(&[p]).1);
+        let p = least(0.01, 8.0, |p| fit(&[p]).1);
         // Numbers fitted: the power law has three (φ0, α, p), one power two, two powers three.
         for (model, exponents, fitted) in [
             (ErrorModel::PowerLaw, vec![p], 3.0),
@@ -218,8 +224,8 @@ fn models_of(values: &[(f64, f64)]) -> Vec<Model> {
             (ErrorModel::SecondOrder, vec![2.0], 2.0),
             (ErrorModel::FirstAndSecondOrder, vec![1.0, 2.0], 3.0),
         ] {
-            let (found, square) = of(&exponents);
-            all.push((model, weighted, exponents, found, (square / (count - fitted)).sqrt()));
+            let (coefficients, square) = fit(&exponents);
+            all.push((model, weighted, exponents, coefficients, (square / (count - fitted)).sqrt()));
         }
     }
     all
@@ -239,33 +245,37 @@ fn every_error_model_of_eca_and_hoekstra_is_that_of_normal_equations() {
     for (kind, value, share) in kinds {
         for levels in 4..=6 {
             let values = &noisy(value, share)[6 - levels..];
-            let found = least_squares_uncertainty(values, 2.0).expect("numbers");
+            let uncertainty = least_squares_uncertainty(values, 2.0).expect("numbers");
             let models = models_of(values);
             let best = |wanted: &[ErrorModel]| {
-                let of = models.iter().filter(|one| wanted.contains(&one.0));
-                of.min_by(|a, b| a.4.total_cmp(&b.4)).expect("a model").clone()
+                let candidates = models.iter().filter(|model| wanted.contains(&model.0));
+                candidates.min_by(|a, b| a.4.total_cmp(&b.4)).expect("a model").clone()
             };
             let power = best(&[ErrorModel::PowerLaw]);
             let order = power.2[0];
-            let (one, two, both) =
+            let (first, second, mixed) =
                 (ErrorModel::FirstOrder, ErrorModel::SecondOrder, ErrorModel::FirstAndSecondOrder);
             let model = match order {
                 _ if (0.5..=2.0).contains(&order) => power,
-                _ if order > 2.0 => best(&[one, two]),
-                _ => best(&[one, two, both]),
+                _ if order > 2.0 => best(&[first, second]),
+                _ => best(&[first, second, mixed]),
             };
             let what = format!("{kind} on {levels}: {:?} {order:.3}", model.0);
-            near(found.observed_order, order, 2e-3, &what);
-            assert_eq!((found.model, found.weighted), (model.0, model.1), "{what}: {found:?}");
-            near(found.deviation, model.4, 1e-4, &what);
-            near(found.extrapolated, model.3[0], 1e-5, &what);
+            near(uncertainty.observed_order, order, 2e-3, &what);
+            assert_eq!(
+                (uncertainty.model, uncertainty.weighted),
+                (model.0, model.1),
+                "{what}: {uncertainty:?}"
+            );
+            near(uncertainty.deviation, model.4, 1e-4, &what);
+            near(uncertainty.extrapolated, model.3[0], 1e-5, &what);
             let highest = values.iter().map(|value| value.1).fold(f64::MIN, f64::max);
             let lowest = values.iter().map(|value| value.1).fold(f64::MAX, f64::min);
             let range = (highest - lowest) / (levels as f64 - 1.0);
-            near(found.data_range, range, 1e-12, &what);
+            near(uncertainty.data_range, range, 1e-12, &what);
             let factor = if model.4 < range && (0.5..2.1).contains(&order) { 1.25 } else { 3.0 };
-            assert_eq!(found.safety_factor, factor, "{what}");
-            for (grid, (size, value)) in found.grids.iter().zip(values) {
+            assert_eq!(uncertainty.safety_factor, factor, "{what}");
+            for (grid, (size, value)) in uncertainty.grids.iter().zip(values) {
                 let error: f64 = model.2.iter().zip(&model.3[1..]).map(|(p, a)| a * size.powf(*p)).sum();
                 let misfit = value - model.3[0] - error;
                 let uncertainty = if model.4 < range {
@@ -276,7 +286,7 @@ fn every_error_model_of_eca_and_hoekstra_is_that_of_normal_equations() {
                 assert_eq!(grid.size, *size);
                 near(grid.uncertainty, uncertainty, 1e-2, &what);
             }
-            chosen.push(found.model);
+            chosen.push(uncertainty.model);
         }
     }
     for model in [
@@ -306,8 +316,8 @@ fn the_index_of_three_grids_is_that_of_the_fixed_point() {
             p = (ratio.ln() + ((r21.powf(p) - 1.0) / (r32.powf(p) - 1.0)).ln()).abs() / r21.ln();
         }
         let used = if used == order { p } else { used };
-        let found = three_grids([grids[2], grids[0], grids[1]], formal).expect("numbers");
-        let estimate = found.estimate.expect("it converges");
+        let three = three_grids([grids[2], grids[0], grids[1]], formal).expect("numbers");
+        let estimate = three.estimate.expect("it converges");
         near(estimate.order, p, 1e-9, "order");
         near(estimate.order_used, used, 1e-9, "order used");
         assert_eq!(estimate.safety_factor, safety);
@@ -320,9 +330,9 @@ fn the_index_of_three_grids_is_that_of_the_fixed_point() {
             1e-12,
             "relative",
         );
-        near(found.range, f1 - f3, 1e-12, "range");
+        near(three.range, f1 - f3, 1e-12, "range");
         let expected = (f2 - f1) / (f3 - f2) * r32.ln() / r21.ln();
-        near(found.convergence_ratio.expect("a ratio"), expected, 1e-12, "ratio");
+        near(three.convergence_ratio.expect("a ratio"), expected, 1e-12, "ratio");
         if let (Some(formal), Some(asymptotic)) = (formal, estimate.asymptotic_ratio) {
             let index = |r: f64, difference: f64| difference.abs() / (r.powf(formal) - 1.0);
             near(
@@ -352,7 +362,7 @@ fn the_uncertainty_of_a_value_is_that_of_its_estimator_on_the_finest_grid() {
     near(all.relative(), all.uncertainty / all.values[4].1, 1e-12, "relative");
     let three = values(3).uncertainty(2.0).expect("it converges");
     let index = three_grids([three.values[0], three.values[1], three.values[2]], Some(2.0)).expect("numbers");
-    assert_eq!(Some(three.uncertainty), index.estimate.map(|one| one.index_fine));
+    assert_eq!(Some(three.uncertainty), index.estimate.map(|estimate| estimate.index_fine));
     let differences = values(5).signed_differences();
     for (pair, (size, difference)) in all.values.windows(2).zip(differences) {
         assert_eq!((size, difference), (pair[0].0, Some(pair[0].1 - pair[1].1)));

@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 
 /// What is serialised, on one line, with as many digits as every machine has in common.
-fn told(value: &impl serde::Serialize) -> String {
+fn serialised(value: &impl serde::Serialize) -> String {
     fn write(value: &Value) -> String {
         match value {
             // Residuals of exact fits are round-off.
@@ -62,15 +62,15 @@ fn context(draw: &mut Draw, points: &[(f64, f64)], formal: Option<f64>) -> Conte
     let least = points.iter().map(|point| point.1.abs()).fold(f64::INFINITY, f64::min);
     let mut context = Context { formal_order: formal, ..Context::default() };
     match draw.place(9.0) {
-        0 => context.round_off = Some(least * draw.one_of(&[0.5, 0.99, 1.5, 4.0])),
-        1 => context.reference_accuracy = Some(least * draw.one_of(&[0.05, 0.099, 0.11, 0.7])),
-        2 => context.mobility = points.iter().map(|_| draw.one_of(&[0.1, 0.3, 0.499, 0.5])).collect(),
+        0 => context.round_off = Some(least * draw.choose(&[0.5, 0.99, 1.5, 4.0])),
+        1 => context.reference_accuracy = Some(least * draw.choose(&[0.05, 0.099, 0.11, 0.7])),
+        2 => context.mobility = points.iter().map(|_| draw.choose(&[0.1, 0.3, 0.499, 0.5])).collect(),
         3 | 4 => {
             for (kind, name) in [(LimiterKind::Step, "the step"), (LimiterKind::Model, "the water's storage")]
             {
-                let magnitude = draw.one_of(&[None, Some(0.2), Some(0.9), Some(1.1), Some(6.0)]);
+                let magnitude = draw.choose(&[None, Some(0.2), Some(0.9), Some(1.1), Some(6.0)]);
                 let magnitude = magnitude.map(|share| share * least);
-                let order = draw.one_of(&[None, Some(1.0), Some(2.0)]);
+                let order = draw.choose(&[None, Some(1.0), Some(2.0)]);
                 context.limiters.push(Limiter { magnitude, order, ..Limiter::new(kind, name) });
             }
         }
@@ -84,7 +84,7 @@ fn context(draw: &mut Draw, points: &[(f64, f64)], formal: Option<f64>) -> Conte
 
 fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
     let magnitudes: Vec<_> = points.iter().map(|point| (point.0, point.1.abs())).collect();
-    let series = ErrorSeries::of(&magnitudes);
+    let series = ErrorSeries::from_pairs(&magnitudes);
     let Context { formal_order, round_off, reference_accuracy, limiters, mobility, signed, tolerance } =
         context;
     let known = [
@@ -103,11 +103,11 @@ fn line(text: &mut String, context: &Context, points: &[(f64, f64)]) {
         write!(text, ", mobility {}", numbers(mobility.iter().copied())).expect("memory");
     }
     if !limiters.is_empty() {
-        write!(text, ", limiters {}", told(limiters)).expect("memory");
+        write!(text, ", limiters {}", serialised(limiters)).expect("memory");
     }
     let signs = if signed.is_empty() { "" } else { ", with signs" };
     let floor = short(hidden_floor(&series, *formal_order));
-    writeln!(text, "{signs}\n    {}; hidden floor {floor}", told(&classify(&series, context)))
+    writeln!(text, "{signs}\n    {}; hidden floor {floor}", serialised(&classify(&series, context)))
         .expect("memory");
 }
 
@@ -121,21 +121,21 @@ fn assert_snapshot(name: &str, text: &str) {
 fn floors(draw: &mut Draw, text: &mut String) {
     *text += "floors and their causes\n";
     for turn in 0..70 {
-        let (order, ratio) = (draw.one_of(&[0.6, 1.0, 1.5, 2.0, 3.0]), draw.one_of(&[1.5, 2.0, 3.0]));
-        let count = draw.one_of(&[4, 5, 6, 7]);
+        let (order, ratio) = (draw.choose(&[0.6, 1.0, 1.5, 2.0, 3.0]), draw.choose(&[1.5, 2.0, 3.0]));
+        let count = draw.choose(&[4, 5, 6, 7]);
         let (mut points, mut size) = (Vec::new(), 0.25);
-        let floor = draw.one_of(&[1e-4, 1e-3, 0.01, 0.03]) * if turn % 9 == 4 { -1.0 } else { 1.0 };
+        let floor = draw.choose(&[1e-4, 1e-3, 0.01, 0.03]) * if turn % 9 == 4 { -1.0 } else { 1.0 };
         for _ in 0..count {
             points.push((size, 0.4 * f64::powf(size, order) + floor));
             size /= ratio;
         }
-        let formal = draw.one_of(&[None, Some(order), Some(2.0)]);
+        let formal = draw.choose(&[None, Some(order), Some(2.0)]);
         let mut context = context(draw, &points, formal);
         for kind in [LimiterKind::Step, LimiterKind::Mesh, LimiterKind::PointsPerCell, LimiterKind::Model] {
             if draw.place(3.0) == 0 {
                 let magnitude =
-                    draw.one_of(&[None, Some(0.5 * floor.abs()), Some(floor.abs()), Some(2.1 * floor.abs())]);
-                let order = draw.one_of(&[None, Some(1.0), Some(2.0)]);
+                    draw.choose(&[None, Some(0.5 * floor.abs()), Some(floor.abs()), Some(2.1 * floor.abs())]);
+                let order = draw.choose(&[None, Some(1.0), Some(2.0)]);
                 context.limiters.push(Limiter { magnitude, order, ..Limiter::new(kind, "something") });
             }
         }
@@ -147,14 +147,14 @@ fn floors(draw: &mut Draw, text: &mut String) {
 fn ups_and_downs(draw: &mut Draw, text: &mut String) {
     *text += "ups and downs\n";
     for _ in 0..40 {
-        let count = draw.one_of(&[3, 4, 5, 6]);
+        let count = draw.choose(&[3, 4, 5, 6]);
         let factors = [0.5, 0.7, 1.0, 1.0, 1.3, 1.31, 1.5, 2.0];
         let mut points = vec![(0.25, 0.3)];
         for _ in 0..count {
             let (size, error) = points[points.len() - 1];
-            points.push((0.5 * size, error * draw.one_of(&factors)));
+            points.push((0.5 * size, error * draw.choose(&factors)));
         }
-        let formal = draw.one_of(&[None, Some(1.0)]);
+        let formal = draw.choose(&[None, Some(1.0)]);
         let context = context(draw, &points, formal);
         line(text, &context, &points);
     }
@@ -164,10 +164,10 @@ fn ups_and_downs(draw: &mut Draw, text: &mut String) {
 fn classes_of_series_are_told_with_their_numbers() {
     let mut draw = Draw(19_880_401);
     let mut text = String::new();
-    for (kind, of) in KINDS {
+    for (kind, make) in KINDS {
         writeln!(text, "{kind}").expect("memory");
         for ratio in [1.3, 2.0, 3.0] {
-            let known = of(&mut draw, ratio);
+            let known = make(&mut draw, ratio);
             let context = context(&mut draw, &known.points, known.formal);
             line(&mut text, &context, &known.points);
         }
@@ -175,16 +175,16 @@ fn classes_of_series_are_told_with_their_numbers() {
     for count in [2, 3, 3, 4, 5] {
         writeln!(text, "{count} orders").expect("memory");
         for turn in 0..45 {
-            let mut orders: Vec<f64> = (0..count).map(|_| draw.one_of(&ORDERS)).collect();
+            let mut orders: Vec<f64> = (0..count).map(|_| draw.choose(&ORDERS)).collect();
             if turn % 3 > 0 {
                 // Near a steady order the rules differ by little.
-                let (steady, by) = (draw.one_of(&ORDERS), draw.one_of(&[0.02, 0.06, 0.11, 0.2, 0.3]));
+                let (steady, by) = (draw.choose(&ORDERS), draw.choose(&[0.02, 0.06, 0.11, 0.2, 0.3]));
                 for order in &mut orders {
                     *order = steady + draw.between(-by, by);
                 }
             }
             let points = with_orders(&orders);
-            let formal = draw.one_of(&[None, Some(1.0), Some(2.0)]);
+            let formal = draw.choose(&[None, Some(1.0), Some(2.0)]);
             let context = context(&mut draw, &points, formal);
             line(&mut text, &context, &points);
         }
@@ -212,21 +212,22 @@ fn series_that_cannot_be_evaluated_say_why() {
         });
         let fit = fit.unwrap_or_else(|obstacle| obstacle.to_string());
         let finest = number(finest_order(&series));
-        let class = told(&classify(&series, &Context::default()));
+        let class = serialised(&classify(&series, &Context::default()));
         writeln!(text, "{error:?}: {}; slope {fit}; finest {finest}\n    {class}", orders.join(" | "))
             .expect("memory");
     }
     for ratio in [1.0, 1.000_000_001, 1.1, 1.149, 1.151] {
-        let series = ErrorSeries::of(&[(0.4 * ratio, 0.4), (0.4, 0.1), (0.1, 0.03)]);
-        writeln!(text, "ratio {ratio}: {}", told(&classify(&series, &Context::default()))).expect("memory");
-    }
-    for count in 0..4 {
-        let series = ErrorSeries::of(&sizes.map(|size| (size, size * size))[..count]);
-        let finest = number(finest_order(&series));
-        writeln!(text, "{count} levels: {finest}; {}", told(&classify(&series, &Context::default())))
+        let series = ErrorSeries::from_pairs(&[(0.4 * ratio, 0.4), (0.4, 0.1), (0.1, 0.03)]);
+        writeln!(text, "ratio {ratio}: {}", serialised(&classify(&series, &Context::default())))
             .expect("memory");
     }
-    let series = ErrorSeries::of(&sizes.map(|size| (size, size * size)));
+    for count in 0..4 {
+        let series = ErrorSeries::from_pairs(&sizes.map(|size| (size, size * size))[..count]);
+        let finest = number(finest_order(&series));
+        writeln!(text, "{count} levels: {finest}; {}", serialised(&classify(&series, &Context::default())))
+            .expect("memory");
+    }
+    let series = ErrorSeries::from_pairs(&sizes.map(|size| (size, size * size)));
     for wrong in [-1.0, 0.0, 1e-9, f64::NAN, f64::INFINITY] {
         let some = Some(wrong);
         for (name, context) in [
@@ -234,15 +235,15 @@ fn series_that_cannot_be_evaluated_say_why() {
             ("round-off", Context { round_off: some, ..Context::default() }),
             ("reference", Context { reference_accuracy: some, ..Context::default() }),
         ] {
-            writeln!(text, "{name} {wrong}: {}", told(&classify(&series, &context))).expect("memory");
+            writeln!(text, "{name} {wrong}: {}", serialised(&classify(&series, &context))).expect("memory");
         }
     }
     for (errors, round_off) in
         [([0.0, 0.0, 0.0], None), ([2e-13, 1e-13, 3e-13], Some(3e-13)), ([2e-13, 1e-13, 4e-13], Some(3e-13))]
     {
-        let series = ErrorSeries::of(&[(0.4, errors[0]), (0.2, errors[1]), (0.1, errors[2])]);
-        let found = classify(&series, &Context { round_off, ..Context::default() });
-        writeln!(text, "{}: {}", numbers(errors), told(&found)).expect("memory");
+        let series = ErrorSeries::from_pairs(&[(0.4, errors[0]), (0.2, errors[1]), (0.1, errors[2])]);
+        let classification = classify(&series, &Context { round_off, ..Context::default() });
+        writeln!(text, "{}: {}", numbers(errors), serialised(&classification)).expect("memory");
     }
     assert_snapshot("convergence_obstacles", &text);
 }
@@ -252,12 +253,12 @@ fn uncertainties_of_values_are_told_with_everything_they_are_derived_from() {
     let mut draw = Draw(5_551_212);
     let mut text = String::new();
     for turn in 0..70 {
-        let ratio = draw.one_of(&[1.2, 1.5, 2.0, 3.0]);
-        let count = draw.one_of(&[3, 3, 4, 5, 6]);
-        let order = draw.one_of(&[0.3, 0.5, 0.95, 1.0, 1.5, 2.0, 2.3, 3.0]);
-        let formal = draw.one_of(&[1.0, 2.0]);
-        let limit = draw.one_of(&[0.0, 1.7, -2.3]);
-        let (scale, noise) = (draw.one_of(&[0.3, -0.6]), draw.one_of(&[0.0, 0.0, 0.01, 0.1, 0.4]));
+        let ratio = draw.choose(&[1.2, 1.5, 2.0, 3.0]);
+        let count = draw.choose(&[3, 3, 4, 5, 6]);
+        let order = draw.choose(&[0.3, 0.5, 0.95, 1.0, 1.5, 2.0, 2.3, 3.0]);
+        let formal = draw.choose(&[1.0, 2.0]);
+        let limit = draw.choose(&[0.0, 1.7, -2.3]);
+        let (scale, noise) = (draw.choose(&[0.3, -0.6]), draw.choose(&[0.0, 0.0, 0.01, 0.1, 0.4]));
         let mut size = 0.5;
         let mut levels = Vec::new();
         for place in 0..count {
@@ -269,20 +270,20 @@ fn uncertainties_of_values_are_told_with_everything_they_are_derived_from() {
         }
         let values: Vec<f64> = levels.iter().filter_map(|level| level.1).collect();
         let series = ValueSeries::new(levels.into_iter().rev().collect());
-        let found = match series.uncertainty(formal) {
-            Ok(found) => format!(
+        let uncertainty = match series.uncertainty(formal) {
+            Ok(uncertainty) => format!(
                 "{}; {} of {}, relative {}",
-                told(&found),
-                found.estimator.name(),
-                short(found.finest()),
-                short(found.relative())
+                serialised(&uncertainty),
+                uncertainty.estimator.name(),
+                short(uncertainty.finest()),
+                short(uncertainty.relative())
             ),
             Err(obstacle) => obstacle.to_string(),
         };
         let differences: Vec<_> = series.signed_differences().into_iter().filter_map(|pair| pair.1).collect();
         writeln!(
             text,
-            "{} at ratio {ratio}, formal {formal}; differences {}\n    {found}",
+            "{} at ratio {ratio}, formal {formal}; differences {}\n    {uncertainty}",
             numbers(values),
             numbers(differences)
         )
@@ -298,9 +299,10 @@ fn uncertainties_of_values_are_told_with_everything_they_are_derived_from() {
         &[(0.4, Some(1.0)), (-0.2, Some(1.5)), (0.1, Some(1.2))],
     ];
     for levels in odd {
-        let found = ValueSeries::new(levels.to_vec()).uncertainty(2.0);
-        let found = found.map_or_else(|obstacle| obstacle.to_string(), |found| told(&found));
-        writeln!(text, "{levels:?}\n    {found}").expect("memory");
+        let uncertainty = ValueSeries::new(levels.to_vec()).uncertainty(2.0);
+        let uncertainty =
+            uncertainty.map_or_else(|obstacle| obstacle.to_string(), |uncertainty| serialised(&uncertainty));
+        writeln!(text, "{levels:?}\n    {uncertainty}").expect("memory");
     }
     assert_snapshot("convergence_uncertainties", &text);
 }
@@ -355,7 +357,7 @@ fn the_front_is_what_no_other_point_dominates() {
         let cost = [1.0, 2.0, 3.0, 5.0, 0.0, f64::NAN, f64::INFINITY];
         let error = [0.0, 0.1, 0.2, 0.4, -0.1, f64::NAN, f64::INFINITY];
         let points: Vec<CostPoint> =
-            (0..count).map(|_| CostPoint { cost: draw.one_of(&cost), error: draw.one_of(&error) }).collect();
+            (0..count).map(|_| CostPoint { cost: draw.choose(&cost), error: draw.choose(&error) }).collect();
         let is_usable =
             |point: &CostPoint| (1.0..10.0).contains(&point.cost) && (0.0..10.0).contains(&point.error);
         let dominates = |a: &CostPoint, b: &CostPoint| {

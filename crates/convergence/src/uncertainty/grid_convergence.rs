@@ -119,13 +119,13 @@ fn estimate(values: [f64; 3], r21: f64, r32: f64, order: f64, formal_order: Opti
         None => (order, SAFETY_OBSERVED),
     };
     // `r^p − 1` without cancellation.
-    let power_less_one = |ratio: f64, p: f64| exp_m1(p * ln(ratio));
-    let fine = |p: f64| (f1 - f2).abs() / power_less_one(r21, p);
-    let medium = |p: f64| (f2 - f3).abs() / power_less_one(r32, p);
+    let power_minus_one = |ratio: f64, p: f64| exp_m1(p * ln(ratio));
+    let fine = |p: f64| (f1 - f2).abs() / power_minus_one(r21, p);
+    let medium = |p: f64| (f2 - f3).abs() / power_minus_one(r32, p);
     GridConvergence {
         order,
         order_used,
-        extrapolated: f1 + (f1 - f2) / power_less_one(r21, order_used),
+        extrapolated: f1 + (f1 - f2) / power_minus_one(r21, order_used),
         safety_factor,
         index_fine: safety_factor * fine(order_used),
         index_medium: safety_factor * medium(order_used),

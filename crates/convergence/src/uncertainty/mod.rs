@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn of(sizes: &[f64], value: impl Fn(f64) -> f64) -> Result<NumericalUncertainty, Undefined> {
+    fn estimate(sizes: &[f64], value: impl Fn(f64) -> f64) -> Result<NumericalUncertainty, Undefined> {
         ValueSeries::new(sizes.iter().map(|h| (*h, Some(value(*h)))).collect()).uncertainty(2.0)
     }
 
@@ -165,11 +165,11 @@ mod tests {
         ) {
             prop_assume!(constant.abs() > 0.05);
             let value = |h: f64| exact + constant * (h * h + bend * h * h * h);
-            let found = of(&FOUR[..levels], value);
-            let found = found.expect("it converges");
-            let error = (found.finest() - exact).abs();
-            prop_assert!(found.uncertainty >= error, "{} for {error}", found.uncertainty);
-            prop_assert!(found.uncertainty <= 4.0 * error, "{} for {error}", found.uncertainty);
+            let uncertainty = estimate(&FOUR[..levels], value);
+            let uncertainty = uncertainty.expect("it converges");
+            let error = (uncertainty.finest() - exact).abs();
+            prop_assert!(uncertainty.uncertainty >= error, "{} for {error}", uncertainty.uncertainty);
+            prop_assert!(uncertainty.uncertainty <= 4.0 * error, "{} for {error}", uncertainty.uncertainty);
         }
 
         #[test]
@@ -185,10 +185,19 @@ mod tests {
     #[test]
     fn the_estimator_follows_the_levels_and_the_behaviour() {
         let smooth = |h: f64| 1.0 + h * h;
-        assert_eq!(of(&FOUR[..3], smooth).map(|found| found.estimator), Ok(Estimator::GridConvergenceIndex));
-        assert_eq!(of(&FOUR, smooth).map(|found| found.estimator), Ok(Estimator::LeastSquares));
+        assert_eq!(
+            estimate(&FOUR[..3], smooth).map(|uncertainty| uncertainty.estimator),
+            Ok(Estimator::GridConvergenceIndex)
+        );
+        assert_eq!(
+            estimate(&FOUR, smooth).map(|uncertainty| uncertainty.estimator),
+            Ok(Estimator::LeastSquares)
+        );
         let to_and_fro = |h: f64| if h == 0.125 { 0.9 } else { 1.0 + h };
-        assert_eq!(of(&FOUR[..3], to_and_fro).map(|found| found.estimator), Ok(Estimator::Range));
+        assert_eq!(
+            estimate(&FOUR[..3], to_and_fro).map(|uncertainty| uncertainty.estimator),
+            Ok(Estimator::Range)
+        );
     }
 
     /// Values on a way of first or second order whose middle one is off, so that they go to and fro: half their range
@@ -201,15 +210,19 @@ mod tests {
                 for off in [-3.0, -1.0, -0.6, -0.3, 0.3, 0.6, 1.0, 3.0] {
                     let sizes = [ratio * ratio, ratio, 1.0];
                     let value = |h: f64| 5.0 + h.powi(order) * if h == ratio { 1.0 + off } else { 1.0 };
-                    let Ok(found) = of(&sizes, value) else { continue };
-                    if found.finest_three.behaviour != Behaviour::Oscillatory {
+                    let Ok(uncertainty) = estimate(&sizes, value) else { continue };
+                    if uncertainty.finest_three.behaviour != Behaviour::Oscillatory {
                         continue;
                     }
-                    assert_eq!(found.estimator, Estimator::Range);
-                    let error = (found.finest() - 5.0).abs();
-                    assert!(found.uncertainty >= error, "{ratio} {order} {off}: {}", found.uncertainty);
+                    assert_eq!(uncertainty.estimator, Estimator::Range);
+                    let error = (uncertainty.finest() - 5.0).abs();
+                    assert!(
+                        uncertainty.uncertainty >= error,
+                        "{ratio} {order} {off}: {}",
+                        uncertainty.uncertainty
+                    );
                     cases += 1;
-                    by_half_the_range += usize::from(0.5 * found.finest_three.range >= error);
+                    by_half_the_range += usize::from(0.5 * uncertainty.finest_three.range >= error);
                 }
             }
         }
@@ -218,16 +231,16 @@ mod tests {
 
     #[test]
     fn nonsense_has_no_uncertainty() {
-        assert_eq!(of(&FOUR, |_| 1.0), Err(Undefined::EqualValues));
-        assert_eq!(of(&FOUR, |h| 1.0 / h), Err(Undefined::NotConverging));
-        assert_eq!(of(&FOUR[..2], |h| h), Err(Undefined::TooFewLevels { levels: 2, needed: 3 }));
+        assert_eq!(estimate(&FOUR, |_| 1.0), Err(Undefined::EqualValues));
+        assert_eq!(estimate(&FOUR, |h| 1.0 / h), Err(Undefined::NotConverging));
+        assert_eq!(estimate(&FOUR[..2], |h| h), Err(Undefined::TooFewLevels { levels: 2, needed: 3 }));
         assert!(matches!(
-            of(&FOUR, |h| if h == 0.125 { f64::NAN } else { h }),
+            estimate(&FOUR, |h| if h == 0.125 { f64::NAN } else { h }),
             Err(Undefined::NotFinite { .. })
         ));
         let hole = ValueSeries::new(vec![(0.5, Some(1.0)), (0.25, None), (0.125, Some(2.0))]);
         assert_eq!(hole.uncertainty(2.0), Err(Undefined::Missing { size: 0.25 }));
         assert_eq!(hole.differences().levels()[0].error, None);
-        assert!(!of(&FOUR, |h| h * h).expect("it converges").relative().is_nan());
+        assert!(!estimate(&FOUR, |h| h * h).expect("it converges").relative().is_nan());
     }
 }

@@ -98,12 +98,12 @@ mod tests {
     fn states_that_are_not_whole_are_a_failure_by_what_they_lack() {
         let case =
             Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
-        let mut whole = Snapshot { time: 0.1 * case.seconds_per_time_factor(), ..Snapshot::default() };
-        whole.settlement = f64::NAN;
-        whole.points.initial_height = vec![0.25, 0.75];
-        whole.points.pressure = vec![0.5, 0.2];
-        let told = |change: &dyn Fn(&mut Vec<Snapshot>)| {
-            let mut states = vec![whole.clone()];
+        let mut complete = Snapshot { time: 0.1 * case.seconds_per_time_factor(), ..Snapshot::default() };
+        complete.settlement = f64::NAN;
+        complete.points.initial_height = vec![0.25, 0.75];
+        complete.points.pressure = vec![0.5, 0.2];
+        let lack = |change: &dyn Fn(&mut Vec<Snapshot>)| {
+            let mut states = vec![complete.clone()];
             change(&mut states);
             let outcome = Outcome::of_states(states, Sample::Points).held_to(&case);
             assert_eq!(outcome.snapshots.is_empty(), outcome.status != Status::Ok);
@@ -137,15 +137,15 @@ mod tests {
             ),
         ];
         for (change, wanted) in rows {
-            assert_eq!(told(change).as_deref(), Some(wanted));
+            assert_eq!(lack(change).as_deref(), Some(wanted));
         }
-        assert_eq!(told(&|_| ()), None);
+        assert_eq!(lack(&|_| ()), None);
         for near in [0.9991, 1.0009] {
-            assert_eq!(told(&|states| states[0].time *= near), None, "near enough");
+            assert_eq!(lack(&|states| states[0].time *= near), None, "near enough");
         }
         let curve = |states: &mut Vec<Snapshot>| {
             (states[0].points, states[0].settlement) = (Samples::default(), 1e-6);
         };
-        assert_eq!(told(&curve), None, "a settlement alone");
+        assert_eq!(lack(&curve), None, "a settlement alone");
     }
 }
