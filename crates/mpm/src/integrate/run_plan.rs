@@ -1,8 +1,8 @@
 //! What a run needs beside its body: step sizes, bounds, loading time and plate.
 
 use crate::actions::surface_load::LoadedSurface;
-use crate::integrate::critical_step::formula;
 use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run};
+use crate::integrate::critical_step::{formula, skeleton};
 use crate::integrate::integrator::StepBound;
 use crate::integrate::physical_bounds::PhysicalBounds;
 use crate::integrate::results::outcome::StepSizes;
@@ -11,30 +11,9 @@ use crate::integrate::step_rule::{StepLimit, TimeStepRule};
 use crate::kernel::body::{DrivenPlate, Problem};
 use crate::state::points::Points;
 use oedometer_soil::material::Material;
-use std::fmt;
 
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
-
-/// Why no limit of the step is known.
-#[derive(Clone, Copy, Debug)]
-pub enum UnknownLimit {
-    /// Something grows under any explicit step, too far within the run.
-    Growing(GrowingMode),
-    /// The limit of an explicit skeleton is a formula for points on the lattice of the cells.
-    OffLattice,
-}
-
-impl fmt::Display for UnknownLimit {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Growing(growing) => write!(out, "{growing}"),
-            Self::OffLattice => out.write_str(
-                "no limit is known: that of semi-implicit steps is a formula for points on the lattice of the cells",
-            ),
-        }
-    }
-}
 
 /// What a run needs beside its body.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +22,8 @@ pub struct Plan<'a> {
     pub schedule: &'a Schedule,
     /// How large the steps may be.
     pub limit: StepLimit,
-    /// Why no limit is known that the steps could be shares of, where they are asked to be.
-    pub unknown_limit: Option<UnknownLimit>,
+    /// What grows under any explicit step, too far within the run: steps cannot be shares of a limit then.
+    pub growing: Option<GrowingMode>,
     /// Step sizes as far as they are known before.
     pub sizes: StepSizes,
     /// Material points, of skeleton and water.
@@ -73,25 +52,24 @@ impl<'a> Plan<'a> {
     pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
-        let (critical, unknown) = match (schedule.integrator.step_bound(), schedule.critical_step) {
+        let (critical, growing) = match (schedule.integrator.step_bound(), schedule.critical_step) {
             (StepBound::AllWaves, None) => {
                 let (critical, growing) = predict_for_run(problem, settings);
-                let growing = growing.filter(|mode| !mode.stays_small_for(end));
-                (critical, growing.map(UnknownLimit::Growing))
+                (critical, growing.filter(|mode| !mode.stays_small_for(end)))
             }
             (StepBound::AllWaves, Some(known)) => (known, None),
-            (StepBound::SkeletonWaves, _) => {
-                let unknown = (!problem.points.began_on_lattice()).then_some(UnknownLimit::OffLattice);
+            (StepBound::SkeletonWaves, _) if problem.points.began_as_full_lattice() => {
                 let are_undamped = D > 1 || problem.method.has_projection();
                 let limit = |soil: &Material| formula::semi_implicit_limit(soil, cell_size, are_undamped);
-                (problem.least_of_soils(limit), unknown)
+                (problem.least_of_soils(limit), None)
             }
+            (StepBound::SkeletonWaves, _) => (skeleton::semi_implicit_limit(problem), None),
             (StepBound::Accuracy, _) => {
                 let limit = |soil: &Material| formula::combined_limit(soil, cell_size, settings.drag);
                 (problem.least_of_soils(limit), None)
             }
         };
-        let unknown_limit = unknown.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
+        let growing = growing.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
         let sizes = StepSizes {
             predicted_critical: critical,
             target: schedule.rule.step(problem, critical),
@@ -104,7 +82,7 @@ impl<'a> Plan<'a> {
         };
         Self {
             limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
-            unknown_limit,
+            growing,
             sizes,
             points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
             nodes: problem.grid.node_count(),

@@ -11,6 +11,7 @@ pub use crate::integrate::schedule::{Kernel, Observer, Schedule, TimeStepRule};
 pub use crate::integrate::{integrator, results, run_plan, schedule, stepper};
 
 use crate::direct_solver::Singular;
+use crate::integrate::critical_step::predicted::GrowingMode;
 use crate::integrate::double_point::DoublePoint;
 use crate::integrate::explicit_stepper::{ExplicitStepper, PointSets};
 use crate::integrate::implicit::driven::DrivenStepper;
@@ -18,7 +19,7 @@ use crate::integrate::implicit::linear::LinearStepper;
 use crate::integrate::implicit::newton::NewtonStepper;
 use crate::integrate::integrator::{Formulation, IntegratorKind};
 use crate::integrate::results::outcome::{Failure, FailureKind, Outcome};
-use crate::integrate::run_plan::{Plan, UnknownLimit};
+use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::{StepFailure, Stepper};
 use crate::kernel::body::{Body, Problem};
 use crate::method::Configuration;
@@ -29,9 +30,9 @@ use crate::time_limit::TimeLimit;
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     let plan = Plan::of(&problem, schedule);
-    if let Some(unknown) = plan.unknown_limit {
+    if let Some(growing) = &plan.growing {
         return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)
-            .solve(Some(no_limit(unknown)));
+            .solve(Some(no_limit(growing)));
     }
     let (undrained_start, gradient) = (problem.undrained_start, problem.initial_gradient);
     let mut problem = problem;
@@ -87,13 +88,9 @@ fn no_start(singular: Singular, time_limit: TimeLimit) -> Failure {
 }
 
 /// The end of a run whose steps are shares of an unknown limit.
-fn no_limit(unknown: UnknownLimit) -> Failure {
-    let growth = match unknown {
-        UnknownLimit::Growing(growing) => Some(growing.growth),
-        UnknownLimit::OffLattice => None,
-    };
-    let reason = format!("{unknown}; a step in `seconds` is taken as it is");
-    at_start(StepFailure { kind: FailureKind::Unstable, reason }, growth)
+fn no_limit(growing: &GrowingMode) -> Failure {
+    let reason = format!("{growing}; a step in `seconds` is taken as it is");
+    at_start(StepFailure { kind: FailureKind::Unstable, reason }, Some(growing.growth))
 }
 
 /// The end of a run of double-point MPM by an integrator that has none.

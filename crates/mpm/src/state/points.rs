@@ -126,13 +126,16 @@ impl<const D: usize> Points<D> {
         self.grain_volume = grains.collect();
     }
 
-    /// Whether every point began on the lattice of the cells, a whole number of domains from their edges.
-    pub fn began_on_lattice(&self) -> bool {
+    /// Whether the points began as a lattice that fills its cells: of one size, a whole number of domains from their edges.
+    pub fn began_as_full_lattice(&self) -> bool {
         let on_lattice = |point: usize| {
-            self.initial_position[point].iter().zip(&self.half_length[point]).all(|(place, half)| {
-                let domains = 0.5 * (place / half - 1.0);
-                (domains - domains.round()).abs() < 1e-6
-            })
+            let half_length = &self.half_length[point];
+            let domains = self.initial_position[point]
+                .iter()
+                .zip(half_length)
+                .map(|(place, half)| 0.5 * (place / half - 1.0));
+            *half_length == self.half_length[0]
+                && domains.into_iter().all(|count| (count - count.round()).abs() < 1e-6)
         };
         (0..self.len()).all(on_lattice)
     }
@@ -162,5 +165,12 @@ mod tests {
         assert!((points.initial_volume.iter().sum::<f64>() - 1.5).abs() < 1e-15);
         assert_eq!(points.initial_position[0], [0.125, 0.125]);
         assert_eq!(points.initial_position[23], [0.875, 1.375]);
+        assert!(points.began_as_full_lattice());
+        let mut moved = points.clone();
+        moved.initial_position[7][1] += 0.1;
+        let mut halved = points;
+        halved.half_length[23][1] *= 0.5;
+        halved.initial_position[23][1] = 1.3125;
+        assert!(![moved, halved].iter().any(Points::began_as_full_lattice));
     }
 }

@@ -8,6 +8,7 @@ use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
 use oedometer_mpm::run::results::outcome::{FailureKind, Outcome, RunStatus};
 use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
 use oedometer_mpm::scene::SceneKind;
+use oedometer_mpm::scene::arrangement::Arrangement;
 use oedometer_mpm::scene::column::Column;
 use oedometer_mpm::scene::problem::{SceneProblem, column_problem};
 use oedometer_mpm::state::grid::Grid;
@@ -468,6 +469,34 @@ fn the_semi_implicit_integrator_is_stable_up_to_its_limit_and_of_first_order() {
     let beyond = run(problem(), &schedule);
     let RunStatus::Failed(failure) = beyond.status else { panic!("stable beyond its limit") };
     assert_eq!(failure.kind, FailureKind::Unstable);
+}
+
+#[test]
+fn the_limit_of_semi_implicit_steps_holds_wherever_the_points_lie() {
+    let regular = Arrangement::default;
+    for points in [
+        Arrangement { offset: 0.3, ..regular() },
+        Arrangement { jitter: 0.3, ..regular() },
+        Arrangement { filling: 0.4, ..regular() },
+    ] {
+        // A shifted domain that reaches into a cell without points, a volume that no pressure resists, among them.
+        for name in ["MPM", "GIMP-SRI-patch", "GC-SRI-patch", "VP", "PPP"] {
+            let method = Method::named(name).expect("a known method");
+            let ends = [0.95, 1.6].map(|share| {
+                let column = Column { points, ..Column::default() };
+                let soil = Material::default();
+                let problem = column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 12, 2);
+                let rule = TimeStepRule::Stable(share);
+                let schedule = schedule(&soil, IntegratorKind::SemiImplicit, rule, &[0.05]);
+                run(problem.expect("a column"), &schedule).status
+            });
+            let is_unstable = |status: &RunStatus| match status {
+                RunStatus::Ok => false,
+                RunStatus::Failed(failure) => failure.kind == FailureKind::Unstable,
+            };
+            assert_eq!(ends.each_ref().map(is_unstable), [false, true], "{name} {points:?}: {ends:?}");
+        }
+    }
 }
 
 #[test]

@@ -47,16 +47,20 @@ pub fn combined_limit(soil: &Material, cell_size: f64, drag: Drag) -> f64 {
 /// storage of the pressure takes in.
 pub fn semi_implicit_limit(soil: &Material, cell_size: f64, are_undamped: bool) -> f64 {
     let n = soil.porosity;
-    let per_length = 2.0 / cell_size;
     let inertia = (1.0 - n) * soil.grain_density + (1.0 - n) * (1.0 - n) / n * soil.water_density;
-    let square = soil.initial_modulus() / inertia * per_length * per_length;
-    let damping = soil.unit_weight_of_water() / (soil.hydraulic_conductivity * inertia);
-    let column = (damping + (damping * damping + 4.0 * square).sqrt()) / square;
+    let stiffness = 4.0 * soil.initial_modulus() / (cell_size * cell_size);
+    let against =
+        skeleton_limit(stiffness, inertia, soil.unit_weight_of_water() / soil.hydraulic_conductivity);
     if !are_undamped {
-        return column;
+        return against;
     }
-    let density = (1.0 - n) * soil.grain_density + n * soil.water_density;
-    column.min(cell_size / (soil.initial_modulus() / density).sqrt())
+    against.min(skeleton_limit(stiffness, soil.mixture_density(), 0.0))
+}
+
+/// Largest step, s, of an explicit skeleton of a stiffness, an inertia and a damping that is taken at the end of the step:
+/// `s Δt² = 4 m + 2 c Δt` (docs/theory.md, Eq. 45); beyond it a motion that turns its sign every step grows.
+pub fn skeleton_limit(stiffness: f64, inertia: f64, damping: f64) -> f64 {
+    (damping + (damping * damping + 4.0 * stiffness * inertia).sqrt()) / stiffness
 }
 
 #[cfg(test)]

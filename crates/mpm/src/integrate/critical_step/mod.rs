@@ -5,4 +5,5 @@ mod known;
 mod parts;
 pub(crate) mod power;
 pub mod predicted;
+pub mod skeleton;
 mod spectral_radius;
