@@ -49,7 +49,7 @@ impl<'a> Plan<'a> {
     ///
     /// What implicit steps are measured by is a formula: of their own limit where the skeleton is
     /// explicit, of the explicit integrator's where there is none.
-    pub fn of<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
+    pub fn new<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let (critical, growing) = match (schedule.integrator.step_bound(), schedule.critical_step) {

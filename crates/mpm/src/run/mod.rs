@@ -29,7 +29,7 @@ use crate::time_limit::TimeLimit;
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
 pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
-    let plan = Plan::of(&problem, schedule);
+    let plan = Plan::new(&problem, schedule);
     if let Some(growing) = &plan.growing {
         return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)
             .solve(Some(no_limit(growing)));

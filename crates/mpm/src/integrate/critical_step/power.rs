@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn forces_are_adjoint_to_strains_where_both_have_one_gradient() {
-        let of = |name: &str| {
+        let asymmetry_of = |name: &str| {
             let method = Method::named(name).expect("a known method");
             let (column, soil) = (Column { load: 1.0, ..Column::layer() }, Material::default());
             let problem = column_problem::<2>(SceneKind::CosineLayer, &column, &soil, method, 4, 2);
@@ -53,16 +53,23 @@ mod tests {
             problem.undrained_start = false;
             asymmetry(&Body::new(problem))
         };
-        let is_adjoint = |asymmetry: [f64; 2]| asymmetry.map(|one| one < 1e-12);
-        assert_eq!(is_adjoint(of("GIMP")), [true, true], "{:?}", of("GIMP"));
+        let is_adjoint = |asymmetry: [f64; 2]| asymmetry.map(|difference| difference < 1e-12);
+        assert_eq!(is_adjoint(asymmetry_of("GIMP")), [true, true], "{:?}", asymmetry_of("GIMP"));
         // The composite gradient strains more nodes than the forces act on; the patch spreads pressures likewise.
-        assert_eq!(is_adjoint(of("GC-SRI-patch")), [false, false], "{:?}", of("GC-SRI-patch"));
-        assert!(is_adjoint(of("GIMP-SRI-patch"))[0] && !is_adjoint(of("GIMP-SRI-patch"))[1]);
+        assert_eq!(
+            is_adjoint(asymmetry_of("GC-SRI-patch")),
+            [false, false],
+            "{:?}",
+            asymmetry_of("GC-SRI-patch")
+        );
+        assert!(
+            is_adjoint(asymmetry_of("GIMP-SRI-patch"))[0] && !is_adjoint(asymmetry_of("GIMP-SRI-patch"))[1]
+        );
         // So is B-bar by cells and by nodes: its forces do the power of the strains whose volumes it shares out.
         for (name, expected) in
             [("GIMP-Bbar", [true, true]), ("VP-Bbar", [true, true]), ("GIMP-Bbar-patch", [false, false])]
         {
-            assert_eq!(is_adjoint(of(name)), expected, "{name}: {:?}", of(name));
+            assert_eq!(is_adjoint(asymmetry_of(name)), expected, "{name}: {:?}", asymmetry_of(name));
         }
     }
 }

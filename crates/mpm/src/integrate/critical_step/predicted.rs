@@ -132,9 +132,9 @@ pub fn predict<const D: usize>(
     // A column's limit is searched with a stricter tolerance: a mode that grows this slowly does not make it unknown.
     let is_slow = |growth: f64| growth - 1.0 <= FAR_BELOW * SLOW_GROWTH;
     let search = || {
-        let found = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
-        if found.is_some() {
-            return Limit { step: found, growth: None };
+        let limit = spectral_radius::critical_step(&assembled, settings, safe, GROWTH_TOLERANCE, sharp);
+        if limit.is_some() {
+            return Limit { step: limit, growth: None };
         }
         let growth = |step: f64| spectral_radius::growth(&assembled, step, settings).unwrap_or(f64::NAN);
         let slow = growth(far_below);
@@ -158,17 +158,17 @@ pub fn predict<const D: usize>(
 /// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
 /// constant pressure, and have the limit of that.
 pub(crate) fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
-    let mut one = problem.clone();
+    let mut single = problem.clone();
     // Forces from outside do not change the limit.
-    one.forcing = None;
-    let moves = one.configuration.moves_points();
-    if one.water.is_some() && moves && one.method.pressure == PressureIntegration::Sri {
-        one.method.recovery = Recovery::Constant;
+    single.forcing = None;
+    let moves = single.configuration.moves_points();
+    if single.water.is_some() && moves && single.method.pressure == PressureIntegration::Sri {
+        single.method.recovery = Recovery::Constant;
     }
-    if let Some(water) = one.water.take().filter(|water| water.len() > one.points.len()) {
-        one.points = water;
+    if let Some(water) = single.water.take().filter(|water| water.len() > single.points.len()) {
+        single.points = water;
     }
-    one
+    single
 }
 
 /// The problem on so many cells of its lower corner, with the load on their top: the sides stay fixed, the top stays
@@ -237,9 +237,9 @@ mod tests {
             let problem =
                 column_problem::<1>(SceneKind::Terzaghi, &column, &Material::default(), method, 14, 2)
                     .expect("the seed column");
-            let whole = predict(&problem, &settings, 14).critical_step;
+            let uncut = predict(&problem, &settings, 14).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
-            assert!((cut / whole - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {whole}");
+            assert!((cut / uncut - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {uncut}");
         }
     }
 
@@ -299,10 +299,10 @@ mod tests {
     }
 
     #[test]
-    fn a_mode_that_grows_is_told_by_its_growth_per_second() {
-        let told = GrowingMode { step: 2e-3, growth: 1.5 }.to_string();
+    fn the_message_of_a_growing_mode_gives_its_growth_per_second() {
+        let sentence = GrowingMode { step: 2e-3, growth: 1.5 }.to_string();
         let wanted = "no limit is known: under steps of 2.00e-3 s too something grows by 2.50e2 1/s, by the eigenvalues of \
                       the step";
-        assert_eq!(told, wanted);
+        assert_eq!(sentence, wanted);
     }
 }

@@ -129,7 +129,6 @@ mod tests {
             let plane = problem::<2>("GIMP", &soil, Arrangement::default());
             let formula = formula::semi_implicit_limit(&soil, plane.grid.cell_size, true);
             let ratio = semi_implicit_limit(&plane) / formula;
-            println!("plane {conductivity} {ratio}");
             assert!((0.5..1.01).contains(&ratio), "{conductivity}: {ratio}");
         }
     }

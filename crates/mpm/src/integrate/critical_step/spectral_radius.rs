@@ -34,7 +34,7 @@ struct Powers {
 }
 
 impl Powers {
-    fn of(operator: &DMatrix<f64>) -> Self {
+    fn new(operator: &DMatrix<f64>) -> Self {
         Self { power: operator.clone(), squared: operator.clone(), log_scale: 0.0, share: 1.0 }
     }
 
@@ -72,7 +72,7 @@ impl Powers {
 
 /// Spectral radius of a square matrix, `lim ‖A^m‖^(1/m)`; infinite where it is not finite.
 pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
-    let mut powers = Powers::of(operator);
+    let mut powers = Powers::new(operator);
     for _ in 0..SQUARINGS {
         if !powers.square() {
             break;
@@ -84,7 +84,7 @@ pub fn spectral_radius(operator: &DMatrix<f64>) -> f64 {
 
 /// Whether the spectral radius of a square matrix is at most `most`, by as few powers as tell.
 fn is_within(operator: &DMatrix<f64>, most: f64) -> bool {
-    let mut powers = Powers::of(operator);
+    let mut powers = Powers::new(operator);
     for _ in 0..SQUARINGS {
         if powers.most() <= most || powers.least() > most || !powers.square() {
             break;
@@ -142,7 +142,7 @@ pub fn critical_step<const D: usize>(
     let mut is_stable = |dt: f64| is_within(dt, most(dt));
     match soon {
         Some(soon) if !sharp && is_stable(soon) => Some(soon),
-        found => bracketed([found.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
+        unconfirmed => bracketed([unconfirmed.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
     }
 }
 

@@ -57,7 +57,7 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
     for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch", "GIMP-mean", "GIMP-SRI-nodal"] {
         let body = || Body::new(seed(name, &Material::default(), 6));
         let schedule = schedule();
-        let plan = Plan::of(&seed(name, &Material::default(), 6), &schedule);
+        let plan = Plan::new(&seed(name, &Material::default(), 6), &schedule);
         let mut linear = LinearStepper::new(body(), &plan);
         let mut newton = NewtonStepper::new(body(), &plan);
         for dt in [0.05, 0.05, 0.1, 0.1, 0.3] {
@@ -111,7 +111,7 @@ fn a_step_that_is_given_up_leaves_no_trace_in_a_soil_that_remembers() {
     assert!(fresh.anchor.history.iter().all(|history| history.yield_stress > 0.3), "an end is kept");
     // Whole steps: one that is refused for its error, and one without it.
     let schedule = schedule();
-    let plan = Plan::of(&seed("GIMP-SRI-patch", &soil, 6), &schedule);
+    let plan = Plan::new(&seed("GIMP-SRI-patch", &soil, 6), &schedule);
     let settled = [true, false].map(|is_refused| {
         let mut newton = NewtonStepper::new(Body::new(seed("GIMP-SRI-patch", &soil, 6)), &plan);
         if is_refused {
@@ -137,7 +137,7 @@ fn a_column_that_is_unloaded_keeps_what_it_has_yielded_and_reloads_stiffly() {
     };
     let problem = || seed("GIMP-SRI-patch", &soil, 6);
     let schedule = schedule();
-    let plan = Plan::of(&problem(), &schedule);
+    let plan = Plan::new(&problem(), &schedule);
     let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
     let (start, full_load) = (newton.settlement(), newton.trial.body.actions.surface.load);
     // The seed's start is that of a linear soil: the load of the start is in its strain.
@@ -218,7 +218,7 @@ fn loading_unloading_and_reloading_follow_finite_volumes() {
     };
     let problem = || seed("GIMP-SRI-patch", &soil, 20);
     let schedule = schedule();
-    let plan = Plan::of(&problem(), &schedule);
+    let plan = Plan::new(&problem(), &schedule);
     let mut newton = NewtonStepper::new(Body::new(problem()), &plan);
     let (start, full_load) = (newton.settlement(), newton.trial.body.actions.surface.load);
     let (mut loads, mut references) = (Vec::new(), Vec::new());
