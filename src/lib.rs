@@ -54,7 +54,7 @@
 //! | 21 | domains of water points | `crates/mpm/src/integrate/double_point/following_water.rs:take_domains` |
 //! | 22 | balances of double-point MPM | `crates/mpm/src/integrate/double_point/mod.rs:map_water_masses`, `crates/mpm/src/integrate/double_point/mod.rs:map_forces` |
 //! | 23 | pressure along the water | `crates/mpm/src/integrate/double_point/water_pressure.rs:update_pressure` |
-//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:of`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
+//! | 24, 25, 26, 27 | manufactured motions, and what acts on them | `crates/exact/src/manufactured/motion.rs:place`, `crates/exact/src/manufactured/motion_state.rs:new`, `crates/exact/src/manufactured/motion_state.rs:body_forces`, `crates/exact/src/manufactured/motion_state.rs:source` |
 //! | 28 | neo-Hookean stress | `crates/soil/src/stiffness.rs:neo_hookean_stress` |
 //! | 29 | the middle of a step | `crates/mpm/src/kernel/forced_body.rs:update_forced_pressure`, `crates/mpm/src/kernel/stresses.rs:middle_gradient` |
 //! | 30 | shape functions of domains that turn | `crates/mpm/src/operators/corners.rs:build_corners`, `crates/mpm/src/operators/corners.rs:follow` |
