@@ -392,7 +392,7 @@ impl SceneKind {
         matches!(self.definition().start, SceneStart::Solved)
     }
 
-    /// The pore pressures, Pa, that points at heights, m, should start with; `found` are those they have.
+    /// The initial pore pressures, Pa, of points at heights, m; `pressures` are those that the points have already.
     ///
     /// # Errors
     /// When the scene's own reference, the first of its references, refuses a depth.
