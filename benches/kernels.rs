@@ -85,7 +85,7 @@ fn implicit_step<const C: usize>(bencher: Bencher, method: &str) {
         threads: 1,
         time_limit: TimeLimit::default(),
     };
-    let plan = Plan::of(&problem, &schedule);
+    let plan = Plan::new(&problem, &schedule);
     let mut stepper = LinearStepper::new(Body::new(problem), &plan);
     let step = EqualSteps::first(0.0, 0.01, 1);
     bencher
