@@ -362,7 +362,9 @@ fn state_of(
             }
             return Ok(frame);
         }
-        _ => Err("it holds no arrays".to_owned()),
+        Kind::Table | Kind::Collection | Kind::Series | Kind::Hdf5 | Kind::Xdmf => {
+            Err("it holds no arrays".to_owned())
+        }
     };
     let mut frame = frame.map_err(refused)?;
     frame.leave_out_ghosts().map_err(refused)?;

@@ -252,12 +252,12 @@ fn is_full_projection(thousandths: &u32) -> bool {
 }
 
 /// The paper's ladder of methods and others beside it, without prefixes: one line a method.
-const NAMED: [(&str, Basis, StrainGradient, PressureIntegration, Recovery); 23] = {
+const NAMED: &[(&str, Basis, StrainGradient, PressureIntegration, Recovery)] = {
     use Basis::{Bspline2, Bspline3, Cpdi, Cpgimp, Hat};
     use PressureIntegration::{Mean, Points, Sri};
     use Recovery::{Constant, Nodal, NullSpace, Patch, PatchSoils, Ppp};
     use StrainGradient::{Bbar, Cmpm, CmpmBbar, CmpmEnds, Standard};
-    [
+    &[
         ("MPM", Hat, Standard, Points, Constant),
         ("MPM-SRI-patch", Hat, Standard, Sri, Patch),
         ("GIMP", Cpgimp, Standard, Points, Constant),

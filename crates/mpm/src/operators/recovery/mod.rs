@@ -45,7 +45,7 @@ impl<const D: usize> RecoveryOperator<D> {
             (false, Recovery::Ppp) => Self::Interpolated,
             (true, Recovery::Patch | Recovery::PatchSoils) => Self::Patch(PatchRows::new(points, grid)),
             (true, Recovery::Nodal) => Self::Nodal(NodalMeans::new(Sites::Cells, grid.node_count())),
-            (true, _) => Self::Constant,
+            (true, Recovery::Constant | Recovery::NullSpace | Recovery::Ppp) => Self::Constant,
         }
     }
 
