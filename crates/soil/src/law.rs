@@ -43,8 +43,14 @@ words!(
 impl Law {
     /// The laws of columns: a rate against the logarithmic strain, which a uniaxial compression integrates in closed
     /// form.
-    pub const FOR_COLUMNS: [Self; 4] =
-        [Self::Linear, Self::LogLinear, Self::PorosityDependent, Self::Engineering];
+    pub fn for_columns() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|law| law.is_for_columns())
+    }
+
+    /// Whether it is one of them: whether it has a [stress of a uniaxial compression](Self::uniaxial_stress_ratio).
+    pub fn is_for_columns(self) -> bool {
+        !self.uniaxial_stress_ratio(0.0).is_nan()
+    }
 
     /// Whether the stress is a function of the deformation gradient, and no rate is integrated.
     #[inline]
@@ -78,7 +84,7 @@ impl Law {
 
     /// Vertical effective stress over the oedometric modulus of a uniaxial compression to the
     /// engineering strain `J − 1`, which may be tiny: the integral of the rate form. NaN for laws that are not
-    /// [for columns](Self::FOR_COLUMNS), because their stress depends on Poisson's ratio too.
+    /// [for columns](Self::for_columns), because their stress depends on Poisson's ratio too.
     #[inline]
     pub fn uniaxial_stress_ratio(self, strain: f64) -> f64 {
         match self {
@@ -92,10 +98,16 @@ impl Law {
     /// NaN for laws that are not for columns.
     #[inline]
     pub fn shrinkage(self, compression: f64) -> f64 {
+        if self == Self::Linear { compression } else { -self.strain_under(compression) }
+    }
+
+    /// The engineering strain `J − 1` at which a uniaxial compression reaches `−σ'/E_oed`: the inverse of
+    /// [`uniaxial_stress_ratio`](Self::uniaxial_stress_ratio). NaN for laws that are not for columns.
+    #[inline]
+    pub fn strain_under(self, compression: f64) -> f64 {
         match self {
-            Self::LogLinear | Self::Engineering => -elementary::exp_m1(-compression),
-            Self::PorosityDependent => compression / (1.0 + compression),
-            Self::Linear => compression,
+            Self::Linear | Self::LogLinear | Self::Engineering => elementary::exp_m1(-compression),
+            Self::PorosityDependent => -compression / (1.0 + compression),
             Self::NeoHookean | Self::Preconsolidated | Self::VonMises => f64::NAN,
         }
     }
@@ -337,7 +349,7 @@ mod tests {
         fn the_rate_form_integrates_to_the_closed_form(end in 0.6..1.4_f64) {
             let steps = 20_000;
             let strain = end.ln() / f64::from(steps);
-            for law in Law::FOR_COLUMNS {
+            for law in Law::for_columns() {
                 let (mut ratio, mut stress) = (1.0, 0.0);
                 for _ in 0..steps {
                     let before = ratio;

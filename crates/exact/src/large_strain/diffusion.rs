@@ -48,7 +48,7 @@ impl Diffusion {
     /// When the parameters are impossible or the load would close the pores.
     pub fn new(model: LargeStrainModel, column: &ColumnParameters, share: f64) -> Result<Self, ExactError> {
         column.validate()?;
-        if !Law::FOR_COLUMNS.contains(&model.law) {
+        if !model.law.is_for_columns() {
             return Err(ExactError::LawOfColumn { law: model.law.name() });
         }
         let load = positive(
@@ -78,20 +78,18 @@ impl Diffusion {
     /// conductance `k/(k_0 J)`. Where the gradient of the porosity is dropped all three are over the porosity, which stands
     /// within the divergence then.
     pub fn coefficients(&self, lacking: f64) -> [f64; 3] {
+        if self.model.law == Law::Linear {
+            return [1.0 + self.porosity * self.compliance, 1.0, 1.0];
+        }
         let volume = 1.0 - self.shrinkage(lacking);
-        // dσ'/dJ over E_oed.
-        let tangent = match self.model.law {
-            Law::Linear => return [1.0 + self.porosity * self.compliance, 1.0, 1.0],
-            Law::LogLinear | Law::Engineering => volume.recip(),
-            Law::PorosityDependent => (volume * volume).recip(),
-            // Refused before; NaN fails every check that follows.
-            Law::NeoHookean | Law::Preconsolidated | Law::VonMises => f64::NAN,
-        };
+        // dσ'/dJ over E_oed, of the modulus against dJ/J.
+        let tangent = self.model.law.modulus_ratio(volume, volume) / volume;
         let pores = volume - (1.0 - self.porosity);
         let divided = match self.model.continuity {
             Continuity::Conservative => 1.0,
             Continuity::ConstantPorosityGradient => self.porosity * volume / pores,
         };
+        // k = k_0 J² of every law for columns but the linear one.
         [divided * (tangent.recip() + pores * self.compliance), divided / tangent, divided * volume]
     }
 
@@ -197,7 +195,7 @@ mod tests {
     #[test]
     fn coefficients_are_the_laws_derivatives() {
         // −dJ/dr = d(shrinkage)/dr must be −q/(dσ'/dJ), which storage at compliance 0 holds.
-        for law in Law::FOR_COLUMNS {
+        for law in Law::for_columns() {
             let diffusion = Diffusion { compliance: 0.0, ..diffusion(law) };
             let step = 1e-6;
             let slope = (diffusion.shrinkage(0.4 + step) - diffusion.shrinkage(0.4 - step)) / (2.0 * step);
@@ -209,7 +207,7 @@ mod tests {
     #[test]
     fn undrained_start_is_nearly_the_storage_ratio() {
         let column = ColumnParameters::default();
-        for law in Law::FOR_COLUMNS {
+        for law in Law::for_columns() {
             let ratio = diffusion(law).undrained_ratio();
             assert!((ratio - column.storage_ratio()).abs() < 1e-4, "{ratio}");
         }

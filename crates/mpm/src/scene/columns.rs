@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn the_undrained_start_is_in_equilibrium_whatever_the_law() {
-        for law in Law::FOR_COLUMNS {
+        for law in Law::for_columns() {
             for (load, stiffness) in [(1.0, 2.2e9), (2e5, 2.2e9), (2e5, 2e7), (2e5, 2e6)] {
                 let soil = Material { law, water_bulk_modulus: stiffness, ..Material::default() };
                 let start = undrained(&Column { load, ..Column::default() }, &soil);

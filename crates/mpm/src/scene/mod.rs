@@ -252,7 +252,7 @@ impl SceneKind {
         if matches!(self, Self::YieldFront | Self::Footing) {
             return None;
         }
-        if self.is_large_strain() && !Law::FOR_COLUMNS.contains(&law) {
+        if self.is_large_strain() && !law.is_for_columns() {
             return Some("this law has no closed form in a column: it belongs to the manufactured scenes");
         }
         match (self.is_large_strain(), law == Law::Linear) {
