@@ -183,6 +183,23 @@ mod tests {
     }
 
     #[test]
+    fn what_reaches_beyond_the_set_alone_is_no_separator() {
+        // The lowest is tied to the one beside it, and to one far above that is not of the set.
+        let positions: Vec<[f64; 1]> = (0..80).map(|unknown| [f64::from(unknown)]).collect();
+        let matrix = SparseMatrix::spanning(&positions, |visitor| {
+            for unknown in 0..79 {
+                visitor(unknown, unknown + 1);
+                visitor(unknown + 1, unknown);
+            }
+            visitor(0, 79);
+            visitor(79, 0);
+        });
+        let mut dissection = Dissection { matrix: &matrix, is_within: vec![false; 80], order: Vec::new() };
+        let halves = dissection.cut(&(0..60).collect::<Vec<_>>()).expect("two halves");
+        assert_eq!((halves.separator.len(), halves.low[0]), (1, 0));
+    }
+
+    #[test]
     fn a_set_that_is_all_separator_is_not_cut() {
         let places: Vec<f64> = (0..60).map(f64::from).collect();
         let (order, root) = dissected(&line(&places, 60.0));

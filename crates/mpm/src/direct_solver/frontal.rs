@@ -360,5 +360,12 @@ mod tests {
                 assert_eq!(factored, Err(Singular { row: named }), "{rows:?} on {threads} threads");
             }
         }
+        // Wherever in its front the row is, the last included.
+        let mut lu = FrontalLu::of_shape(&SparseMatrix::spanning(&positions, |_| ()), 1);
+        for without in 0..400 {
+            let mut matrix = SparseMatrix::spanning(&positions, |_| ());
+            (0..400).filter(|row| *row != without).for_each(|row| matrix.add(row, row, 1.0));
+            assert_eq!(lu.factor(&matrix, TimeLimit::default()), Err(Singular { row: without }));
+        }
     }
 }

@@ -508,6 +508,25 @@ impl<const D: usize> PointStencils<D> {
 mod tests {
     use super::*;
 
+    /// A point at the lower left corner of a cell, where hats have no value but a gradient at the nodes beyond.
+    fn at_a_corner(grid: &Grid<2>) -> Stencils<2, 2> {
+        let mut stencils = Stencils::new(1, 1);
+        stencils.set(grid, 0, &[Row { first: 2, values: [1.0, 0.0], gradients: [-1.0, 1.0] }; 2]);
+        stencils
+    }
+
+    #[test]
+    fn a_node_of_no_value_counts_by_its_gradient() {
+        let grid = Grid::new(0.5, [4, 3]);
+        let stencils = at_a_corner(&grid);
+        let field: Vec<Vector<2>> = (0..grid.node_count()).map(|node| grid.node_position(node)).collect();
+        let gradient = stencils.of_point(0).gradient(grid.node_stride(), &field);
+        assert_eq!(gradient, [[1.0, 0.0], [0.0, 1.0]]);
+        let mut flat = Stencils::<2, 2>::new(1, 1);
+        flat.set(&grid, 0, &[Row { first: 2, values: [1.0, 0.0], gradients: [-1.0, 0.0] }; 2]);
+        assert!(stencils.reach().ne(flat.reach()));
+    }
+
     #[test]
     fn sums_to_the_nodes_are_adjoint_to_values_and_gradients_at_the_points() {
         let grid = Grid::new(0.5, [4, 3]);

@@ -328,6 +328,23 @@ mod tests {
         assert_same_side_by_side::<2>();
     }
 
+    #[test]
+    fn a_domain_longer_than_a_cell_reaches_as_far_as_one_of_a_cell() {
+        let (grid, soils) = (Grid::new(0.5, [4]), [Material::default()]);
+        let mut points = Points::<1>::lattice(0.5, [4], 2);
+        points.take_soils(&soils);
+        let mut cells = Cells::new(&grid, points.len());
+        cells.locate(&grid, &points, &soils);
+        cells.find_reached(&grid, &points);
+        let between_ends = |half: f64| {
+            let mut operator = StrainOperator::new(StrainGradient::CmpmEnds, points.len());
+            operator.build(&grid, &cells, &vec![[half]; points.len()]);
+            operator.carrier().expect("ends").clone()
+        };
+        assert_eq!(between_ends(0.3), between_ends(0.25));
+        assert_ne!(between_ends(0.2), between_ends(0.25));
+    }
+
     proptest! {
         #[test]
         fn a_row_between_ends_adds_up_to_the_field(low in 3.0..8.0f64, length in 0.05..0.9f64) {

@@ -487,4 +487,12 @@ mod tests {
             assert_eq!((written.as_str(), SceneKind::named(scene.name())), (Some(scene.name()), Some(scene)));
         }
     }
+
+    #[test]
+    fn the_references_of_a_scene_are_found_by_their_names() {
+        for reference in SceneKind::ALL.into_iter().flat_map(SceneKind::references) {
+            let found: Result<ReferenceKind, _> = reference.name().parse();
+            assert_eq!(found.map(ReferenceKind::name), Ok(reference.name()));
+        }
+    }
 }

@@ -112,7 +112,8 @@ fn little_drag_shows_on_more_cells() {
 fn a_share_of_a_limit_that_nobody_knows_is_refused_where_growth_spoils_the_result() {
     let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
     let schedule = |end, rule| Schedule {
-        outputs: vec![end],
+        // The last output ends the run.
+        outputs: vec![0.01 * end, end],
         history: Vec::new(),
         rule,
         settings,

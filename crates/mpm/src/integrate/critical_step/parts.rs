@@ -45,6 +45,14 @@ fn part(operator: &DMatrix<f64>, images: &[Image], parity: f64) -> DMatrix<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrate::assembled::step::AssembledStep;
+    use crate::kernel::ExplicitSettings;
+    use crate::kernel::body::Body;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
 
     /// Five unknowns: two pairs, and one in the middle that turns its sign.
     const IMAGES: [Image; 5] = [(1, 1.0), (0, 1.0), (4, -1.0), (3, -1.0), (2, -1.0)];
@@ -71,6 +79,24 @@ mod tests {
         assert!((largest / radius(&mirrored) - 1.0).abs() < 1e-12, "{largest}");
         let trace: f64 = parts.iter().map(DMatrix::trace).sum();
         assert!((trace - mirrored.trace()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_step_of_a_layer_falls_into_an_even_and_an_odd_part() {
+        let method = Method::named("GC-SRI-patch").expect("a known method");
+        let problem =
+            column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2);
+        let step = AssembledStep::new(&Body::new(problem.expect("a layer")));
+        let sizes = |images: &[Image]| -> Vec<usize> {
+            let operator = step.operator(1e-5, &ExplicitSettings::default());
+            parts(operator, images).iter().map(DMatrix::nrows).collect()
+        };
+        let images = step.images();
+        let of_parts = sizes(&images);
+        assert!(of_parts.len() == 2 && of_parts.iter().sum::<usize>() == step.unknowns(), "{of_parts:?}");
+        // Motions along the layer turn their sign in a mirror.
+        let unturned: Vec<Image> = images.iter().map(|(image, _)| (*image, 1.0)).collect();
+        assert_eq!(sizes(&unturned), [step.unknowns()]);
     }
 
     #[test]

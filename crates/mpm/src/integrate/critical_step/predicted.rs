@@ -225,6 +225,7 @@ mod tests {
     use crate::scene::arrangement::Arrangement;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
+    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 
     #[test]
@@ -240,6 +241,37 @@ mod tests {
             let uncut = predict(&problem, &settings, 14).critical_step;
             let cut = predict(&problem, &settings, FEW_CELLS).critical_step;
             assert!((cut / uncut - 1.0).abs() < 0.01, "{name} {filling}: {cut} for {uncut}");
+            let points = without_middle(&problem, FEW_CELLS).points;
+            assert_eq!(points.initial_position, points.position, "a column that has not moved");
+        }
+    }
+
+    #[test]
+    fn a_column_of_layers_keeps_its_middle() {
+        let layer = SoilLayer { thickness: 0.4, ..SoilLayer::default() };
+        let stiff = SoilLayer { thickness: 0.2, youngs_modulus: Some(1e9), ..SoilLayer::default() };
+        let column = Column {
+            soils: SoilLayers::from_slice(&[layer, stiff, layer]).expect("three"),
+            ..Column::default()
+        };
+        let soft_water = Material { water_bulk_modulus: 2e6, ..Material::default() };
+        let method = Method::named("GIMP-SRI").expect("a known method");
+        let problem = column_problem::<1>(SceneKind::Layered, &column, &soft_water, method, 16, 2);
+        let problem = problem.expect("a column of layers");
+        let limit = |most| predict(&problem, &ExplicitSettings::default(), most).critical_step;
+        assert_eq!(limit(FEW_CELLS), limit(16));
+    }
+
+    #[test]
+    fn one_point_set_is_that_with_more_points() {
+        let method = Method::named("GIMP-SRI").expect("a known method");
+        let of = |per_cell| {
+            let (column, soil) = (Column::default(), Material::default());
+            column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, per_cell).expect("a column")
+        };
+        for [solid, water] in [[2, 3], [3, 2]] {
+            let problem = Problem { water: Some(of(water).points), ..of(solid) };
+            assert_eq!(one_point_set(&problem).points.len(), 12, "{solid} {water}");
         }
     }
 

@@ -228,6 +228,29 @@ fn stays_bounded<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrate::critical_step::formula;
+    use crate::kernel::Drag;
+    use crate::kernel::body::Body;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    #[test]
+    fn the_limit_of_a_plane_too_large_to_square_is_confirmed_by_many_steps() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        // Beyond the limit waves grow too slowly for few steps to show it.
+        let soil = Material { hydraulic_conductivity: 1e-7, ..Material::default() };
+        let method = Method::named("GIMP").expect("a known method");
+        let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 9, 2)
+            .expect("a layer");
+        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+        let mut step = AssembledStep::new(&Body::new(problem));
+        assert!(step.unknowns() > MOST_SQUARED);
+        let limit = critical_step(&step, &settings, safe, GROWTH_TOLERANCE, false).expect("a limit");
+        assert!(limit > safe && stays_bounded(&mut step, limit, &settings, GROWTH_STEPS), "{limit}");
+    }
 
     #[test]
     fn the_spectral_radius_of_known_matrices() {
