@@ -12,6 +12,27 @@ use std::sync::LazyLock;
 /// Numbers of a wide register: neighbouring points that are worked out side by side, by loops over them.
 pub(crate) const LANES: usize = 4;
 
+/// Whether [`LANES`] neighbours from one on are there, and of one number.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn are_alike(numbers: &[u8], first: usize) -> bool {
+    numbers.get(first..first + LANES).is_some_and(|some| *some == [some[0]; LANES])
+}
+
+/// `N` neighbours of a field from one on, all of which there are.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
+    field[first..].first_chunk().expect("a field that holds them all")
+}
+
+/// The same, to be written.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
+pub(crate) fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
+    field[first..].first_chunk_mut().expect("a field that holds them all")
+}
+
 /// What the processor has: asked once, for a step asks many times.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);

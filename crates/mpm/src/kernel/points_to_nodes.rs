@@ -6,13 +6,16 @@ use crate::drag::drag_of_point;
 use crate::kernel::body::Body;
 use crate::operators::basis::{ShapeFunction, rows_in, with_shape};
 use crate::operators::corners::build_corners;
-use crate::operators::stencil::{Block, Run, Stencil, Stencils, with_stencils};
-use crate::state::nodes::NodalSums;
+use crate::operators::stencil::{Block, Line, Run, Stencil, Stencils, with_stencils};
+use crate::state::cells::Locating;
+use crate::state::grid::Grid;
+use crate::state::nodes::{NodalSums, Support};
 use crate::state::points::Points;
-use crate::wide::wide;
+use crate::wide::{LANES, are_alike, some_of, wide};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
+use std::hint::black_box;
 
 impl<const D: usize> Body<D> {
     /// Sums masses, volumes and drag of the points to the nodes.
@@ -49,7 +52,9 @@ impl<const D: usize> Body<D> {
             let mut sums = ToNodes::<D, _, MASSES, MOMENTA, FORCES>::new(sums, stride);
             let stencils = stencils.slices(giving.count());
             for point in 0..giving.count() {
-                sums.add(stencils.of_point(point), &giving.given::<MASSES, MOMENTA, FORCES>(point));
+                let shares = giving.shares::<1, MASSES>(point);
+                let given = giving.given::<1, MASSES, MOMENTA, FORCES>(point, 0, &shares);
+                sums.add(stencils.of_point(point), &given);
             }
             sums.close();
         }));
@@ -76,22 +81,27 @@ impl<const D: usize> Body<D> {
     fn build_and_sum<const W: usize, S: ShapeFunction<W>>(&mut self, stencils: &mut Stencils<D, W>) {
         let giving = Giving::new(&self.points, &self.soils, false);
         let count = giving.count();
-        let (grid, support) = (&self.grid, &self.support());
-        let positions = &self.points.position[..count];
-        let half_lengths = &self.points.half_length[..count];
-        let mut cells = self.cells.begin_locating(count);
-        let mut sums = ToNodes::<D, W, true, true, true>::new(&mut self.nodes.sums, *grid.node_stride());
-        let (first, lines) = stencils.blocks_mut(count);
-        for point in 0..count {
-            let given = giving.given::<true, true, true>(point);
-            let [grains, pores, ..] = given.masses;
-            let (index, place) = cells.locate(grid, point, &positions[point], [grains, pores]);
-            let block =
-                Block::new(grid, &rows_in::<D, W, S>(grid, support, &index, &place, &half_lengths[point]));
-            (first[point], lines[point]) = (block.first, block.lines);
-            sums.add(block.stencil(), &given);
+        let mut building = Building {
+            giving,
+            grid: &self.grid,
+            support: &self.support(),
+            positions: &self.points.position[..count],
+            half_lengths: &self.points.half_length[..count],
+            cells: self.cells.begin_locating(count),
+            blocks: stencils.blocks_mut(count),
+            sums: ToNodes::new(&mut self.nodes.sums, *self.grid.node_stride()),
+        };
+        let mut point = 0;
+        while point < count {
+            if are_alike(giving.soil, point) {
+                building.build_and_add::<LANES, S>(point);
+                point += LANES;
+            } else {
+                building.build_and_add::<1, S>(point);
+                point += 1;
+            }
         }
-        sums.close();
+        building.sums.close();
     }
 
     /// Masses of the nodes from what the points have given.
@@ -126,6 +136,36 @@ impl<const D: usize> Body<D> {
         }
         if self.actions.forcing.is_some() {
             self.add_body_forces();
+        }
+    }
+}
+
+/// Points whose shape functions are built, and what they give summed.
+struct Building<'a, const D: usize, const W: usize> {
+    giving: Giving<'a, D>,
+    grid: &'a Grid<D>,
+    support: &'a Support<D>,
+    positions: &'a [Vector<D>],
+    half_lengths: &'a [Vector<D>],
+    cells: Locating<'a, D>,
+    blocks: (&'a mut [usize], &'a mut [[Line<W>; D]]),
+    sums: ToNodes<'a, D, W, true, true, true>,
+}
+
+impl<const D: usize, const W: usize> Building<'_, D, W> {
+    /// Finds `N` neighbours of one soil in their cells, builds their shape functions, and adds what they give: all but
+    /// the sums are loops over them.
+    #[inline(always)]
+    fn build_and_add<const N: usize, S: ShapeFunction<W>>(&mut self, first: usize) {
+        let shares = self.giving.shares::<N, true>(first);
+        let (positions, volumes) = (some_of(self.positions, first), [&shares.grains, &shares.pores]);
+        let (cells, places) = self.cells.locate::<N>(self.grid, first, positions, volumes);
+        let domains = [&places, some_of(self.half_lengths, first)];
+        let rows = rows_in::<D, W, N, S>(self.grid, self.support, domains, &cells);
+        for p in 0..N {
+            let (point, block) = (first + p, Block::new(self.grid, &rows[p]));
+            (self.blocks.0[point], self.blocks.1[point]) = (block.first, block.lines);
+            self.sums.add(block.stencil(), &self.giving.given::<N, true, true, true>(first, p, &shares));
         }
     }
 }
@@ -190,22 +230,51 @@ impl<'a, const D: usize> Giving<'a, D> {
         self.pressure.len()
     }
 
-    /// What a point gives of masses, momenta and forces.
+    /// Volumes and drag of `N` neighbours of one soil, from one on.
     #[inline(always)]
-    fn given<const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(&self, point: usize) -> Given<D> {
-        let mut given = Given::NOTHING;
-        let (ratio, grains) = (self.volume_ratio[point], self.grain_volume[point]);
-        let volume = self.initial_volume[point] * ratio;
-        // n V = V − (1 − n_0) V_0
-        let pores = volume - grains;
+    fn shares<const N: usize, const MASSES: bool>(&self, first: usize) -> Shares<N> {
+        let (ratios, soil) = (some_of::<_, N>(self.volume_ratio, first), usize::from(self.soil[first]));
+        let mut shares = Shares {
+            volumes: *some_of(self.initial_volume, first),
+            grains: *some_of(self.grain_volume, first),
+            pores: [0.0; N],
+            drags: [0.0; N],
+            storage: [0.0; N],
+        };
+        for p in 0..N {
+            shares.volumes[p] *= ratios[p];
+            // n V = V − (1 − n_0) V_0
+            shares.pores[p] = shares.volumes[p] - shares.grains[p];
+        }
         if MASSES {
-            let soil = &self.soils[usize::from(self.soil[point])];
-            let (resisting, storage) = if self.soils.len() > 1 {
-                (grains + pores, pores / soil.water_bulk_modulus)
-            } else {
-                (pores, 0.0)
-            };
-            given.masses = [grains, pores, drag_of_point(soil, resisting, ratio), storage];
+            let (soil, is_layered) = (&self.soils[soil], self.soils.len() > 1);
+            let mut resisting = shares.pores;
+            if is_layered {
+                for p in 0..N {
+                    resisting[p] = shares.grains[p] + shares.pores[p];
+                    shares.storage[p] = shares.pores[p] / soil.water_bulk_modulus;
+                }
+            }
+            for p in 0..N {
+                shares.drags[p] = drag_of_point(soil, resisting[p], ratios[p]);
+            }
+        }
+        // In memory point beside point: otherwise the compiler works point by point.
+        if N > 1 { black_box(shares) } else { shares }
+    }
+
+    /// What a point gives of masses, momenta and forces, the one of a place among neighbours from a first one on.
+    #[inline(always)]
+    fn given<const N: usize, const MASSES: bool, const MOMENTA: bool, const FORCES: bool>(
+        &self,
+        first: usize,
+        p: usize,
+        shares: &Shares<N>,
+    ) -> Given<D> {
+        let (mut given, point) = (Given::NOTHING, first + p);
+        let (grains, pores) = (shares.grains[p], shares.pores[p]);
+        if MASSES {
+            given.masses = [grains, pores, shares.drags[p], shares.storage[p]];
         }
         if MOMENTA {
             let water = self.water_velocity.get(point).unwrap_or(&[0.0; D]);
@@ -214,7 +283,7 @@ impl<'a, const D: usize> Giving<'a, D> {
         if FORCES {
             let inverse = self.inverse_deformation.map(|inverse| &inverse[point]);
             given.stresses = stresses_of(
-                volume * self.stressed_share[point],
+                shares.volumes[p] * self.stressed_share[point],
                 self.pressure[point],
                 &self.effective_stress[point],
                 inverse,
@@ -222,6 +291,16 @@ impl<'a, const D: usize> Giving<'a, D> {
         }
         given
     }
+}
+
+/// Volumes of some neighbours, m^D, with the drag, N s/m, and the storage, m^D/Pa, of what they hold.
+#[derive(Clone, Copy)]
+struct Shares<const N: usize> {
+    volumes: [f64; N],
+    grains: [f64; N],
+    pores: [f64; N],
+    drags: [f64; N],
+    storage: [f64; N],
 }
 
 /// Velocities of both phases, each times a volume.
@@ -308,6 +387,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
     /// Nothing is given yet.
     #[inline(always)]
     pub fn new(sums: &'a mut NodalSums<D>, stride: [usize; D]) -> Self {
+        let count = sums.masses.len();
         if MASSES {
             sums.masses.fill([[0.0; 4]]);
         }
@@ -319,9 +399,10 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
         }
         Self {
             stride,
-            masses: &mut sums.masses,
-            momenta: &mut sums.momenta,
-            forces: &mut sums.forces,
+            // Of one length, whose bounds are checked once.
+            masses: &mut sums.masses[..count],
+            momenta: &mut sums.momenta[..count],
+            forces: &mut sums.forces[..count],
             first: 0,
             line: [Share::NOTHING; W],
         }
@@ -412,6 +493,51 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
                     }
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::kernel::body::Body;
+    use crate::method::{Configuration, Method};
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use oedometer_soil::material::Material;
+
+    fn assert_same_side_by_side<const D: usize>(name: &str) {
+        let method = Method::named(name).expect("a known method");
+        let method = Method { configuration: Some(Configuration::Updated), ..method };
+        let (column, soil) = (Column { dimensions: D, ..Column::default() }, Material::default());
+        let problem = column_problem::<D>(SceneKind::XieLeo, &column, &soil, method, 5, 3).expect("a column");
+        let mut body = Body::new(problem);
+        for point in 0..body.points.len() {
+            let share = (1.3 * point as f64).sin();
+            body.points.position[point].iter_mut().for_each(|place| *place *= 0.93 + 0.01 * share);
+            body.points.solid_velocity[point] = [share; D];
+            body.points.water_velocity[point] = [1.0 - share; D];
+            body.points.effective_stress[point][0] = [-share; D];
+            body.points.pressure[point] = 2.0 + share;
+            body.points.volume_ratio[point] = 1.0 - 0.1 * share;
+        }
+        body.build_basis_and_sum_points();
+        let mut alone = body.clone();
+        alone.cells.locate(&alone.grid, &alone.points, &alone.soils);
+        let places = [&alone.cells.place[..], &alone.points.half_length[..]];
+        let support = alone.support();
+        alone.method.basis.build(&mut alone.operators.basis, &alone.grid, &support, places);
+        alone.sum_points::<true, true, true>();
+        assert_eq!(body.cells, alone.cells, "{name}");
+        assert_eq!(body.operators.basis, alone.operators.basis, "{name}");
+        assert_eq!(body.nodes.sums, alone.nodes.sums, "{name}");
+    }
+
+    #[test]
+    fn points_side_by_side_give_what_each_gives_alone() {
+        for name in ["MPM", "GIMP", "B2", "B3-SRI-patch"] {
+            assert_same_side_by_side::<1>(name);
+            assert_same_side_by_side::<2>(name);
         }
     }
 }

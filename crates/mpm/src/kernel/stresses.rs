@@ -8,7 +8,7 @@ use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
-use crate::wide::{LANES, wide};
+use crate::wide::{LANES, are_alike, some_mut, wide};
 use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement, StressLaw};
 use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};
@@ -152,8 +152,7 @@ impl Straining<'_> {
         let mut point = 0;
         while point < count {
             let law = &self.laws[usize::from(soil[point])];
-            let is_one_soil = soil.get(point..point + LANES).is_some_and(|soils| *soils == [soils[0]; LANES]);
-            let gradients = if is_one_soil { gradients_from(point) } else { None };
+            let gradients = if are_alike(soil, point) { gradients_from(point) } else { None };
             if let Some(gradients) = gradients {
                 self.strain(&mut strained, law, point, gradients);
                 point += LANES;
@@ -246,12 +245,6 @@ struct Strained<'a, const D: usize> {
     inverse_deformation: &'a mut [Tensor<D>],
     effective_stress: &'a mut [Tensor<D>],
     history: &'a mut [History],
-}
-
-/// `N` neighbours of a field from one on, all of which there are.
-#[inline(always)]
-fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
-    field[first..].first_chunk_mut().expect("a field that holds them all")
 }
 
 impl Following {

@@ -11,6 +11,7 @@ use crate::state::grid::{GHOST_LAYERS, Grid, integer_part, power};
 use crate::state::nodes::Support;
 use crate::wide::wide;
 use oedometer_soil::tensor::Vector;
+use std::hint::black_box;
 
 /// The shape functions of a basis: rows of `W` nodes per direction.
 pub trait ShapeFunction<const W: usize> {
@@ -141,23 +142,45 @@ fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     place: &Vector<D>,
     half_length: &Vector<D>,
 ) -> [Row<W>; D] {
-    rows_in::<D, W, S>(grid, support, &grid.cell_at(place), place, half_length)
+    let [rows] = rows_in::<D, W, 1, S>(grid, support, [&[*place], &[*half_length]], &[grid.cell_at(place)]);
+    rows
 }
 
-/// The same where the index of the cell is known.
+/// The same of `N` points, whose places, half-lengths and indices of cells are known, `[point][direction]`.
 #[inline(always)]
-pub(crate) fn rows_in<const D: usize, const W: usize, S: ShapeFunction<W>>(
+pub(crate) fn rows_in<const D: usize, const W: usize, const N: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
-    cell: &[usize; D],
-    place: &Vector<D>,
-    half_length: &Vector<D>,
-) -> [Row<W>; D] {
+    [places, half_lengths]: [&[Vector<D>; N]; 2],
+    cells: &[[usize; D]; N],
+) -> [[Row<W>; D]; N] {
     let per_cell = grid.inverse_cell_size();
-    let mut rows = [Row { first: 0, values: [0.0; W], gradients: [0.0; W] }; D];
-    for d in 0..D {
-        let row = S::row(place[d], cell[d], half_length[d] * per_cell);
-        rows[d] = if S::PASSES_WALLS { folded(support, grid, d, row) } else { row };
+    // `[node][point][direction]`: every line of a shape function is a loop over points and directions.
+    let mut first = [[0; D]; N];
+    let [mut values, mut gradients] = [[[[0.0; D]; N]; W]; 2];
+    for p in 0..N {
+        for d in 0..D {
+            let row = S::row(places[p][d], cells[p][d], half_lengths[p][d] * per_cell);
+            let row = if S::PASSES_WALLS { folded(support, grid, d, row) } else { row };
+            first[p][d] = row.first;
+            for k in 0..W {
+                (values[k][p][d], gradients[k][p][d]) = (row.values[k], row.gradients[k]);
+            }
+        }
+    }
+    if N > 1 {
+        // In memory point beside point: otherwise the compiler works row by row.
+        (values, gradients) = black_box((values, gradients));
+    }
+    let mut rows = [[Row { first: 0, values: [0.0; W], gradients: [0.0; W] }; D]; N];
+    for p in 0..N {
+        for d in 0..D {
+            let row = &mut rows[p][d];
+            row.first = first[p][d];
+            for k in 0..W {
+                (row.values[k], row.gradients[k]) = (values[k][p][d], gradients[k][p][d]);
+            }
+        }
     }
     rows
 }

@@ -4,7 +4,7 @@
 
 use crate::state::grid::{GHOST_LAYERS, Grid};
 use crate::state::points::Points;
-use crate::wide::wide;
+use crate::wide::{some_mut, wide};
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector};
 
@@ -74,7 +74,8 @@ impl<const D: usize> Cells<D> {
     pub fn locate(&mut self, grid: &Grid<D>, points: &Points<D>, soils: &[Material]) {
         let mut locating = self.begin_locating(points.len());
         wide!(for point in 0..points.len() {
-            locating.locate(grid, point, &points.position[point], points.volumes_of_phases(point));
+            let [grains, pores] = points.volumes_of_phases(point);
+            locating.locate(grid, point, &[points.position[point]], [&[grains], &[pores]]);
         });
         self.end_locating(points, soils);
     }
@@ -85,13 +86,15 @@ impl<const D: usize> Cells<D> {
         self.holds.fill(false);
         self.volume.fill(0.0);
         self.porosity.fill(0.0);
+        let count = self.holds.len();
         Locating {
             cells: &mut self.of_point[..points],
             place: &mut self.place[..points],
             within: &mut self.within[..points],
-            holds: &mut self.holds,
-            volume: &mut self.volume,
-            pore_volume: &mut self.porosity,
+            // Of one length, whose bounds are checked once.
+            holds: &mut self.holds[..count],
+            volume: &mut self.volume[..count],
+            pore_volume: &mut self.porosity[..count],
         }
     }
 
@@ -368,26 +371,33 @@ pub(crate) struct Locating<'a, const D: usize> {
 }
 
 impl<const D: usize> Locating<'_, D> {
-    /// Finds the cell of a point at a position, m, and adds its volumes of grains and pores, m^D. The index of the cell and
-    /// the place in cells.
+    /// Finds the cells of `N` neighbours from one on at their positions, m, and adds their volumes of grains and pores,
+    /// m^D. The indices of the cells and the places in cells.
     #[inline(always)]
-    pub fn locate(
+    pub fn locate<const N: usize>(
         &mut self,
         grid: &Grid<D>,
-        point: usize,
-        position: &Vector<D>,
-        [grains, pores]: [f64; 2],
-    ) -> ([usize; D], Vector<D>) {
-        let place = grid.held_in_cells(position);
-        let index = grid.cell_at(&place);
-        let cell = grid.flat_cell(&index);
-        self.cells[point] = cell;
-        self.place[point] = place;
-        self.within[point] = grid.within_cell(&index, &place);
-        self.holds[cell] = true;
-        self.volume[cell] += grains + pores;
-        self.pore_volume[cell] += pores;
-        (index, place)
+        first: usize,
+        positions: &[Vector<D>; N],
+        [grains, pores]: [&[f64; N]; 2],
+    ) -> ([[usize; D]; N], [Vector<D>; N]) {
+        let (mut indices, mut places, mut within) = ([[0; D]; N], *positions, *positions);
+        for p in 0..N {
+            places[p] = grid.held_in_cells(&positions[p]);
+            indices[p] = grid.cell_at(&places[p]);
+            within[p] = grid.within_cell(&indices[p], &places[p]);
+        }
+        *some_mut(self.place, first) = places;
+        *some_mut(self.within, first) = within;
+        let cells = some_mut::<_, N>(self.cells, first);
+        for p in 0..N {
+            let cell = grid.flat_cell(&indices[p]);
+            cells[p] = cell;
+            self.holds[cell] = true;
+            self.volume[cell] += grains[p] + pores[p];
+            self.pore_volume[cell] += pores[p];
+        }
+        (indices, places)
     }
 }
 
