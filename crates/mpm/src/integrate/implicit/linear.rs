@@ -46,8 +46,8 @@ pub struct LinearStepper<const D: usize> {
 
 impl<const D: usize> LinearStepper<D> {
     /// A body at its start.
-    pub fn new(start: Body<D>, plan: &Plan<'_>) -> Self {
-        let system = LinearSystem::new(&start);
+    pub fn new(mut start: Body<D>, plan: &Plan<'_>) -> Self {
+        let system = LinearSystem::new(&mut start);
         let zero = vec![0.0; system.unknowns.count];
         Self {
             settled: start.settlement(plan.initial_height),

@@ -59,15 +59,15 @@ struct Operators<'a, const D: usize> {
 type Entry = (usize, usize, f64, f64);
 
 impl<const D: usize> LinearSystem<D> {
-    /// Assembles the present operators and forces of a body.
-    pub fn new(body: &Body<D>) -> Self {
-        let mut loaded = body.clone();
-        loaded.map_forces();
+    /// Assembles the present operators and forces of a body, whose nodes take the latter.
+    pub fn new(body: &mut Body<D>) -> Self {
+        body.map_forces();
+        let body = &*body;
         let unknowns = Unknowns::new(body);
         let operators = Operators {
             stiffness: body.skeleton_stiffness(&unknowns.rows),
             pressure_forces: body.pressure_forces(&unknowns.rows),
-            body: &loaded,
+            body,
             unknowns,
         };
         let visit = |visitor: &mut dyn FnMut(Entry)| {
