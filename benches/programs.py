@@ -28,7 +28,10 @@ RUNS = {
 
 
 def wall_seconds(binary, run):
-    done = subprocess.run([binary, "solve", *run.split(), "--format", "json"], capture_output=True, text=True)
+    try:
+        done = subprocess.run([binary, "solve", *run.split(), "--format", "json"], capture_output=True, text=True)
+    except OSError as error:
+        sys.exit(f"{binary}: {error.strerror}")
     if done.returncode != 0:
         sys.exit(f"{binary} solve {run}: {done.stderr.strip()}")
     return json.loads(done.stdout)["wall_seconds"]
