@@ -257,8 +257,9 @@ impl Case {
         self.column.cell_size(self.cells)
     }
 
-    /// Points there are to be, in all sets: cells times points per cell, in every direction.
+    /// Points there are to be, in all sets that the case is solved with: cells times points per cell, in every direction.
     pub fn expected_points(&self) -> usize {
+        let water_per_cell = self.without_idle_choices().column.points.water_per_cell;
         let of_set = |per_cell: usize| {
             let along = self.column.points.points_up(self.column.cells_up(self.cells), per_cell);
             match self.column.dimensions {
@@ -266,7 +267,7 @@ impl Case {
                 _ => along * self.column.cells_across(self.cells).unwrap_or(1) * per_cell,
             }
         };
-        of_set(self.points_per_cell) + of_set(self.column.points.water_per_cell)
+        of_set(self.points_per_cell) + of_set(water_per_cell)
     }
 
     /// Whether some motion moves skeleton and water together, so that no drag damps it: what limits semi-implicit steps.

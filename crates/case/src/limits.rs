@@ -77,7 +77,7 @@ impl<'a> Choices<'a> {
     }
 
     /// Time steps, integrators and formulations that a case cannot have.
-    fn refusals_of_scheme(&self) -> [Option<Refusal>; 5] {
+    fn refusals_of_scheme(&self) -> [Option<Refusal>; 6] {
         let Case { scene, integrator, formulation, settings, .. } = self.case;
         let no_inertia = scene.needs_inertia() && *formulation == Formulation::QuasiStatic;
         [
@@ -85,6 +85,12 @@ impl<'a> Choices<'a> {
             refusal(
                 "integrator",
                 scene.refuses_integrator(*integrator),
+                "take `integrator = [\"explicit\"]`, or leave the key out",
+            ),
+            refusal_if(
+                "integrator",
+                self.case.task == Task::Stability && !self.is_explicit,
+                "the critical step is searched with explicit steps",
                 "take `integrator = [\"explicit\"]`, or leave the key out",
             ),
             refusal(
@@ -358,6 +364,7 @@ mod tests {
 25 cells: an odd number of cells under a footing: half of it is solved, and its middle lies on a node: take an even number
 26 plate_width: the layer ends under the footing: half of the footing lies on it: make `length` more than half of `plate_width`: 2.5 times `plate_width` is enough
 28 method: the composite gradient between domain ends has no volume of its own: total stress needs one: take another method, or `undrained = "two-phase"`
+31 integrator: the critical step is searched with explicit steps: take `integrator = ["explicit"]`, or leave the key out
 "#;
 
     #[test]
@@ -379,7 +386,7 @@ mod tests {
         };
         let two_phase: Change = |case| case.column.footing.undrained = Undrained::TwoPhase;
         let unequal: Change = |case| (case.column.points.alternating, case.column.dimensions) = (true, 2);
-        let table: [(SceneKind, &str, Change); 31] = [
+        let table: [(SceneKind, &str, Change); 32] = [
             (Terzaghi, "GIMP", attached),
             (XieLeo, "GIMP", affine),
             (XieLeo, "GIMP", slopes),
@@ -411,6 +418,10 @@ mod tests {
             (Footing, "CE-SRI-patch", |_| {}),
             (Footing, "CE-SRI-patch", two_phase),
             (Footing, "GC-SRI-patch", |_| {}),
+            (Terzaghi, "GIMP", |case| {
+                implicitly(case, QuasiStatic);
+                case.task = Task::Stability;
+            }),
         ];
         let mut listed = "\n".to_owned();
         for (place, (scene, method, change)) in table.into_iter().enumerate() {
@@ -454,6 +465,12 @@ mod tests {
         // Explicit steps show that two alike sets are one; unequal ones are a choice of their own.
         let explicit = Case { column: idle.column.clone(), ..seed(IntegratorKind::Explicit) };
         assert!(explicit.without_idle_choices().column.points.has_two_sets());
+        idle.column.points.water_per_cell = idle.points_per_cell;
+        let explicit = Case { column: idle.column.clone(), ..explicit };
+        assert_eq!(
+            [&idle, &explicit].map(Case::expected_points),
+            [1, 2].map(|sets| sets * plain.expected_points())
+        );
         idle.column.points.water_per_cell = idle.points_per_cell + 1;
         assert_eq!(idle.refusals().map(|refusal| refusal.key).collect::<Vec<_>>(), ["sets"]);
     }
