@@ -28,8 +28,8 @@ static KNOWN: LazyLock<Mutex<HashMap<Key, Limit>>> = LazyLock::new(Mutex::defaul
 const FEW_STEPS: usize = 4;
 
 /// The key of a search from a safe step, s: what becomes of a disturbance of all wavelengths, which two operators share only
-/// where they are the same. Stiffness, drag and inertia each act in their own way on a step of one size, which so tells what
-/// steps of other sizes do.
+/// where they are the same. Steps of one size are enough: their result depends on stiffness, drag and inertia, and these
+/// determine steps of any other size.
 pub(super) fn key_of<const D: usize>(
     step: &AssembledStep<D>,
     settings: &ExplicitSettings,

@@ -5,7 +5,7 @@ use crate::integrate::critical_step::formula::skeleton_limit;
 use crate::kernel::body::{Body, Problem};
 use crate::kernel::volumetric::VolumetricRows;
 
-/// Sharpenings of the bound: a mode of one node beside a smooth one is found in a few.
+/// Iterations that sharpen the bound: a mode of one node beside a smooth one is found in a few.
 const SHARPENINGS: usize = 64;
 
 /// A free component of a node: what resists its motion.
@@ -28,10 +28,10 @@ impl Component {
     }
 }
 
-/// Limit, s, of semi-implicit steps of a problem, a lower bound.
+/// Largest semi-implicit step, s, under which the explicit stresses of a problem make no mode grow.
 ///
 /// The formula (docs/theory.md, Eq. 45) with the masses, the drag and the stiffness of each node in place of those of a cell.
-/// Of the stiffnesses `Σ_j |K_ij| x_j/x_i` with any positive `x`, that of the least step bounds all modes (Collatz 1942); an
+/// For any positive `x` the stiffness `Σ_j |K_ij| x_j/x_i` that gives the smallest step bounds all modes (Collatz 1942); an
 /// iteration of `x` sharpens the bound.
 pub fn semi_implicit_limit<const D: usize>(problem: &Problem<D>) -> f64 {
     let body = Body::new(Problem { forcing: None, ..problem.clone() });
