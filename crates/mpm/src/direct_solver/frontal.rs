@@ -18,7 +18,12 @@ use nalgebra::DMatrix;
 pub struct FrontalLu {
     root: Front,
     threads: usize,
+    threads_of_solution: usize,
 }
+
+/// Numbers of the factors from which on a solution reads them faster on two threads: to start one takes as long as to read
+/// some hundred thousand.
+const NUMBERS_FOR_THREADS: usize = 1 << 19;
 
 /// Unknowns that are eliminated together, after those of the fronts below.
 #[derive(Clone, Debug)]
@@ -57,7 +62,8 @@ impl FrontalLu {
             place[*unknown] = number;
         }
         let (root, _) = Front::connected(root, shape, &order, &place);
-        Self { root, threads }
+        let is_large = root.numbers() >= NUMBERS_FOR_THREADS;
+        Self { root, threads, threads_of_solution: if is_large { threads } else { 1 } }
     }
 
     /// Factors a matrix of the pattern, unless the time ends first.
@@ -68,10 +74,10 @@ impl FrontalLu {
         self.root.factor(matrix.entries(), time_limit, self.threads).map(|_| ())
     }
 
-    /// Replaces a right-hand side by the solution; nothing is allocated.
+    /// Replaces a right-hand side by the solution; on one thread nothing is allocated.
     pub fn solve(&mut self, values: &mut [f64]) {
-        self.root.go_forward(values);
-        self.root.go_back(&[]);
+        self.root.go_forward(values, self.threads_of_solution);
+        self.root.go_back(&[], self.threads_of_solution);
         self.root.put(values);
     }
 }
@@ -125,6 +131,24 @@ impl Front {
         (front, boundary)
     }
 
+    /// Room for numbers of the factors, its own and those of the fronts below.
+    fn numbers(&self) -> usize {
+        self.panels.numbers() + self.children.iter().map(Self::numbers).sum::<usize>()
+    }
+
+    /// Does the same on each of the fronts below, side by side where there is more than one thread; the results in the order
+    /// of the fronts.
+    fn on_children<T: Send>(&mut self, threads: usize, task: impl Fn(&mut Self, usize) -> T + Sync) -> Vec<T> {
+        match &mut self.children[..] {
+            [low, high] if threads > 1 => std::thread::scope(|scope| {
+                let high = scope.spawn(|| task(high, threads / 2));
+                let low = task(low, threads.div_ceil(2));
+                vec![low, high.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
+            }),
+            children => children.iter_mut().map(|child| task(child, 1)).collect(),
+        }
+    }
+
     /// Factors the fronts below and this one, by so many threads; the Schur complement of its boundary.
     ///
     /// # Errors
@@ -135,23 +159,12 @@ impl Front {
         time_limit: TimeLimit,
         threads: usize,
     ) -> Result<DMatrix<f64>, Singular> {
-        let left = match &mut self.children[..] {
-            [low, high] if threads > 1 => {
-                let (low, high) = std::thread::scope(|scope| {
-                    let high = scope.spawn(|| high.factor(entries, time_limit, threads / 2));
-                    (low.factor(entries, time_limit, threads.div_ceil(2)), high.join())
-                });
-                vec![low?, high.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?]
-            }
-            children => {
-                let factored = children.iter_mut().map(|child| child.factor(entries, time_limit, 1));
-                factored.collect::<Result<_, _>>()?
-            }
-        };
+        let factored = self.on_children(threads, |child, threads| child.factor(entries, time_limit, threads));
+        let schur_complements = factored.into_iter().collect::<Result<_, _>>()?;
         if time_limit.is_over() {
             return Err(Singular { row: self.unknowns.first().copied().unwrap_or(0) });
         }
-        let mut dense = self.gather(entries, left);
+        let mut dense = self.gather(entries, schur_complements);
         self.eliminate(&mut dense)?;
         self.panels.take(&dense.left, &dense.right);
         Ok(dense.rest)
@@ -211,8 +224,8 @@ impl Front {
     }
 
     /// `L⁻¹ b`, into the values of the fronts.
-    fn go_forward(&mut self, right: &[f64]) {
-        self.children.iter_mut().for_each(|child| child.go_forward(right));
+    fn go_forward(&mut self, right: &[f64], threads: usize) {
+        self.on_children(threads, |child, threads| child.go_forward(right, threads));
         let (eliminated, boundary) = self.values.split_at_mut(self.unknowns.len());
         for (value, unknown) in eliminated.iter_mut().zip(&self.unknowns) {
             *value = right[*unknown];
@@ -228,14 +241,14 @@ impl Front {
     }
 
     /// `U⁻¹ b` of the values of the fronts, by those of the front above.
-    fn go_back(&mut self, above: &[f64]) {
+    fn go_back(&mut self, above: &[f64], threads: usize) {
         for (value, row) in self.values[self.unknowns.len()..].iter_mut().zip(&self.in_parent) {
             *value = above[*row];
         }
         self.panels.go_up(&mut self.values);
-        for child in self.children.iter_mut().rev() {
-            child.go_back(&self.values);
-        }
+        let above = std::mem::take(&mut self.values);
+        self.on_children(threads, |child, threads| child.go_back(&above, threads));
+        self.values = above;
     }
 
     /// Puts the values of the fronts to their unknowns.

@@ -48,6 +48,11 @@ impl Panels {
         Self { count, height, lower, upper, triangles }
     }
 
+    /// Room for numbers of `L` and `U` beside the triangles.
+    pub fn numbers(&self) -> usize {
+        WIDTH * (self.lower.capacity() + self.upper.capacity())
+    }
+
     /// Takes the factors of a front: `left`, `[count + boundary][count]`, holds `L` below its diagonal and `U` on and above
     /// it; `right`, `[count][boundary]`, the rest of `U`.
     pub fn take(&mut self, left: &DMatrix<f64>, right: &DMatrix<f64>) {

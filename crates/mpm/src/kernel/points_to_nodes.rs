@@ -4,14 +4,14 @@
 
 use crate::drag::drag_of_point;
 use crate::kernel::body::Body;
-use crate::operators::basis::{ShapeFunction, rows_in, with_shape};
+use crate::operators::basis::{ShapeFunction, build_blocks, with_shape};
 use crate::operators::corners::build_corners;
-use crate::operators::stencil::{Block, Line, Run, Stencil, Stencils, with_stencils};
+use crate::operators::stencil::{Line, Run, Stencil, Stencils, with_stencils};
 use crate::state::cells::Locating;
 use crate::state::grid::Grid;
 use crate::state::nodes::{NodalSums, Support};
 use crate::state::points::Points;
-use crate::wide::{LANES, are_alike, some_of, wide};
+use crate::wide::{LANES, are_alike, some_mut, some_of, wide};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
@@ -160,12 +160,12 @@ impl<const D: usize, const W: usize> Building<'_, D, W> {
         let shares = self.giving.shares::<N, true>(first);
         let (positions, volumes) = (some_of(self.positions, first), [&shares.grains, &shares.pores]);
         let (cells, places) = self.cells.locate::<N>(self.grid, first, positions, volumes);
-        let domains = [&places, some_of(self.half_lengths, first)];
-        let rows = rows_in::<D, W, N, S>(self.grid, self.support, domains, &cells);
+        let domains = [&places, some_of(self.half_lengths, first), &cells];
+        let (lowest, lines) = (some_mut(self.blocks.0, first), some_mut(self.blocks.1, first));
+        build_blocks::<D, W, N, S>(self.grid, self.support, domains, (lowest, lines));
         for p in 0..N {
-            let (point, block) = (first + p, Block::new(self.grid, &rows[p]));
-            (self.blocks.0[point], self.blocks.1[point]) = (block.first, block.lines);
-            self.sums.add(block.stencil(), &self.giving.given::<N, true, true, true>(first, p, &shares));
+            let given = self.giving.given::<N, true, true, true>(first, p, &shares);
+            self.sums.add(Stencil::of_block(&lowest[p], &lines[p]), &given);
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::method::Basis;
 use crate::operators::row::Row;
-use crate::operators::stencil::{PointStencils, Stencils};
+use crate::operators::stencil::{Line, PointStencils, Stencils};
 use crate::state::grid::{GHOST_LAYERS, Grid, integer_part, power};
 use crate::state::nodes::Support;
 use crate::wide::wide;
@@ -18,8 +18,16 @@ pub trait ShapeFunction<const W: usize> {
     /// Whether nodes beyond a wall would have a share in what is inside it.
     const PASSES_WALLS: bool = false;
 
-    /// Row at a place in a cell, for a point with a domain of a half-length, both in cells.
-    fn row(place: f64, cell: usize, half_length: f64) -> Row<W>;
+    /// Lowest node, and values and gradients (1/cell) of the nodes from there on, at a place in a cell, for a point with a
+    /// domain of a half-length, all in cells. Cell and node are whole numbers of the kind that wide registers hold.
+    fn nodes(place: f64, cell: f64, half_length: f64) -> (f64, [[f64; W]; 2]);
+
+    /// The same as a row.
+    #[inline(always)]
+    fn row(place: f64, cell: usize, half_length: f64) -> Row<W> {
+        let (first, [values, gradients]) = Self::nodes(place, cell as f64, half_length);
+        Row { first: integer_part(first), values, gradients }
+    }
 }
 
 /// Evaluates an expression with the shape function of a [`Basis`] and with [`Stencils`] of its width, under names.
@@ -135,54 +143,62 @@ fn build<const D: usize, const W: usize, S: ShapeFunction<W>>(
 
 /// Rows of a basis at a place (in cells), for a domain of half-lengths (m), without nodes beyond held faces:
 /// `[direction]`.
-#[inline(always)]
 fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
     place: &Vector<D>,
     half_length: &Vector<D>,
 ) -> [Row<W>; D] {
-    let [rows] = rows_in::<D, W, 1, S>(grid, support, [&[*place], &[*half_length]], &[grid.cell_at(place)]);
-    rows
+    let (cell, per_cell) = (grid.cell_at(place), grid.inverse_cell_size());
+    std::array::from_fn(|d| {
+        let row = S::row(place[d], cell[d], half_length[d] * per_cell);
+        if S::PASSES_WALLS { folded(support, grid, d, row) } else { row }
+    })
 }
 
-/// The same of `N` points, whose places, half-lengths and indices of cells are known, `[point][direction]`.
+/// Lowest nodes and lines of `N` points at places (in cells) with half-lengths (m) of their domains and with their cells,
+/// whole numbers, `[point][direction]`; without nodes beyond held faces.
 #[inline(always)]
-pub(crate) fn rows_in<const D: usize, const W: usize, const N: usize, S: ShapeFunction<W>>(
+pub(crate) fn build_blocks<const D: usize, const W: usize, const N: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
-    [places, half_lengths]: [&[Vector<D>; N]; 2],
-    cells: &[[usize; D]; N],
-) -> [[Row<W>; D]; N] {
-    let per_cell = grid.inverse_cell_size();
+    [places, half_lengths, cells]: [&[Vector<D>; N]; 3],
+    blocks: (&mut [usize; N], &mut [[Line<W>; D]; N]),
+) {
+    let (per_cell, stride) = (grid.inverse_cell_size(), grid.node_stride().map(|stride| stride as f64));
     // `[node][point][direction]`: every line of a shape function is a loop over points and directions.
-    let mut first = [[0; D]; N];
+    let mut lowest = [0.0; N];
     let [mut values, mut gradients] = [[[[0.0; D]; N]; W]; 2];
     for p in 0..N {
         for d in 0..D {
-            let row = S::row(places[p][d], cells[p][d], half_lengths[p][d] * per_cell);
-            let row = if S::PASSES_WALLS { folded(support, grid, d, row) } else { row };
-            first[p][d] = row.first;
+            let half_length = half_lengths[p][d] * per_cell;
+            let (first, mut lines) = S::nodes(places[p][d], cells[p][d], half_length);
+            if S::PASSES_WALLS {
+                let row = Row { first: integer_part(first), values: lines[0], gradients: lines[1] };
+                let row = folded(support, grid, d, row);
+                lines = [row.values, row.gradients];
+            }
+            lowest[p] += first * stride[d];
             for k in 0..W {
-                (values[k][p][d], gradients[k][p][d]) = (row.values[k], row.gradients[k]);
+                (values[k][p][d], gradients[k][p][d]) = (lines[0][k], lines[1][k] * per_cell);
             }
         }
     }
+    let mut rows = (lowest, values, gradients);
     if N > 1 {
         // In memory point beside point: otherwise the compiler works row by row.
-        (values, gradients) = black_box((values, gradients));
+        black_box(&mut rows);
     }
-    let mut rows = [[Row { first: 0, values: [0.0; W], gradients: [0.0; W] }; D]; N];
+    let (lowest, values, gradients) = &rows;
     for p in 0..N {
+        blocks.0[p] = integer_part(lowest[p]);
         for d in 0..D {
-            let row = &mut rows[p][d];
-            row.first = first[p][d];
             for k in 0..W {
-                (row.values[k], row.gradients[k]) = (values[k][p][d], gradients[k][p][d]);
+                let line = &mut blocks.1[p][d];
+                (line.values[k], line.gradients[k]) = (values[k][p][d], gradients[k][p][d]);
             }
         }
     }
-    rows
 }
 
 /// A row along a direction without nodes beyond held faces, nor far beyond a free surface: those
@@ -230,14 +246,10 @@ fn positive_part(x: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// The row of three nodes from the values and gradients of the outer two: the middle one has what is left.
+/// Values and gradients of three nodes from those of the outer two: the middle one has what is left.
 #[inline(always)]
-fn about_middle(first: usize, [left, right]: [f64; 2], [left_slope, right_slope]: [f64; 2]) -> Row<3> {
-    Row {
-        first,
-        values: [left, 1.0 - left - right, right],
-        gradients: [left_slope, -left_slope - right_slope, right_slope],
-    }
+fn about_middle([left, right]: [f64; 2], [left_slope, right_slope]: [f64; 2]) -> [[f64; 3]; 2] {
+    [[left, 1.0 - left - right, right], [left_slope, -left_slope - right_slope, right_slope]]
 }
 
 /// Piecewise linear hat functions (Sulsky, Chen & Schreyer 1994).
@@ -246,9 +258,9 @@ pub struct Hat;
 
 impl ShapeFunction<2> for Hat {
     #[inline(always)]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<2> {
-        let upper = place - cell as f64;
-        Row { first: cell, values: [1.0 - upper, upper], gradients: [-1.0, 1.0] }
+    fn nodes(place: f64, cell: f64, _half_length: f64) -> (f64, [[f64; 2]; 2]) {
+        let upper = place - cell;
+        (cell, [[1.0 - upper, upper], [-1.0, 1.0]])
     }
 }
 
@@ -262,10 +274,10 @@ pub struct Gimp;
 
 impl ShapeFunction<3> for Gimp {
     #[inline(always)]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
-        let nearest = integer_part(place + 0.5);
+    fn nodes(place: f64, _cell: f64, half_length: f64) -> (f64, [[f64; 3]; 2]) {
+        let nearest = (place + 0.5).floor();
         let half_length = half_length.min(0.5);
-        let offset = place - nearest as f64;
+        let offset = place - nearest;
         let (low, high) = (offset - half_length, offset + half_length);
         let per_length = 0.5 / half_length;
         let (left_near, left_far) = (positive_part(-high), positive_part(-low));
@@ -273,7 +285,7 @@ impl ShapeFunction<3> for Gimp {
         let left = 0.5 * per_length * (left_far * left_far - left_near * left_near);
         let right = 0.5 * per_length * (right_far * right_far - right_near * right_near);
         let slopes = [-per_length * (left_far - left_near), per_length * (right_far - right_near)];
-        about_middle(nearest - 1, [left, right], slopes)
+        (nearest - 1.0, about_middle([left, right], slopes))
     }
 }
 
@@ -287,20 +299,18 @@ pub struct DomainEnds;
 
 impl ShapeFunction<3> for DomainEnds {
     #[inline(always)]
-    fn row(place: f64, _cell: usize, half_length: f64) -> Row<3> {
+    fn nodes(place: f64, _cell: f64, half_length: f64) -> (f64, [[f64; 3]; 2]) {
         let half_length = half_length.min(0.5);
         let (low, high) = (place - half_length, place + half_length);
-        let first = integer_part(low);
-        let middle = (first + 1) as f64;
+        let first = low.floor();
+        let middle = first + 1.0;
         // The end below the middle node weighs in on its left, the one above on its right.
         let at = |end: f64| [positive_part(middle - end), positive_part(end - middle)];
         let ([low_left, low_right], [high_left, high_right]) = (at(low), at(high));
         let per_length = 0.5 / half_length;
-        about_middle(
-            first,
-            [0.5 * (low_left + high_left), 0.5 * (low_right + high_right)],
-            [per_length * (high_left - low_left), per_length * (high_right - low_right)],
-        )
+        let values = [0.5 * (low_left + high_left), 0.5 * (low_right + high_right)];
+        let slopes = [per_length * (high_left - low_left), per_length * (high_right - low_right)];
+        (first, about_middle(values, slopes))
     }
 }
 
@@ -312,11 +322,11 @@ impl ShapeFunction<3> for QuadraticSpline {
     const PASSES_WALLS: bool = true;
 
     #[inline(always)]
-    fn row(place: f64, _cell: usize, _half_length: f64) -> Row<3> {
-        let nearest = integer_part(place + 0.5);
-        let x = place - nearest as f64;
+    fn nodes(place: f64, _cell: f64, _half_length: f64) -> (f64, [[f64; 3]; 2]) {
+        let nearest = (place + 0.5).floor();
+        let x = place - nearest;
         let (left, right) = (0.5 * (0.5 - x) * (0.5 - x), 0.5 * (0.5 + x) * (0.5 + x));
-        about_middle(nearest - 1, [left, right], [x - 0.5, x + 0.5])
+        (nearest - 1.0, about_middle([left, right], [x - 0.5, x + 0.5]))
     }
 }
 
@@ -328,17 +338,14 @@ impl ShapeFunction<4> for CubicSpline {
     const PASSES_WALLS: bool = true;
 
     #[inline(always)]
-    fn row(place: f64, cell: usize, _half_length: f64) -> Row<4> {
-        let x = place - cell as f64;
+    fn nodes(place: f64, cell: f64, _half_length: f64) -> (f64, [[f64; 4]; 2]) {
+        let x = place - cell;
         let y = 1.0 - x;
         let (outer_left, outer_right) = (y * y * y / 6.0, x * x * x / 6.0);
         let left = 2.0 / 3.0 - x * x * (1.0 - 0.5 * x);
         let (left_slope, right_slope) = (-2.0 * x + 1.5 * x * x, 2.0 * y - 1.5 * y * y);
-        Row {
-            first: cell - 1,
-            values: [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right],
-            gradients: [-0.5 * y * y, left_slope, right_slope, 0.5 * x * x],
-        }
+        let values = [outer_left, left, 1.0 - outer_left - left - outer_right, outer_right];
+        (cell - 1.0, [values, [-0.5 * y * y, left_slope, right_slope, 0.5 * x * x]])
     }
 }
 

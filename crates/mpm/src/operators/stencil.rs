@@ -8,15 +8,17 @@
 
 use crate::operators::row::Row;
 use crate::state::grid::{Grid, power};
-use crate::wide::wide;
+use crate::wide::{some_mut, wide};
 use oedometer_soil::tensor::{Tensor, Vector};
 use std::hint::black_box;
 
 /// Values of a point's shape functions along one direction and their gradients, 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<const W: usize> {
-    values: [f64; W],
-    gradients: [f64; W],
+    /// Values.
+    pub values: [f64; W],
+    /// Gradients, 1/m.
+    pub gradients: [f64; W],
 }
 
 /// Shape functions of every point over a block of `W` nodes in each direction.
@@ -93,12 +95,13 @@ impl<const D: usize, const W: usize> Run<D, W> {
                 *number *= self.across[d];
             }
         }
-        for (k, node) in sums[self.first..self.first + W].iter_mut().enumerate() {
+        let nodes = some_mut::<_, W>(sums, self.first);
+        for k in 0..W {
             for d in 0..D {
                 let along = if d == 0 { self.gradients[k] } else { self.values[k] };
                 for i in 0..N {
                     for j in 0..D {
-                        node[i][j] += along * scaled[d][i][j];
+                        nodes[k][i][j] += along * scaled[d][i][j];
                     }
                 }
             }
@@ -203,10 +206,7 @@ impl<'a, const D: usize, const W: usize> StencilSlices<'a, D, W> {
     #[inline(always)]
     pub fn of_point(&self, point: usize) -> Stencil<'a, D, W> {
         if self.parts == 1 {
-            return Stencil {
-                first: std::slice::from_ref(&self.first[point]),
-                lines: std::slice::from_ref(&self.lines[point]),
-            };
+            return Stencil::of_block(&self.first[point], &self.lines[point]);
         }
         let blocks = point * self.parts..(point + 1) * self.parts;
         Stencil { first: &self.first[blocks.clone()], lines: &self.lines[blocks] }
@@ -226,12 +226,8 @@ impl<const D: usize, const W: usize> Block<D, W> {
     /// The block of one row a direction.
     #[inline(always)]
     pub fn new(grid: &Grid<D>, rows: &[Row<W>; D]) -> Self {
-        let (mut first, mut lines) = (0, [[[0.0; W]; 2]; D]);
-        for d in 0..D {
-            first += rows[d].first * grid.node_stride()[d];
-            lines[d] = [rows[d].values, rows[d].gradients];
-        }
-        Self::from_lines(first, &lines, grid.inverse_cell_size())
+        let first = (0..D).map(|d| rows[d].first * grid.node_stride()[d]).sum();
+        Self::from_lines(first, &rows.map(|row| [row.values, row.gradients]), grid.inverse_cell_size())
     }
 
     /// The block of a lowest node, and of values and gradients, 1/cell, along each direction; `per_cell` in 1/m.
@@ -251,7 +247,7 @@ impl<const D: usize, const W: usize> Block<D, W> {
     /// The shape functions of a point that has this block alone.
     #[inline(always)]
     pub fn stencil(&self) -> Stencil<'_, D, W> {
-        Stencil { first: std::slice::from_ref(&self.first), lines: std::slice::from_ref(&self.lines) }
+        Stencil::of_block(&self.first, &self.lines)
     }
 }
 
@@ -262,7 +258,13 @@ pub struct Stencil<'a, const D: usize, const W: usize> {
     lines: &'a [[Line<W>; D]],
 }
 
-impl<const D: usize, const W: usize> Stencil<'_, D, W> {
+impl<'a, const D: usize, const W: usize> Stencil<'a, D, W> {
+    /// The shape functions of a point that has one block, of a lowest node and one line a direction.
+    #[inline(always)]
+    pub fn of_block(first: &'a usize, lines: &'a [Line<W>; D]) -> Self {
+        Self { first: std::slice::from_ref(first), lines: std::slice::from_ref(lines) }
+    }
+
     /// Visits the nodes of the point run by run, except runs on which all is zero.
     #[inline(always)]
     pub fn visit_runs(self, stride: &[usize; D], mut visitor: impl FnMut(&Run<D, W>)) {

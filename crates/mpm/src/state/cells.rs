@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
-use crate::state::grid::{GHOST_LAYERS, Grid};
+use crate::state::grid::{GHOST_LAYERS, Grid, integer_part};
 use crate::state::points::Points;
 use crate::wide::{some_mut, wide};
 use oedometer_soil::material::Material;
@@ -27,14 +27,18 @@ pub struct Cells<const D: usize> {
     divergence_node: Vec<usize>,
     /// Whether each cell holds a point.
     holds: Vec<bool>,
-    /// Whether a point's domain reaches into each cell.
+    /// Whether a point's domain reaches into each cell, and whether one did when the sides below were listed.
     reached: Vec<bool>,
+    reached_before: Vec<bool>,
     /// Whether a point's domain reaches into the lower and the upper neighbour of each occupied cell along each direction.
     reached_sides: Vec<[[bool; 2]; D]>,
     /// Whether a neighbour of each occupied cell holds no point, where there is more than one cell in that direction.
     is_at_edge: Vec<bool>,
-    /// Occupied cells in index order.
+    /// Occupied cells in index order, and how many times they have changed.
     occupied: Vec<usize>,
+    changes: usize,
+    /// The change of the occupied cells that the sides and edges above belong to.
+    listed_change: usize,
     /// Current volume of each cell's points, m^D.
     volume: Vec<f64>,
     /// Volume-weighted mean porosity of each occupied cell's points.
@@ -60,9 +64,12 @@ impl<const D: usize> Cells<D> {
             first_node,
             holds: vec![false; count],
             reached: vec![false; count],
+            reached_before: vec![false; count],
             reached_sides: vec![[[false; 2]; D]; count],
             is_at_edge: vec![false; count],
             occupied: Vec::with_capacity(count),
+            changes: 0,
+            listed_change: 0,
             volume: vec![0.0; count],
             porosity: vec![0.0; count],
             storage: Vec::new(),
@@ -104,11 +111,22 @@ impl<const D: usize> Cells<D> {
         self.take_means(points, soils);
     }
 
-    /// Lists the cells that hold points.
+    /// Lists the cells that hold points, which most steps leave as they were.
     fn list_occupied(&mut self) {
+        let count = self.holds.iter().filter(|holds| **holds).count();
+        if count == self.occupied.len() && self.occupied.iter().all(|cell| self.holds[*cell]) {
+            return;
+        }
         let holding = self.holds.iter().enumerate();
         self.occupied.clear();
         self.occupied.extend(holding.filter(|(_, holds)| **holds).map(|(cell, _)| cell));
+        self.changes += 1;
+    }
+
+    /// How many times the occupied cells have changed: what is made of them alone stands until the next change.
+    #[inline]
+    pub fn changes(&self) -> usize {
+        self.changes
     }
 
     /// Finds the cells of other points among those that `holders` knows to hold the material, but for some that are
@@ -134,8 +152,7 @@ impl<const D: usize> Cells<D> {
         let down = grid.cell_stride()[D - 1];
         for (point, position) in positions.iter().enumerate() {
             let place = grid.held_in_cells(position);
-            let index = grid.cell_at(&place);
-            let home = grid.flat_cell(&index);
+            let home = grid.flat_cell(&grid.cell_at(&place));
             let mut cell = home;
             while !self.is_occupied(cell) && cell >= down {
                 cell -= down;
@@ -143,7 +160,7 @@ impl<const D: usize> Cells<D> {
             let cell = if self.is_occupied(cell) { cell } else { home };
             self.place[point] = place;
             self.of_point[point] = cell;
-            self.within[point] = grid.within_cell(&index, &place);
+            self.within[point] = grid.within_cell(&grid.whole_cell_at(&place), &place);
             self.within[point][D - 1] += ((home - cell) / down) as f64;
         }
         self.list_occupied();
@@ -198,13 +215,14 @@ impl<const D: usize> Cells<D> {
     /// Finds the cells that the points' domains reach into: a cell may have lost its last point and
     /// still carry the edge of the material.
     pub fn find_reached(&mut self, grid: &Grid<D>, points: &Points<D>) {
-        self.reached.clone_from(&self.holds);
-        self.look_at_sides(grid);
-        for &cell in &self.occupied {
-            let sides = &self.reached_sides[cell];
-            self.is_at_edge[cell] = (0..D).any(|d| grid.cells[d] > 1 && sides[d] != [true; 2]);
+        let has_changed = self.listed_change != self.changes;
+        if has_changed {
+            self.find_edges(grid);
+            self.listed_change = self.changes;
         }
-        let (per_cell, mut reaches_others) = (grid.inverse_cell_size(), false);
+        std::mem::swap(&mut self.reached, &mut self.reached_before);
+        self.reached.clone_from(&self.holds);
+        let per_cell = grid.inverse_cell_size();
         for (point, home) in self.of_point.iter().enumerate() {
             if !self.is_at_edge[*home] {
                 continue;
@@ -219,24 +237,28 @@ impl<const D: usize> Cells<D> {
                 let reach = points.half_length[point][d] * per_cell - LEAST_REACH;
                 let inside = self.place[point][d] - cell as f64;
                 if inside < reach && cell > GHOST_LAYERS {
-                    (self.reached[home - stride], reaches_others) = (true, true);
+                    self.reached[home - stride] = true;
                 }
                 if inside + reach >= 1.0 && cell + 1 < grid.cells[d] + GHOST_LAYERS {
-                    (self.reached[home + stride], reaches_others) = (true, true);
+                    self.reached[home + stride] = true;
                 }
             }
         }
-        if reaches_others {
-            self.look_at_sides(grid);
+        if has_changed || self.reached != self.reached_before {
+            for &cell in &self.occupied {
+                let sides = |stride| [self.reached[cell - stride], self.reached[cell + stride]];
+                self.reached_sides[cell] = grid.cell_stride().map(sides);
+            }
         }
     }
 
-    /// Takes note of which neighbours of the occupied cells are reached.
-    fn look_at_sides(&mut self, grid: &Grid<D>) {
-        let stride = grid.cell_stride();
+    /// Finds which of the occupied cells are at an edge.
+    fn find_edges(&mut self, grid: &Grid<D>) {
         for &cell in &self.occupied {
-            self.reached_sides[cell] =
-                stride.map(|stride| [self.reached[cell - stride], self.reached[cell + stride]]);
+            self.is_at_edge[cell] = (0..D).any(|d| {
+                let stride = grid.cell_stride()[d];
+                grid.cells[d] > 1 && !(self.holds[cell - stride] && self.holds[cell + stride])
+            });
         }
     }
 
@@ -372,7 +394,7 @@ pub(crate) struct Locating<'a, const D: usize> {
 
 impl<const D: usize> Locating<'_, D> {
     /// Finds the cells of `N` neighbours from one on at their positions, m, and adds their volumes of grains and pores,
-    /// m^D. The indices of the cells and the places in cells.
+    /// m^D. The indices of the cells, whole numbers, and the places in cells.
     #[inline(always)]
     pub fn locate<const N: usize>(
         &mut self,
@@ -380,22 +402,35 @@ impl<const D: usize> Locating<'_, D> {
         first: usize,
         positions: &[Vector<D>; N],
         [grains, pores]: [&[f64; N]; 2],
-    ) -> ([[usize; D]; N], [Vector<D>; N]) {
-        let (mut indices, mut places, mut within) = ([[0; D]; N], *positions, *positions);
+    ) -> ([Vector<D>; N], [Vector<D>; N]) {
+        let stride = grid.cell_stride().map(|stride| stride as f64);
+        let ([mut indices, mut places, mut within], mut numbers) = ([*positions; 3], [0.0; N]);
         for p in 0..N {
             places[p] = grid.held_in_cells(&positions[p]);
-            indices[p] = grid.cell_at(&places[p]);
+            indices[p] = grid.whole_cell_at(&places[p]);
             within[p] = grid.within_cell(&indices[p], &places[p]);
+            for d in 0..D {
+                numbers[p] += indices[p][d] * stride[d];
+            }
         }
         *some_mut(self.place, first) = places;
         *some_mut(self.within, first) = within;
         let cells = some_mut::<_, N>(self.cells, first);
         for p in 0..N {
-            let cell = grid.flat_cell(&indices[p]);
-            cells[p] = cell;
+            cells[p] = integer_part(numbers[p]);
+        }
+        // Neighbours are in one cell, or in few: its sums stay in registers from one to the next.
+        let mut p = 0;
+        while p < N {
+            let cell = cells[p];
+            let (mut volume, mut pore_volume) = (self.volume[cell], self.pore_volume[cell]);
+            while p < N && cells[p] == cell {
+                volume += grains[p] + pores[p];
+                pore_volume += pores[p];
+                p += 1;
+            }
             self.holds[cell] = true;
-            self.volume[cell] += grains[p] + pores[p];
-            self.pore_volume[cell] += pores[p];
+            (self.volume[cell], self.pore_volume[cell]) = (volume, pore_volume);
         }
         (indices, places)
     }

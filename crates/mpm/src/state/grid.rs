@@ -127,19 +127,26 @@ impl<const D: usize> Grid<D> {
     /// belongs to the last cell.
     #[inline]
     pub fn cell_at(&self, held_in_cells: &Vector<D>) -> [usize; D] {
-        let mut cell = [0; D];
+        self.whole_cell_at(held_in_cells).map(integer_part)
+    }
+
+    /// That index as whole numbers of the kind that wide registers hold.
+    #[inline]
+    pub fn whole_cell_at(&self, held_in_cells: &Vector<D>) -> Vector<D> {
+        let mut cell = *held_in_cells;
         for d in 0..D {
-            cell[d] = cell_below(held_in_cells[d]).min(self.cells[d] + GHOST_LAYERS - 1);
+            let last = (self.cells[d] + GHOST_LAYERS - 1) as f64;
+            cell[d] = (held_in_cells[d] + FACE_TOLERANCE).floor().min(last);
         }
         cell
     }
 
-    /// Place in a cell of an index, from its lowest corner, of a place in cells.
+    /// Place in a cell of an index, a whole number a direction, from its lowest corner, of a place in cells.
     #[inline]
-    pub fn within_cell(&self, index: &[usize; D], place: &Vector<D>) -> Vector<D> {
+    pub fn within_cell(&self, index: &Vector<D>, place: &Vector<D>) -> Vector<D> {
         let mut within = *place;
         for d in 0..D {
-            within[d] -= index[d] as f64;
+            within[d] -= index[d];
         }
         within
     }

@@ -1,6 +1,7 @@
 //! Nodal fields: lumped masses, forces, velocities and accelerations of both phases.
 
 use crate::state::grid::Grid;
+use crate::wide::wide;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Vector;
 
@@ -261,17 +262,19 @@ impl<const D: usize> Nodes<D> {
             &mut self.drag,
         ]
         .map(|field| &mut field[..count]);
-        let solid_mass = &self.solid_mass[..count];
-        for &node in &self.active {
+        let (solid_mass, cut_off) = (&self.solid_mass[..count], self.mass_cut_off);
+        // All nodes, without a branch: wide registers divide four times at once.
+        wide!(for node in 0..count {
             let [[grain_volume, pore_volume, resistance, _]] = masses[node];
+            let of_active = |value: f64| if solid_mass[node] > cut_off { value } else { 0.0 };
             let mixture = grain_volume + pore_volume;
-            let share = pore_volume / mixture;
-            water_mass[node] = soil.water_density * pore_volume;
-            per_solid_mass[node] = 1.0 / solid_mass[node];
-            per_water_mass[node] = 1.0 / water_mass[node];
-            (volume[node], porosity[node]) = (mixture, share);
-            drag[node] = if is_layered { share * resistance } else { resistance };
-        }
+            let (share, mass) = (pore_volume / mixture, soil.water_density * pore_volume);
+            water_mass[node] = of_active(mass);
+            per_solid_mass[node] = of_active(1.0 / solid_mass[node]);
+            per_water_mass[node] = of_active(1.0 / mass);
+            (volume[node], porosity[node]) = (of_active(mixture), of_active(share));
+            drag[node] = of_active(if is_layered { share * resistance } else { resistance });
+        });
     }
 
     /// Takes the masses of the grains, lists the nodes that have some, and silences those that have lost theirs.

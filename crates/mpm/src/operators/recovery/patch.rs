@@ -26,6 +26,8 @@ pub struct PatchRows<const D: usize> {
     /// Which neighbours of each occupied cell are occupied, lower and upper a direction, where the occupied cells of
     /// its patch fill a rectangle.
     sides: Vec<Option<[[bool; 2]; D]>>,
+    /// The change of the occupied cells that the sides belong to.
+    listed_change: usize,
     /// Whether the rows above are of the points' places; elsewhere each is made where it is taken.
     is_stored: bool,
 }
@@ -37,6 +39,7 @@ impl<const D: usize> PatchRows<D> {
             first: vec![0; points],
             shares: vec![[0.0; MOST_CELLS]; points],
             sides: vec![None; grid.cell_count()],
+            listed_change: 0,
             is_stored: false,
         }
     }
@@ -57,8 +60,11 @@ impl<const D: usize> PatchRows<D> {
 
     /// Takes note of the occupied cells: rows are made of the points' places where they are taken.
     pub fn look_around(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
-        for cell in cells.occupied() {
-            self.sides[cell] = sides_of(grid, cells, cell);
+        if self.listed_change != cells.changes() {
+            for cell in cells.occupied() {
+                self.sides[cell] = sides_of(grid, cells, cell);
+            }
+            self.listed_change = cells.changes();
         }
         self.is_stored = false;
     }
