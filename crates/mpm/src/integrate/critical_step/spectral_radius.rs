@@ -110,7 +110,7 @@ pub fn growth<const D: usize>(step: &AssembledStep<D>, dt: f64, settings: &Expli
 /// spectral radius between a step known to be safe and multiples of it. None where a mode grows under any step: the
 /// equations in space are unstable then.
 ///
-/// In a plane squaring is expensive. There the limit is where a disturbance of all wavelengths begins to grow within a few
+/// In a plane squaring is expensive. There the limit is where a disturbance of all wavelengths begins to grow within some
 /// hundred steps, and the spectral radius only confirms that nothing grows slowly there: by `growth`, or by a doubling in
 /// 70 000 steps where that is more. A `sharp` limit is searched by the spectral radius beyond it, too.
 pub fn critical_step<const D: usize>(
@@ -131,17 +131,21 @@ pub fn critical_step<const D: usize>(
     let mut limit_by = |steps: usize| {
         bracketed([safe, 2.0, 1e-3], &mut |dt| stays_bounded(&mut disturbed, dt, settings, steps))
     };
-    // Beyond the limit waves grow by several per cent a step: few steps find it, and many confirm it.
+    // Beyond the limit waves grow by several per cent a step: few steps find it. The spectral radius confirms it, or many
+    // steps where that cannot be had.
     let early = limit_by(LOOK_INTERVAL);
+    let (has_radius, most) = (step.unknowns() <= MOST_SQUARED, |dt: f64| {
+        if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) }
+    });
+    let mut is_stable = |dt: f64| is_within(dt, most(dt));
+    if has_radius && !sharp && early.is_some_and(&mut is_stable) {
+        return early;
+    }
     let is_confirmed = |dt: &f64| stays_bounded(&mut step.clone(), *dt, settings, GROWTH_STEPS);
     let soon = early.filter(is_confirmed).or_else(|| limit_by(GROWTH_STEPS));
-    if step.unknowns() > MOST_SQUARED {
-        return soon;
-    }
-    let most = |dt: f64| if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) };
-    let mut is_stable = |dt: f64| is_within(dt, most(dt));
     match soon {
-        Some(soon) if !sharp && is_stable(soon) => Some(soon),
+        _ if !has_radius => soon,
+        Some(dt) if !sharp && soon != early && is_stable(dt) => soon,
         unconfirmed => bracketed([unconfirmed.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
     }
 }

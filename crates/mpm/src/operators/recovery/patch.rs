@@ -153,26 +153,26 @@ struct Fitting<'a, const D: usize> {
 }
 
 impl<const D: usize> Fitting<'_, D> {
-    /// Lines through the cells around each of `N` points from one on along each direction, where the occupied cells fill
-    /// rectangles of one shape; none where there are fewer points.
+    /// Fits lines through the cells around each of `N` points from one on along each direction, where the occupied cells
+    /// fill rectangles of one shape; false elsewhere, and where there are fewer points.
     #[inline(always)]
-    fn lines<const N: usize>(&self, first: usize) -> Option<[LineFit<N>; D]> {
-        let (homes, within) = (self.homes.get(first..first + N)?, &self.within[first..first + N]);
+    fn fit_lines<const N: usize>(&self, first: usize, lines: &mut [LineFit<N>; D]) -> bool {
+        let Some(homes) = self.homes.get(first..first + N) else { return false };
+        let within = &self.within[first..first + N];
         let sides = self.sides[homes[0]];
         let is_alike = |home: &usize| self.sides[*home] == sides;
         if *homes != [homes[0]; N] && !homes.iter().all(is_alike) {
-            return None;
+            return false;
         }
-        let sides = sides?;
-        let mut lines = [LineFit { row: [[0.0; N]; BLOCK], shares: [[0.0; N]; BLOCK] }; D];
+        let Some(sides) = sides else { return false };
         for d in 0..D {
             let mut offsets = [0.0; N];
             for p in 0..N {
                 offsets[p] = 0.5 - within[p][d];
             }
-            lines[d] = LineFit::of_each(&offsets, sides[d], D > 1);
+            lines[d].fit(&offsets, sides[d], D > 1);
         }
-        Some(lines)
+        true
     }
 
     /// Shares of the cells around a point.
@@ -183,11 +183,12 @@ impl<const D: usize> Fitting<'_, D> {
     #[inline(always)]
     fn shares(&self, point: usize) -> [f64; MOST_CELLS] {
         let mut shares = [0.0; MOST_CELLS];
-        let Some(lines) = self.lines::<1>(point) else {
+        let mut lines = [LineFit::NOTHING; D];
+        if !self.fit_lines::<1>(point, &mut lines) {
             let is_in = |cell| self.cells.is_occupied(cell);
             fit(self.grid, self.homes[point], &self.cells.place[point], &mut shares, is_in);
             return shares;
-        };
+        }
         let [along, up] = [&lines[0], &lines[D - 1]];
         for j in 0..power(BLOCK, D - 1) {
             let ([row], [shared]) = (up.row[j], up.shares[j]);
@@ -208,10 +209,13 @@ impl<const D: usize> Fitting<'_, D> {
         self.sum(field, self.homes[point] - self.to_lowest, &self.shares(point))
     }
 
-    /// Values at `N` neighbours from one on, where these have [`lines`](Self::lines).
+    /// Values at `N` neighbours from one on, where there are lines for [all of them](Self::fit_lines).
     #[inline(always)]
     fn values<const N: usize>(&self, field: &[f64], first: usize) -> Option<[f64; N]> {
-        let lines = self.lines::<N>(first)?;
+        let mut lines = [LineFit::NOTHING; D];
+        if !self.fit_lines(first, &mut lines) {
+            return None;
+        }
         let homes = &self.homes[first..first + N];
         // What neighbours in one cell take of the field is read once.
         Some(if *homes == [homes[0]; N] {
@@ -332,27 +336,27 @@ struct LineFit<const N: usize> {
 }
 
 impl<const N: usize> LineFit<N> {
-    /// The lines of points by the offsets of their cells' centres from them.
+    const NOTHING: Self = Self { row: [[0.0; N]; BLOCK], shares: [[0.0; N]; BLOCK] };
+
+    /// Takes the lines of points by the offsets of their cells' centres from them.
     #[inline(always)]
-    fn of_each(offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) -> Self {
+    fn fit(&mut self, offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) {
         // Between two neighbours a loop without a branch.
         match neighbours {
-            [true, true] => Self::by(offsets, [true, true], takes_shares),
-            [false, false] => Self::by(offsets, [false, false], takes_shares),
-            one_sided => Self::by(offsets, one_sided, takes_shares),
+            [true, true] => self.fit_by(offsets, [true, true], takes_shares),
+            [false, false] => self.fit_by(offsets, [false, false], takes_shares),
+            one_sided => self.fit_by(offsets, one_sided, takes_shares),
         }
     }
 
     #[inline(always)]
-    fn by(offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) -> Self {
-        let mut lines = Self { row: [[0.0; N]; BLOCK], shares: [[0.0; N]; BLOCK] };
+    fn fit_by(&mut self, offsets: &[f64; N], neighbours: [bool; 2], takes_shares: bool) {
         for p in 0..N {
             let [row, shares] = line_shares(offsets[p], neighbours, takes_shares);
             for k in 0..BLOCK {
-                (lines.row[k][p], lines.shares[k][p]) = (row[k], shares[k]);
+                (self.row[k][p], self.shares[k][p]) = (row[k], shares[k]);
             }
         }
-        lines
     }
 }
 
