@@ -128,25 +128,73 @@ pub fn critical_step<const D: usize>(
         return bracketed([safe, 2.0, 1e-4], &mut |dt| is_within(dt, growth));
     }
     let mut disturbed = step.clone();
-    let mut limit_by = |steps: usize| {
-        bracketed([safe, 2.0, 1e-3], &mut |dt| stays_bounded(&mut disturbed, dt, settings, steps))
-    };
-    // Beyond the limit waves grow by several per cent a step: few steps find it. The spectral radius confirms it, or many
-    // steps where that cannot be had.
-    let early = limit_by(LOOK_INTERVAL);
-    let (has_radius, most) = (step.unknowns() <= MOST_SQUARED, |dt: f64| {
-        if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) }
+    let mut is_bounded = |dt: f64, steps: usize| stays_bounded(&mut disturbed, dt, settings, steps);
+    let (start, mut known, mut candidates) = ([safe, 2.0, 1e-3], Known::default(), Vec::new());
+    // Beyond the limit waves grow by several per cent a step: few steps find it.
+    let early = bracketed(start, &mut |dt| {
+        let is_bounded = is_bounded(dt, LOOK_INTERVAL);
+        if is_bounded {
+            candidates.push(dt);
+        } else {
+            known.learn(dt, false);
+        }
+        is_bounded
     });
+    // The spectral radius confirms it, or many steps where that cannot be had.
+    let has_radius = step.unknowns() <= MOST_SQUARED;
+    let most = |dt: f64| if growth > SLOW_GROWTH { growth } else { SLOW_GROWTH * (dt / safe).min(1.0) };
     let mut is_stable = |dt: f64| is_within(dt, most(dt));
     if has_radius && !sharp && early.is_some_and(&mut is_stable) {
         return early;
     }
-    let is_confirmed = |dt: &f64| stays_bounded(&mut step.clone(), *dt, settings, GROWTH_STEPS);
-    let soon = early.filter(is_confirmed).or_else(|| limit_by(GROWTH_STEPS));
+    candidates.sort_unstable_by(f64::total_cmp);
+    for dt in candidates.into_iter().rev() {
+        let is_bounded = is_bounded(dt, GROWTH_STEPS);
+        known.learn(dt, is_bounded);
+        if is_bounded {
+            break;
+        }
+    }
+    let soon =
+        bracketed(start, &mut |dt| known.answer(dt).unwrap_or_else(|| is_bounded(dt, GROWTH_STEPS)));
     match soon {
         _ if !has_radius => soon,
         Some(dt) if !sharp && soon != early && is_stable(dt) => soon,
         unconfirmed => bracketed([unconfirmed.unwrap_or(safe), NEAR, 2e-3], &mut is_stable),
+    }
+}
+
+/// Steps, s, of which it is known whether they are stable: those up to a stable one are, and those from an unstable one on
+/// are not.
+struct Known {
+    stable: f64,
+    unstable: f64,
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Self { stable: 0.0, unstable: f64::INFINITY }
+    }
+}
+
+impl Known {
+    fn learn(&mut self, dt: f64, is_stable: bool) {
+        if is_stable {
+            self.stable = self.stable.max(dt);
+        } else {
+            self.unstable = self.unstable.min(dt);
+        }
+    }
+
+    /// Whether a step is stable, where that is known.
+    fn answer(&self, dt: f64) -> Option<bool> {
+        if dt <= self.stable {
+            Some(true)
+        } else if dt >= self.unstable {
+            Some(false)
+        } else {
+            None
+        }
     }
 }
 
