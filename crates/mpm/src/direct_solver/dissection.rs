@@ -17,7 +17,7 @@ const PARTS: usize = 5;
 #[derive(Debug)]
 pub(crate) struct Part {
     /// Both halves of the set, without the separator; none where it was not cut.
-    pub children: Vec<Part>,
+    pub halves: Option<Box<[Part; 2]>>,
     /// Place of its first unknown in the order of elimination.
     pub first: usize,
     /// Number of its unknowns.
@@ -44,16 +44,16 @@ struct Dissection<'a> {
 impl Dissection<'_> {
     /// Orders the unknowns of a set, half by half and the separator last.
     fn ordered(&mut self, set: Vec<usize>) -> Part {
-        let (mut rest, mut children) = (set, Vec::new());
+        let (mut rest, mut halves) = (set, None);
         if rest.len() > SMALLEST_SET
             && let Some(Halves { low, high, separator }) = self.cut(&rest)
         {
-            children = [low, high].map(|half| self.ordered(half)).into();
+            halves = Some(Box::new([low, high].map(|half| self.ordered(half))));
             rest = separator;
         }
         let (first, count) = (self.order.len(), rest.len());
         self.order.extend(rest);
-        Part { children, first, count }
+        Part { halves, first, count }
     }
 
     /// Cuts a set where its separator is smallest, not far from the middle; `None` where all of the lower half would be
@@ -157,7 +157,7 @@ mod tests {
         let mut eliminated = order.clone();
         eliminated.sort_unstable();
         assert_eq!(eliminated, (0..count).collect::<Vec<_>>());
-        let [low, high] = &root.children[..] else { panic!("two halves") };
+        let Some([low, high]) = root.halves.as_deref() else { panic!("two halves") };
         let places = |part: &Part, from: usize| order[from..part.first + part.count].to_vec();
         let (low_unknowns, high_unknowns) = (places(low, 0), places(high, low.first + low.count));
         for unknown in low_unknowns {
@@ -203,6 +203,6 @@ mod tests {
     fn a_set_that_is_all_separator_is_not_cut() {
         let places: Vec<f64> = (0..60).map(f64::from).collect();
         let (order, root) = dissected(&line(&places, 60.0));
-        assert_eq!((order.len(), root.count, root.children.len()), (60, 60, 0));
+        assert_eq!((order.len(), root.count, root.halves.is_none()), (60, 60, true));
     }
 }

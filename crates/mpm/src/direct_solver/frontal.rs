@@ -61,7 +61,7 @@ impl FrontalLu {
         for (number, unknown) in order.iter().enumerate() {
             place[*unknown] = number;
         }
-        let (root, _) = Front::connected(root, shape, &order, &place);
+        let (root, _) = Front::connected(root, shape, &order, &place, threads);
         let is_large = root.numbers() >= NUMBERS_FOR_THREADS;
         Self { root, threads, threads_of_solution: if is_large { threads } else { 1 } }
     }
@@ -84,11 +84,18 @@ impl FrontalLu {
 
 impl Front {
     /// A front and those below it, and its boundary as rising places in the order of elimination.
-    fn connected(part: Part, matrix: &SparseMatrix, order: &[usize], place: &[usize]) -> (Self, Vec<usize>) {
+    fn connected(
+        part: Part,
+        matrix: &SparseMatrix,
+        order: &[usize],
+        place: &[usize],
+        threads: usize,
+    ) -> (Self, Vec<usize>) {
         let Part { first, count, .. } = part;
         let end = first + count;
-        let connect = |child| Self::connected(child, matrix, order, place);
-        let (mut children, boundaries): (Vec<Self>, Vec<_>) = part.children.into_iter().map(connect).unzip();
+        let connect = |half, threads| Self::connected(half, matrix, order, place, threads);
+        let halves = part.halves.map(|halves| on_halves(*halves, threads, connect));
+        let (mut children, boundaries): (Vec<Self>, Vec<_>) = halves.into_iter().flatten().unzip();
         let unknowns = order[first..end].to_vec();
         let tied = unknowns.iter().flat_map(|unknown| matrix.row(*unknown).1);
         let tied = tied.map(|other| place[*other as usize]);
@@ -136,16 +143,12 @@ impl Front {
         self.panels.numbers() + self.children.iter().map(Self::numbers).sum::<usize>()
     }
 
-    /// Does the same on each of the fronts below, side by side where there is more than one thread; the results in the order
-    /// of the fronts.
+    /// Does the same on each of the fronts below, at once where there is more than one thread; the results in the order of
+    /// the fronts.
     fn on_children<T: Send>(&mut self, threads: usize, task: impl Fn(&mut Self, usize) -> T + Sync) -> Vec<T> {
         match &mut self.children[..] {
-            [low, high] if threads > 1 => std::thread::scope(|scope| {
-                let high = scope.spawn(|| task(high, threads / 2));
-                let low = task(low, threads.div_ceil(2));
-                vec![low, high.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
-            }),
-            children => children.iter_mut().map(|child| task(child, 1)).collect(),
+            [low, high] => on_halves([low, high], threads, task).into(),
+            _ => Vec::new(),
         }
     }
 
@@ -260,6 +263,22 @@ impl Front {
     }
 }
 
+/// Does the same with both halves of a set, at once where there is more than one thread.
+fn on_halves<H: Send, T: Send>(
+    [low, high]: [H; 2],
+    threads: usize,
+    task: impl Fn(H, usize) -> T + Sync,
+) -> [T; 2] {
+    if threads < 2 {
+        return [task(low, 1), task(high, 1)];
+    }
+    std::thread::scope(|scope| {
+        let high = scope.spawn(|| task(high, threads / 2));
+        let low = task(low, threads.div_ceil(2));
+        [low, high.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
+    })
+}
+
 /// A column of a matrix.
 fn column_of(matrix: &mut DMatrix<f64>, column: usize) -> &mut [f64] {
     let rows = matrix.nrows();
@@ -340,7 +359,7 @@ mod tests {
     fn any_number_of_threads_gives_the_same_bits() {
         let (matrix, _, right) = grid(40, 40, 2, 7);
         let solutions = |threads: usize| {
-            let mut lu = FrontalLu::of_shape(&matrix, threads);
+            let mut lu = FrontalLu { threads_of_solution: threads, ..FrontalLu::of_shape(&matrix, threads) };
             // Factors and solutions must not depend on what was there before.
             [(); 2].map(|()| {
                 assert_eq!(lu.factor(&matrix, TimeLimit::default()), Ok(()));

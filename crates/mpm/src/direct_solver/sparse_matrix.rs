@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-/// Entries of a row that there is room for from the start: rows of a body in the plane grow no further.
-const USUAL_ROW: usize = 64;
+/// Entries of a row that there is room for from the start: rows of a body in the plane grow no further, each listed from
+/// both sides.
+const USUAL_ROW: usize = 128;
 
 /// A square matrix with a fixed pattern, which includes the diagonal and is symmetric: elimination fills those places in
 /// anyway.
@@ -41,16 +42,14 @@ impl SparseMatrix {
             columns
         };
         let mut rows: Vec<Vec<u32>> = (0..positions.len()).map(with_diagonal).collect();
-        let mut note = |row: usize, column: usize| {
-            let (row, column) = (&mut rows[row], number(column));
-            if let Err(place) = row.binary_search(&column) {
-                row.insert(place, column);
-            }
-        };
         visit(&mut |row, column| {
-            note(row, column);
-            note(column, row);
+            rows[row].push(number(column));
+            rows[column].push(number(row));
         });
+        for columns in &mut rows {
+            columns.sort_unstable();
+            columns.dedup();
+        }
         let mut starts = vec![0];
         let mut columns = Vec::with_capacity(rows.iter().map(Vec::len).sum());
         for row in rows {

@@ -487,6 +487,7 @@ mod tests {
             assert_eq!((&again.volume, &again.porosity), (&first.volume, &first.porosity), "step {step}");
             assert_eq!(again.reached, first.reached, "step {step}");
             for cell in first.occupied() {
+                assert_eq!(again.reached_sides[cell], first.reached_sides[cell], "step {step}, cell {cell}");
                 let of_cell = (0..points.len()).filter(|point| first.of_point[*point] == cell);
                 let volume: f64 = of_cell.map(|point| points.volume(point)).sum();
                 assert!((again.volume(cell) / volume - 1.0).abs() < 1e-14, "step {step}");

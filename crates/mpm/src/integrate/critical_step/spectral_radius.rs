@@ -305,6 +305,23 @@ mod tests {
     }
 
     #[test]
+    fn what_few_steps_leave_in_doubt_comes_to_what_many_find() {
+        let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
+        let (column, soil) = (Column { dimensions: 2, ..Column::default() }, Material::default());
+        let method = Method::named("GC-SRI-patch").expect("a known method");
+        let problem =
+            column_problem::<2>(SceneKind::XieLeo, &column, &soil, method, 10, 4).expect("a column");
+        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+        let mut step = AssembledStep::new(&Body::new(problem));
+        let limit = critical_step(&step, &settings, safe, GROWTH_TOLERANCE, false);
+        let mut limit_by = |steps: usize| {
+            bracketed([safe, 2.0, 1e-3], &mut |dt| stays_bounded(&mut step, dt, &settings, steps))
+        };
+        assert_eq!(limit, limit_by(GROWTH_STEPS));
+        assert!(limit < limit_by(LOOK_INTERVAL), "few steps find another");
+    }
+
+    #[test]
     fn the_spectral_radius_of_known_matrices() {
         let rotation = DMatrix::from_row_slice(2, 2, &[0.0, -1.1, 1.1, 0.0]);
         assert!((spectral_radius(&rotation) - 1.1).abs() < 1e-6);

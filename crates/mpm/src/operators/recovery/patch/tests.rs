@@ -180,3 +180,23 @@ fn values_side_by_side_are_those_of_each_point() {
     assert_same_side_by_side([5, 4], 2);
     assert_same_side_by_side([1, 4], 4);
 }
+
+#[test]
+fn rows_follow_the_occupied_cells() {
+    let grid = Grid::new(0.5, [3, 6]);
+    let mut points = Points::lattice(0.5, [3, 4], 2);
+    let (mut cells, mut rows) = (Cells::new(&grid, points.len()), PatchRows::new(points.len(), &grid));
+    let mut shapes = Vec::new();
+    for _ in 0..10 {
+        points.position.iter_mut().for_each(|place| place[1] += 0.1);
+        cells.locate(&grid, &points, &[Material::default()]);
+        rows.look_around(&grid, &cells);
+        let mut anew = PatchRows::new(points.len(), &grid);
+        anew.look_around(&grid, &cells);
+        let sides = |rows: &PatchRows<2>| cells.occupied().map(|cell| rows.sides[cell]).collect::<Vec<_>>();
+        assert_eq!(sides(&rows), sides(&anew));
+        shapes.push(cells.changes());
+    }
+    shapes.dedup();
+    assert!((2..10).contains(&shapes.len()), "some steps change the occupied cells, others do not: {shapes:?}");
+}
