@@ -15,7 +15,7 @@
 //! | `oedometer-foreign` | other programs as solvers: case file, processes, mapping files, results turned into samples; TOML with mistakes at their places |
 //! | `oedometer` | the harness: what follows |
 //!
-//! Folders of `src/`, each of which uses only those above it (`src/tests/architecture.rs`):
+//! Folders of `src/`, each of which uses only those above it (`src/tests/source_order.rs`):
 //!
 //! | folder | what it is |
 //! | :-- | :-- |

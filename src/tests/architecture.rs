@@ -1,61 +1,21 @@
-//! What the borders of the crates cannot say: which folder of `src/` uses which.
+//! What the borders of the crates and `source_order` cannot say: what pages ask of the judge, where files are opened, and which
+//! types errors have.
 
 use regex_lite::Regex;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders of `src/` from the ground up; each uses only those before it.
-const FOLDERS: [&str; 10] =
-    ["record", "measure", "study", "campaign", "golden", "history", "judge", "render", "api", "cli"];
-
 /// Whether a source is compiled for tests alone.
-fn is_test_module(path: &Path) -> bool {
+pub(super) fn is_test_module(path: &Path) -> bool {
     path.iter().any(|part| part == "tests" || part == "tests.rs")
 }
 
-/// Every folder that a source uses and that stands above its own; tests inside a source may look anywhere.
-fn upward(folder: &str, source: &str) -> Vec<String> {
-    let own = FOLDERS.iter().position(|name| *name == folder);
-    let code = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or(source);
-    code.lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .flat_map(|line| line.split("crate::").skip(1))
-        .map(|path| path.split(|end: char| !end.is_alphanumeric() && end != '_').next().unwrap_or(path))
-        .filter(|to| FOLDERS.iter().position(|name| name == to) > own)
-        .map(|to| format!("{folder} → {to}"))
-        .collect()
-}
-
-fn sources_below(folder: &Path) -> Vec<PathBuf> {
+/// Every source below a folder.
+pub(super) fn sources_below(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let files = entries.flat_map(|path| if path.is_dir() { sources_below(&path) } else { vec![path] });
     files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
-}
-
-#[test]
-fn folders_use_only_those_below_them() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut wrong = Vec::new();
-    for path in sources_below(&root) {
-        let inside = path.strip_prefix(&root).expect("below src");
-        let folder = inside.iter().next().and_then(std::ffi::OsStr::to_str).expect("UTF-8");
-        if inside.components().count() == 1 || is_test_module(inside) {
-            continue;
-        }
-        assert!(FOLDERS.contains(&folder), "src/{folder}/ is not in the list");
-        let source = fs::read_to_string(&path).expect("a source");
-        wrong.extend(upward(folder, &source).iter().map(|arrow| format!("{}: {arrow}", path.display())));
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-#[test]
-fn a_planted_arrow_is_named() {
-    let planted = "use crate::case::Case;\nfn f() { crate::judge::explanation::explain() }\n";
-    assert_eq!(upward("record", planted), ["record → judge"]);
-    let in_a_test = "fn f() {}\n\n#[cfg(test)]\nmod tests {\n    use crate::judge::verdict;\n}\n";
-    assert!(upward("record", in_a_test).is_empty());
 }
 
 /// What pages may ask of values of the judge: words of an enumeration, and look-ups that return what a finding holds.

@@ -20,6 +20,7 @@ mod records_of_programs;
 mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;
+mod source_order;
 mod study_answers;
 mod study_complaints;
 mod study_limits;

@@ -1,6 +1,7 @@
 //! The solver core: the v–w material point method for saturated soil, with one set of material points or with two.
 //!
-//! Folders are floors; each uses only those below it, which a test keeps (`tests/floors.rs`). From the ground up:
+//! Folders are floors; each uses only those below it, which a test keeps (`src/tests/source_order.rs` of `oedometer`). From the
+//! ground up:
 //!
 //! - `method`, `formulation`, `time_limit`, `wide`, `direct_solver`: choices, wide registers and linear systems, which know
 //!   nothing of points and nodes;
@@ -37,6 +38,5 @@ mod wide;
 #[cfg(test)]
 mod tests {
     pub(crate) mod double_point_columns;
-    mod floors;
     mod registers;
 }

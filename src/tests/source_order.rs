@@ -1,0 +1,197 @@
+//! The order of the sources of this crate and of those below it, by the paths in their code: no source uses one of a floor
+//! above its own, and in the crates that have no circle of sources there is none.
+
+use super::architecture::{is_test_module, sources_below};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// The order of the sources of a crate.
+struct Order {
+    /// Folder of its sources.
+    root: &'static str,
+    /// Files and folders from the ground up; each uses only itself and those before it. `*` is all that has no other name.
+    floors: &'static str,
+    /// Whether sources use each other in a circle.
+    has_circles: bool,
+}
+
+const SOIL: Order = Order {
+    root: "crates/soil/src",
+    floors: "wording elementary tensor continuity plasticity stiffness von_mises law conductivity material",
+    has_circles: false,
+};
+/// The ground knows no problem; the door, `reference`, knows all of them, and none of them knows the door.
+const EXACT: Order = Order {
+    root: "crates/exact/src",
+    floors: "exact_error numerics soil_layers parameters inputs solution talbot porous_soil consolidation/series * reference",
+    has_circles: false,
+};
+const MPM: Order = Order {
+    root: "crates/mpm/src",
+    floors: "wide time_limit method formulation direct_solver state operators drag actions kernel integrate run scene",
+    has_circles: false,
+};
+const CONVERGENCE: Order = Order { root: "crates/convergence/src", floors: "*", has_circles: false };
+const HARNESS: Order = Order {
+    root: "src",
+    floors: "record measure study campaign golden history judge render api cli",
+    has_circles: true,
+};
+
+type Sources = BTreeMap<String, String>;
+
+/// Every source but the root of the crate by its path without `.rs` and `/mod.rs`, with its code without tests.
+fn sources(order: &Order) -> Sources {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(order.root);
+    let mut sources = Sources::new();
+    for path in sources_below(&root) {
+        let inside = path.strip_prefix(&root).expect("below the root");
+        let name = inside.to_string_lossy().replace('\\', "/");
+        let name = name.trim_end_matches(".rs").trim_end_matches("/mod");
+        if !is_test_module(inside) && !["lib", "main"].contains(&name) {
+            let text = fs::read_to_string(&path).expect("a source");
+            let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+            sources.insert(name.to_owned(), code.to_owned());
+        }
+    }
+    sources
+}
+
+/// The steps of a path, each up to what is no name.
+fn steps(path: &str) -> Vec<&str> {
+    let name = |step: &'_ str| step.find(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    let steps = path.trim().split("::").map(|step| &step[..name(step).unwrap_or(step.len())]);
+    steps.filter(|step| !step.is_empty()).collect()
+}
+
+/// The sources that a source uses: of `use` lines, and of paths in its code. An indented `use super::` is that of a module
+/// inside the file, and `super` the file itself.
+fn used(name: &str, code: &str, sources: &Sources) -> BTreeSet<String> {
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let code: String = lines.map(|line| line.replace(" use super::", "") + "\n").collect();
+    let above = name.rsplit_once('/').map_or(Vec::new(), |(above, _)| above.split('/').collect());
+    let mut used = BTreeSet::new();
+    for (marker, base) in [("crate::", Vec::new()), (" super::", above)] {
+        for path in code.split(marker).skip(1) {
+            let end = path.find(|letter: char| !letter.is_alphanumeric() && !"_:".contains(letter));
+            let (stem, rest) = path.split_at(end.unwrap_or(path.len()));
+            // Of `a::{b, c::d}` every branch.
+            let inside = rest.strip_prefix('{').and_then(|rest| rest.split('}').next()).unwrap_or_default();
+            for branch in inside.split(',') {
+                let full = [base.clone(), steps(stem), steps(branch)].concat();
+                // The longest path that is a source.
+                let paths = (1..=full.len()).rev().map(|count| full[..count].join("/"));
+                used.extend(paths.filter(|path| sources.contains_key(path)).take(1));
+            }
+        }
+    }
+    used.remove(name);
+    used
+}
+
+/// Sources without a floor, arrows up, and circles.
+fn complaints(order: &Order, sources: &Sources) -> Vec<String> {
+    let floors: Vec<&str> = order.floors.split_whitespace().collect();
+    let floor_of = |name: &str| {
+        let holds = |floor: &&str| {
+            name.strip_prefix(*floor).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        floors.iter().position(holds).or_else(|| floors.iter().position(|floor| *floor == "*"))
+    };
+    let arrows: BTreeMap<&String, BTreeSet<String>> =
+        sources.iter().map(|(name, code)| (name, used(name, code, sources))).collect();
+    let mut complaints = Vec::new();
+    for (from, to) in &arrows {
+        let floor = floor_of(from);
+        if floor.is_none() {
+            complaints.push(format!("{from} is on no floor"));
+        }
+        complaints.extend(to.iter().filter(|to| floor_of(to) > floor).map(|to| format!("{from} → {to}")));
+        let (mut reached, mut next) = (BTreeSet::new(), vec![(*from).clone()]);
+        while let Some(source) = next.pop() {
+            next.extend(arrows[&source].iter().filter(|to| reached.insert((*to).clone())).cloned());
+        }
+        if !order.has_circles && reached.contains(*from) {
+            complaints.push(format!("{from} is in a circle"));
+        }
+    }
+    complaints
+}
+
+#[test]
+fn no_source_uses_one_above_it_or_in_a_circle() {
+    for (order, seen) in [
+        (SOIL, &[("law", "plasticity")][..]),
+        (
+            EXACT,
+            &[
+                ("layered", "talbot"),
+                ("mandel/sums", "porous_soil"),
+                ("shelf/cryer", "shelf/terms"),
+                ("dynamic_column", "dynamic_column/summation"),
+                ("consolidation", "consolidation/series"),
+            ],
+        ),
+        (
+            MPM,
+            &[
+                ("kernel/step", "kernel/body"),
+                ("operators/basis", "operators/row"),
+                ("run", "integrate/schedule"),
+                ("integrate/implicit/newton", "integrate/implicit"),
+            ],
+        ),
+        (CONVERGENCE, &[("class/classify", "class")]),
+        (HARNESS, &[("judge/soundness", "record"), ("render/tables/measures", "judge/blocks/checks")]),
+    ] {
+        let sources = sources(&order);
+        // Uses that are known to be there are seen.
+        for (from, to) in seen {
+            assert!(used(from, &sources[*from], &sources).contains(*to), "{}: {from} → {to}", order.root);
+        }
+        let complaints = complaints(&order, &sources);
+        assert!(complaints.is_empty(), "{}:\n{}", order.root, complaints.join("\n"));
+    }
+}
+
+#[test]
+fn a_planted_arrow_or_circle_is_named() {
+    for (order, name, line, complaint) in [
+        (SOIL, "plasticity", "use crate::law::Stiffness;", "plasticity → law"),
+        (SOIL, "new", "", "new is on no floor"),
+        (EXACT, "parameters", "use crate::shelf::ShelfProblem;", "parameters → shelf"),
+        (EXACT, "solution", "use crate::{exact_error::E, manufactured::M};", "solution → manufactured"),
+        (EXACT, "layered", "fn f() { crate::reference::Reference::new(); }", "layered → reference"),
+        (
+            EXACT,
+            "dynamic_column/modes",
+            "use super::summation::BLOCK;",
+            "dynamic_column/modes is in a circle",
+        ),
+        (
+            EXACT,
+            "consolidation/series",
+            "use crate::consolidation::W;",
+            "consolidation/series is in a circle",
+        ),
+        (MPM, "operators/row", "fn f() { crate::kernel::body::take() }", "operators/row → kernel/body"),
+        (MPM, "operators/row", "use crate::operators::basis::Hat;", "operators/basis is in a circle"),
+        (
+            MPM,
+            "integrate/step_rule",
+            "use crate::integrate::{integrator::I};",
+            "integrate/integrator is in a circle",
+        ),
+        (CONVERGENCE, "class", "use crate::class::classify::classify;", "class is in a circle"),
+        (HARNESS, "record", "fn f() { crate::judge::explanation::explain() }", "record → judge/explanation"),
+    ] {
+        let mut planted = sources(&order);
+        planted.entry(name.to_owned()).or_default().push_str(line);
+        let found = complaints(&order, &planted);
+        assert!(found.iter().any(|found| found == complaint), "{complaint}: {found:?}");
+    }
+    let mut commented = sources(&SOIL);
+    commented.insert("plasticity".to_owned(), "// use crate::law::Stiffness;\n".to_owned());
+    assert_eq!(complaints(&SOIL, &commented), [""; 0], "comments may name any source");
+}
