@@ -5,12 +5,12 @@ use oedometer_soil::wording::words;
 /// Which accelerations the balances keep (docs/theory.md, section 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formulation {
-    /// None: Biot's consolidation.
+    /// No acceleration: Biot's consolidation.
     QuasiStatic,
-    /// That of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
+    /// Acceleration of the mixture; the water's relative to the skeleton is neglected, `a_w ≈ a_s`
     /// (Zienkiewicz 1980).
     UP,
-    /// Both phases' own.
+    /// Accelerations of both phases.
     VW,
 }
 

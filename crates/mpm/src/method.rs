@@ -95,7 +95,7 @@ impl PressureIntegration {
     }
 }
 
-/// How pressure increments come back from the cell centres to the points.
+/// Recovery of pressure increments at the points from those at the cell centres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     /// Each point takes its cell's increment.
@@ -165,13 +165,13 @@ pub enum Memory {
 
 words!(Memory: Points "points", Cells "cells");
 
-/// What volume of the initial configuration a point integrates.
+/// Volume of the initial configuration that a point integrates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quadrature {
-    /// Its own.
+    /// The volume of its domain.
     #[default]
     Volumes,
-    /// That with which the points of a cell integrate constant and linear fields exactly, wherever they lie in it: moment
+    /// The volume with which the points of a cell integrate constant and linear fields exactly, wherever they lie in it: moment
     /// fitting (Müller, Kummer & Oberlack 2013).
     Moments,
 }
@@ -229,7 +229,7 @@ pub struct Method {
     /// Where the state is kept while points move.
     #[serde(default, skip_serializing_if = "is_default")]
     pub memory: Memory,
-    /// What volume a point integrates.
+    /// Volume that a point integrates.
     #[serde(default, skip_serializing_if = "is_default")]
     pub quadrature: Quadrature,
     /// Parameter of a pressure projection over that of its source, in thousandths.

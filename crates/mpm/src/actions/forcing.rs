@@ -45,12 +45,12 @@ pub trait Forcing<const D: usize>: Debug + Send + Sync {
     );
 }
 
-/// What a body keeps of what acts on it: forces and sources of a time, and the middle of the step.
+/// Prescribed body forces and water sources of a body, with the state of its points in the middle of the step.
 #[derive(Clone, Debug)]
 pub struct Forced<const D: usize> {
-    /// What acts.
+    /// The prescribed forces and sources.
     pub acting: Arc<dyn Forcing<D>>,
-    /// Balances that it acts in.
+    /// Formulation of the balances to which they are added.
     pub formulation: Formulation,
     /// Time of the present stresses, s.
     pub time: f64,

@@ -1,4 +1,4 @@
-//! What acts on a body, each a type that the kernel calls at a named place of its step; none knows the kernel.
+//! Actions on a body: loads, weight and corrections, each a type that the kernel calls at a named place of its step; none knows the kernel.
 //!
 //! | action | called where |
 //! | :-- | :-- |
@@ -25,7 +25,7 @@ use crate::actions::stress_slopes::StressPlanes;
 use crate::actions::surface_load::LoadedSurface;
 use oedometer_soil::tensor::Vector;
 
-/// What acts on a body, where it does.
+/// All actions on a body; `None` and empty lists where there is none.
 #[derive(Clone, Debug)]
 pub struct Actions<const D: usize> {
     /// Load on the surface; 0 Pa where none acts.
@@ -34,15 +34,15 @@ pub struct Actions<const D: usize> {
     pub plate: Option<RigidPlate>,
     /// Weight of skeleton and water; the pressures of the points are total ones then.
     pub weight: Option<SelfWeight>,
-    /// What the weight of points off their lattice leaves unbalanced at the nodes, and they carry: `[node][phase]`, m/s²
-    /// upward positive, of the mixture and of the pore water; none where points integrate it exactly.
+    /// Accelerations by which the nodes hold up the weight that points off their lattice leave unbalanced, `[node][phase]`,
+    /// m/s² upward positive, of the mixture and of the pore water; empty where points integrate the weight exactly.
     pub weight_carried: Vec<[Vector<D>; 2]>,
     /// Body forces and a source of water at every point.
     pub forcing: Option<Forced<D>>,
     /// Velocities that points bring to the nodes with their gradients (APIC).
     pub velocity_gradients: Option<VelocityGradients<D>>,
-    /// How stresses slope over the points' domains.
+    /// Slopes of the stresses over the points' domains.
     pub stress_planes: Option<StressPlanes<D>>,
-    /// Means over the cells that the points follow.
+    /// Averages over the cells to which stresses and pressures of the points are set.
     pub cell_averages: Option<CellAverages<D>>,
 }

@@ -9,7 +9,7 @@ pub struct SelfWeight {
     pub gravity: f64,
     /// Height of the free water level, m: that of the surface at the start.
     pub level: f64,
-    /// What the surface has risen within a step whose points do not move yet, m.
+    /// Rise of the surface within a step that has not moved its points yet, m.
     pub rise: f64,
 }
 

@@ -106,7 +106,7 @@ impl<const D: usize> StressPlanes<D> {
     }
 }
 
-/// What slopes give to the mixture, `(p I − σ') V`, and to the water, `p V`, over a distance.
+/// Slopes of the forces on the mixture, `(p I − σ') V`, and on the water, `p V`, by distance.
 #[inline]
 fn given_by<const D: usize>(slopes: &[Stresses<D>; D], volume: f64) -> [Stresses<D>; D] {
     slopes.map(|slope| {

@@ -7,7 +7,7 @@ use crate::state::points::Points;
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
 
-/// How a load varies along the surface.
+/// Variation of a load along the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LoadShape {
     /// A uniform load.
@@ -33,8 +33,8 @@ impl LoadShape {
 
 /// A pressure on the upper outline of the material.
 ///
-/// It acts at the outer edge of the outermost points' domains and is spread with the weights of the
-/// basis there. Left on a node, it errs once the top cell empties; spread over the top point, it costs
+/// The load acts at the outer edge of the outermost points' domains and is spread with the weights of the
+/// basis there. A load left on a node errs once the top cell empties; spread over the top point, it costs
 /// percents of settlement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedSurface<const D: usize> {

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! with the force `f` on the mixture and `f_w` of the pressure gradient on the water, lumped at the nodes and per
-//! component. The point-wise step, the assembled one and implicit stages all take their accelerations from here.
+//! component. The point-wise step, the assembled one and implicit stages all get their accelerations here.
 //! The conductivity `k(J)` itself is in `oedometer_soil::conductivity`.
 
 use oedometer_soil::elementary;
@@ -99,7 +99,7 @@ pub fn step_limit(soil: &Material) -> f64 {
 /// Converts the forces on one component of a node to accelerations, for one kick.
 #[derive(Clone, Copy, Debug)]
 pub struct NodalBalance {
-    /// One over the mass of the grains where the skeleton is free, else zero, 1/kg.
+    /// Inverse of the mass of the grains where the skeleton is free, else zero, 1/kg.
     pub per_solid_mass: f64,
     /// `m_w/m_s` where the skeleton is free, else zero.
     pub water_share: f64,

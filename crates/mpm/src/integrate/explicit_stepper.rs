@@ -20,11 +20,11 @@ use crate::state::points::Points;
 /// Steps between two looks.
 const WATCH_INTERVAL: u64 = 64;
 
-/// A body that goes by explicit steps.
+/// A body advanced by explicit steps.
 pub struct ExplicitStepper<const D: usize> {
     points: PointSets<D>,
     frozen: Option<AssembledStep<D>>,
-    /// Follows a frozen body that goes point by point, for its energy: the criterion does not depend on the kernel.
+    /// Energy account of a frozen body whose step is point-wise: the criterion does not depend on the kernel.
     account: Option<Box<AssembledStep<D>>>,
     start: Points<D>,
     initial_height: f64,
@@ -38,7 +38,7 @@ pub struct ExplicitStepper<const D: usize> {
     load: GrowingLoad,
 }
 
-/// What carries skeleton and water.
+/// Points of skeleton and water.
 pub(crate) enum PointSets<const D: usize> {
     /// A body; at its start where the step is assembled.
     One(Box<Body<D>>),

@@ -30,7 +30,7 @@ pub enum IntegratorKind {
 
 words!(IntegratorKind: Explicit "explicit", SemiImplicit "semi-implicit", Implicit "implicit");
 
-/// What bounds the steps of an integrator.
+/// Bound on the steps of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepBound {
     /// Stability of all its waves: a critical step, predicted from the body's own operators.
@@ -42,7 +42,7 @@ pub enum StepBound {
 }
 
 impl IntegratorKind {
-    /// What bounds its steps.
+    /// Bound on its steps.
     pub fn step_bound(self) -> StepBound {
         match self {
             Self::Explicit => StepBound::AllWaves,

@@ -70,7 +70,7 @@ impl PhysicalBounds {
         let up = if problem.plate_load.is_some() { NORMAL } else { D - 1 };
         let cells = problem.grid.cells[up] as f64;
         let force = if problem.forcing.is_some() || problem.loading_time > 0.0 {
-            // What acts goes on to change.
+            // The forces keep changing.
             without
         } else if problem.configuration.deforms() {
             MOST_FORCE_MOVING * of_load
@@ -126,7 +126,7 @@ impl PhysicalBounds {
         ))
     }
 
-    /// Why pressures, Pa, are none of the scene's, where they are not.
+    /// Why the scene cannot reach pressures, Pa; none where it can.
     pub fn left_by_pressure(&self, pressures: &[f64]) -> Option<String> {
         let within = |pressure: &&f64| pressure.is_finite() && pressure.abs() <= self.pressure;
         let outside = pressures.iter().find(|pressure| !within(pressure))?;

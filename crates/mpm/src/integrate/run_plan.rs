@@ -1,4 +1,4 @@
-//! What a run needs beside its body: step sizes, bounds, loading time and plate.
+//! Plan of a run: step sizes, bounds, loading time and plate.
 
 use crate::actions::surface_load::LoadedSurface;
 use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run};
@@ -15,16 +15,16 @@ use oedometer_soil::material::Material;
 /// Share of a semi-implicit run's critical step that growing steps end at.
 const LARGEST_SHARE: f64 = 0.8;
 
-/// What a run needs beside its body.
+/// Plan of a run: all that it needs beside its body.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a> {
-    /// When to step and what to keep.
+    /// Outputs, step rule and integrator.
     pub schedule: &'a Schedule,
-    /// How large the steps may be.
+    /// Limit of the step sizes.
     pub limit: StepLimit,
-    /// What grows under any explicit step, too far within the run: steps cannot be shares of a limit then.
+    /// A mode that grows too far within the run under any explicit step: steps cannot be shares of a limit then.
     pub growing: Option<GrowingMode>,
-    /// Step sizes as far as they are known before.
+    /// Step sizes as far as they are known before the run.
     pub sizes: StepSizes,
     /// Material points, of skeleton and water.
     pub points: usize,
@@ -36,7 +36,7 @@ pub struct Plan<'a> {
     pub velocity_scale: f64,
     /// Height of the surface that settlements count from, m.
     pub initial_height: f64,
-    /// What a sound result does not leave.
+    /// Bounds of a sound result.
     pub bounds: PhysicalBounds,
     /// Time over which the load grows to its full value, s.
     pub loading_time: f64,
@@ -47,8 +47,8 @@ pub struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// The plan of a problem.
     ///
-    /// What implicit steps are measured by is a formula: of their own limit where the skeleton is
-    /// explicit, of the explicit integrator's where there is none.
+    /// Where the skeleton is explicit the critical step is that of the skeleton's waves. A fully implicit step has no limit: the
+    /// formula for the explicit integrator stands in its place, as a scale.
     pub fn new<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let end = schedule.outputs.last().copied().unwrap_or(0.0);

@@ -7,7 +7,7 @@ use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
 
-/// How the time step is chosen.
+/// Rule by which the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TimeStepRule {
@@ -81,7 +81,7 @@ fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
 /// Step sizes grow by this factor from one level to the next.
 const LEVEL_RATIO: f64 = std::f64::consts::SQRT_2;
 
-/// How large a step may be at a time.
+/// Limit of the step size at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepLimit {
     /// One step size at all times, s.
@@ -92,10 +92,10 @@ pub enum StepLimit {
         first: f64,
         /// `α`.
         growth: f64,
-        /// What they may grow to, s.
+        /// Largest step, s.
         most: f64,
     },
-    /// What the estimate of the error allows.
+    /// Bound on the estimated error of a step.
     Tolerance {
         /// The first step, s.
         first: f64,
@@ -110,7 +110,7 @@ impl StepLimit {
     pub fn row(&self, time: f64, output: f64) -> EqualSteps {
         let (size, end) = match *self {
             Self::Constant(size) => (size, output),
-            // Of a size that the driver goes on from by itself.
+            // The driver adapts the size from here on.
             Self::Tolerance { first, .. } => (first, output),
             Self::Growing { first, growth, most } => {
                 let allowed = (growth * time).max(first).min(most);
@@ -119,7 +119,7 @@ impl StepLimit {
                 let size = first * elementary::powf(LEVEL_RATIO, level);
                 let grown =
                     if size * LEVEL_RATIO > most { f64::INFINITY } else { size * LEVEL_RATIO / growth };
-                // Not worth an end of its own where the output is a step away.
+                // No row of its own for the last step to an output.
                 (size, if output < grown + size { output } else { grown })
             }
         };

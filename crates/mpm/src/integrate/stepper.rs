@@ -40,7 +40,7 @@ pub struct EqualSteps {
     pub dt: f64,
     /// Steps of the row that are behind these.
     pub done: u64,
-    /// How many to take.
+    /// Number of steps.
     pub count: u64,
 }
 

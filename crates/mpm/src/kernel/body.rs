@@ -22,7 +22,7 @@ use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product};
 use std::sync::Arc;
 
-/// What is to be solved: geometry, material, load and initial state, and by which operators.
+/// A problem to solve: geometry, material, load, initial state and operators.
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize> {
     /// Background grid.
@@ -44,7 +44,7 @@ pub struct Problem<const D: usize> {
     pub configuration: Configuration,
     /// Load on the surface, Pa.
     pub load: f64,
-    /// How the load varies along the surface.
+    /// Variation of the load along the surface.
     pub load_shape: LoadShape,
     /// Mean pressure, Pa, under a rigid plate on the upper face of the first direction, where there is one.
     pub plate_load: Option<f64>,
@@ -138,7 +138,7 @@ pub struct Body<const D: usize> {
     /// Whether gradients are pushed forward from where the shape functions were built: on the initial
     /// configuration always, and within an implicit step that moves points.
     pub is_pushed_forward: bool,
-    /// What acts on the body.
+    /// Actions on the body.
     pub actions: Actions<D>,
     /// Operators between points, nodes and cells where the points are.
     pub operators: Operators<D>,
@@ -343,8 +343,8 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// What carries a point under a nodal velocity or displacement: the value of the basis, or the
-    /// mean of its domain's ends where those are what its strain is taken between.
+    /// Velocity or displacement of a point under a nodal field: the value of the basis, or the mean of its domain's ends where
+    /// its strain is the difference of these ends.
     #[inline]
     pub fn carrying(&self, point: usize, field: &[Vector<D>], of_basis: Vector<D>) -> Vector<D> {
         let stride = self.grid.node_stride();

@@ -36,7 +36,7 @@ impl<const D: usize> Body<D> {
                 stress = law.uniaxial_stress_ratio(strain) - end_stress;
                 known = Some(*cell);
             }
-            // What the stress fills: of that the slopes of one value cancel.
+            // The volume that the stress fills: over it the gradients of a uniform stress cancel.
             let mut volume = points.volume(point) * points.stressed_share[point];
             if self.is_pushed_forward {
                 // Gradients of an earlier configuration take the volume with them.

@@ -30,7 +30,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// Of stresses and pressures, since the start or on the whole.
     pub stored: f64,
-    /// Work of what acts since the start.
+    /// Work of the actions since the start.
     pub work: f64,
 }
 
@@ -39,11 +39,11 @@ pub struct Energy {
 pub struct EnergyAccount {
     /// Least of kinetic and stored energy less work so far, J.
     least: f64,
-    /// Most that was in motion so far, J.
+    /// Largest energy in motion so far, J.
     turned: f64,
-    /// What was in motion from which on a rise is judged, J.
+    /// Energy in motion from which on a rise is judged, J.
     least_judged: f64,
-    /// Largest rise above the least, over what was in motion.
+    /// Largest rise above the least, over the energy in motion.
     pub largest_rise: f64,
 }
 
@@ -54,7 +54,7 @@ impl EnergyAccount {
         Self { least: f64::INFINITY, turned: 0.0, least_judged: ROUND_OFF * work.abs(), largest_rise: 0.0 }
     }
 
-    /// Takes note of an energy; a sentence where it has risen beyond what a sound step makes.
+    /// Records an energy; gives a sentence where it has risen more than under a sound step.
     pub fn note(&mut self, energy: Energy, moves: bool) -> Option<String> {
         let free = energy.kinetic + energy.stored - energy.work;
         self.turned = self.turned.max(energy.kinetic + energy.stored.abs() + energy.work.abs());

@@ -77,7 +77,7 @@ impl<const D: usize> Body<D> {
         weights
     }
 
-    /// What of a nodal flux passes the surface and goes before the plate, per area of the surface.
+    /// Outflow of a nodal flux through the surface and at the plate, per area of the surface.
     pub fn outflow_of(&self, field: &[Vector<D>]) -> f64 {
         let before_plate = self.actions.plate.as_ref().map_or(0.0, |plate| {
             plate.nodes.first().map_or(0.0, |lead| plate.face_over_surface * field[*lead][NORMAL])

@@ -252,7 +252,7 @@ mod tests {
         for (row, exact) in [(1, below), (2, 0.5 * (below + above)), (3, above)] {
             assert!((storage(row) / exact - 1.0).abs() < 1e-12, "{row}: {} for {exact}", storage(row));
         }
-        // What the projection resists is that of the soil too.
+        // The projection resists the soil's share too.
         let (sites, site_of_node) = body.nodal_sites();
         let rows = body.projection_rows(&sites, &site_of_node);
         let ends = [&rows[0], &rows[4]].map(|row| row.iter().map(|(_, value)| value.abs()).sum::<f64>());

@@ -1,4 +1,4 @@
-//! How the explicit step advances in time: the paper's forward Euler, or a leapfrog of second order.
+//! Scheme of the explicit step in time: the paper's forward Euler, or a leapfrog of second order.
 //!
 //! Both kick the velocities with the forces of the present stresses, and let the stresses drift with
 //! the new velocities. Forward Euler gives both the whole step: its velocities lag by half a step
@@ -65,7 +65,7 @@ impl Default for ExplicitSettings {
     }
 }
 
-/// How long each kick of a run lasts.
+/// Durations of the kicks of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rhythm {
     /// Last drift, s; 0 before the first.

@@ -1,7 +1,7 @@
 //! The volumetric operators of a method: `D` from nodes to the sites of the dilation, `R` from the sites to the
 //! points, in place and as sparse rows.
 //!
-//! The explicit step works in place; whoever assembles (the frozen step, the undrained start, implicit
+//! The explicit step works in place; what is assembled (the frozen step, the undrained start, implicit
 //! integrators) takes the rows.
 
 use crate::kernel::body::Body;
@@ -26,7 +26,7 @@ pub struct VolumetricRows<const D: usize> {
     pub coupling: Vec<f64>,
     /// Sites that each point recovers its value from, with their weights.
     pub recovery: Vec<Vec<(usize, f64)>>,
-    /// What a projection adds to the storage of each site, over its parameter; nothing without one.
+    /// Storage that a projection adds to each site, over its parameter; empty without one.
     pub projection: SiteRows,
 }
 

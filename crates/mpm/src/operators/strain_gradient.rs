@@ -24,10 +24,10 @@ const INSET: f64 = 1e-9;
 /// `G` of a method, with its stencils where they are not those of the basis.
 #[derive(Clone, Debug, Default)]
 pub enum StrainOperator<const D: usize> {
-    /// That of the basis.
+    /// The gradient of the basis.
     #[default]
     Basis,
-    /// That of the composite MPM.
+    /// The gradient of the composite MPM.
     Composite(Stencils<D, 4>),
     /// The composite MPM's interpolant between the ends of the domains, which also carries the points.
     BetweenEnds(Stencils<D, ENDS_WIDTH>),
@@ -94,8 +94,8 @@ impl<const D: usize> StrainOperator<D> {
         }
     }
 
-    /// What carries the points under a nodal field where it is not the value of the basis: the mean of the ends
-    /// of their domains, where those are what the strain is taken between.
+    /// Weights of the velocity that carries the points where it is not the value of the basis: the mean of the ends of their
+    /// domains, where the strain is the difference of these ends.
     pub(crate) fn carrier(&self) -> Option<&Stencils<D, ENDS_WIDTH>> {
         match self {
             Self::BetweenEnds(stencils) => Some(stencils),
@@ -120,7 +120,7 @@ impl<const D: usize> StrainOperator<D> {
     }
 }
 
-/// What the rows of the composite gradient are made of, as slices of one length.
+/// Inputs of the rows of the composite gradient, as slices of one length.
 #[derive(Clone, Copy)]
 pub(crate) struct CompositeRows<'a, const D: usize> {
     cells: &'a [usize],

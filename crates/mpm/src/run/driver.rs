@@ -34,9 +34,9 @@ pub struct Driver<'a> {
     time: f64,
     sizes: StepSizes,
     counters: Counters,
-    /// Steps that the observer is told to expect.
+    /// Number of steps announced to the observer.
     expected: u64,
-    /// Size that the errors of the steps so far ask for, s.
+    /// Step size by the errors of the steps so far, s.
     adaptive_step: f64,
     /// Error of the last step that was tried from the start and not taken.
     rejected_start: Option<f64>,

@@ -44,11 +44,11 @@ pub struct Probe {
     pub steps: u64,
     /// Whether these steps reach the end of the scene.
     pub reaches_end: bool,
-    /// How it failed, if it did.
+    /// Failure of the run, if it failed.
     pub failure: Option<Failure>,
 }
 
-/// What is known of a problem's critical step.
+/// The critical step of a problem, predicted and observed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriticalStep {
     /// From the spectral radius, s: beyond it a mode grows by as much as is observed, `ln(5·10^4)/32768` per step, in a plane

@@ -34,7 +34,7 @@ pub struct Watch<'a> {
     seen: Option<EqualSteps>,
     /// All of them so far.
     done: u64,
-    /// What it does not leave, from its start.
+    /// Physical bounds, widened by the state at the start.
     bounds: PhysicalBounds,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Watch<'a> {
     /// Looks at velocities, settlement and points after some steps.
     ///
     /// # Errors
-    /// [`StepFailure`] where they are none of the scene's.
+    /// [`StepFailure`] where the scene cannot reach them.
     pub fn look(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -100,7 +100,7 @@ impl<'a> Watch<'a> {
         stepper.lost_point().map_or(Ok(()), Err)
     }
 
-    /// Takes account of forces and energy after some steps.
+    /// Checks forces and energy after some steps.
     fn account(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -123,10 +123,10 @@ impl<'a> Watch<'a> {
         grown.map_or(Ok(()), |reason| Err(self.unstable(&reason, sizes)))
     }
 
-    /// Looks at an output, with an account of its own: what has grown since the last one is in no result.
+    /// Looks at an output and checks forces and energy anew, so that nothing that has grown since the last check is in a result.
     ///
     /// # Errors
-    /// [`StepFailure`] where its pressures, forces or energy are none of the scene's.
+    /// [`StepFailure`] where the scene cannot reach its pressures, forces or energy.
     pub fn look_at_output(
         &mut self,
         stepper: &mut dyn Stepper,

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Column {
     /// Initial height `H`, m.
     pub height: f64,
-    /// What kind of body it is, with the inputs of that kind.
+    /// Kind of the body, with the inputs of that kind.
     #[serde(flatten)]
     #[schemars(with = "ShapeKeys")]
     pub shape: Shape,
@@ -50,7 +50,7 @@ pub struct Footing {
     pub width: f64,
     /// Whether the soil sticks to it.
     pub contact: Base,
-    /// How the soil under it is kept undrained.
+    /// Model of the undrained soil below.
     pub undrained: Undrained,
 }
 
@@ -61,7 +61,7 @@ impl Footing {
     }
 }
 
-/// How a soil is kept undrained.
+/// Model of an undrained soil.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Undrained {
     /// One phase of total stress, whose Poisson's ratio is near ½.
@@ -81,7 +81,7 @@ pub enum Shape {
     Layer {
         /// Length, m.
         length: f64,
-        /// How it rests on its base.
+        /// Contact with the base.
         base: Base,
     },
     /// The unit square in a prescribed motion.
@@ -106,7 +106,7 @@ struct ShapeKeys {
     width: Option<f64>,
     /// Length of a layer, m.
     length: Option<f64>,
-    /// How a layer rests on its base.
+    /// Contact of a layer with its base.
     base: Option<Base>,
     /// Prescribed motion of a square.
     motion: Option<MotionParameters>,
@@ -183,7 +183,7 @@ impl Column {
         }
     }
 
-    /// How a layer rests on its base.
+    /// Contact of a layer with its base.
     pub fn base(&self) -> Option<Base> {
         if let Shape::Layer { base, .. } = self.shape { Some(base) } else { None }
     }

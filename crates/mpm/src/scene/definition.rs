@@ -8,13 +8,13 @@ use oedometer_soil::material::Material;
 
 /// A scene as data and a few functions.
 pub struct SceneDefinition {
-    /// One line on what it is.
+    /// Description in one line.
     pub summary: &'static str,
     /// References that hold, the one whose equations the solver solves first.
     pub references: &'static [ReferenceKind],
     /// Why a reference is not the scene's own, where it is a second one.
     pub model_difference: fn(ReferenceKind, &Material) -> Option<&'static str>,
-    /// What is solved in: a column's table in a study, or a layer's.
+    /// Kind of body: whether a study describes it in the table of a column or of a layer.
     pub body: SceneBody,
     /// Size of the strains that its theory holds for.
     pub strain: SceneStrain,
@@ -42,7 +42,7 @@ impl SceneDefinition {
         start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
         start_pressure: StartPressure::Uniform(|_, _| 0.0),
     };
-    /// That column under a sudden load, from the undrained equilibrium of its own operators.
+    /// The same column under a sudden load, from the undrained equilibrium of its own operators.
     pub(crate) const LOADED: Self = Self {
         load: SceneLoad::Sudden,
         start: SceneStart::Solved,
@@ -98,13 +98,13 @@ pub enum SceneStart {
     Solved,
 }
 
-/// What is known of the pore pressure at the start.
+/// Pore pressure expected at the start.
 pub enum StartPressure {
     /// A uniform pressure, Pa.
     Uniform(fn(&Column, &Material) -> f64),
     /// Its mean is zero, and nothing else is known.
     ZeroMean,
-    /// That of the scene's own reference.
+    /// The pressure of the scene's own reference.
     OfReference,
 }
 

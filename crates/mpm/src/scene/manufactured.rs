@@ -83,7 +83,7 @@ struct MadeMotion {
     spots: Vec<Spot>,
 }
 
-/// What acts on a body in a motion, for a square and its soil; points at initial places, m.
+/// Body forces and sources of a prescribed motion, for a square, its soil, and points at initial places, m.
 ///
 /// # Errors
 /// When the parameters are impossible.
@@ -113,7 +113,7 @@ fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
 }
 
 impl MadeMotion {
-    /// What the formulas take of a place: what is known of a point with its number, where it is that point's.
+    /// Functions of a place in the formulas: those kept of the point of this number, where the place is that point's.
     #[inline(always)]
     fn spot(&self, number: usize, place: [f64; 2]) -> Spot {
         match self.spots.get(number) {

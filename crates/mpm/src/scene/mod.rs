@@ -98,7 +98,7 @@ impl SceneKind {
         }
     }
 
-    /// One line on what it is.
+    /// Description in one line.
     pub fn summary(self) -> &'static str {
         self.definition().summary
     }
@@ -108,7 +108,7 @@ impl SceneKind {
         self.definition().references
     }
 
-    /// Those that hold for a column, whose load may grow.
+    /// References that hold for a column, whose load may grow.
     pub fn references_of(self, column: &Column) -> &'static [ReferenceKind] {
         match self.definition().load {
             SceneLoad::SuddenOrGrowing(references) if column.loading_time > 0.0 => references,
@@ -382,7 +382,7 @@ impl SceneKind {
         self.is_a_layer() || self.is_manufactured() || self == Self::Footing
     }
 
-    /// Whether it is about locking, so that runs are told apart by the stiffness of water and soil.
+    /// Whether the scene is about locking, so that runs differ by the stiffness of water and soil.
     pub fn shows_locking(self) -> bool {
         self.is_a_layer() || self == Self::Footing
     }

@@ -93,7 +93,7 @@ impl SceneProblem {
         }
     }
 
-    /// Growth per step of what grows fastest in a plane under explicit steps of a size, s, where its step is small enough
+    /// Growth per step of the fastest mode in a plane under explicit steps of a size, s, where its step is small enough
     /// for eigenvalues.
     pub fn growth_under(&self, settings: &ExplicitSettings, step: f64) -> Option<f64> {
         match self {
@@ -192,7 +192,7 @@ pub fn column_problem<const D: usize>(
         pressure_scale: weight
             .map_or(load, |gravity| load.max(soil.mixture_density() * gravity * column.height)),
         forcing,
-        // A plate that is told where to go presses as hard as it has to.
+        // A plate of prescribed motion presses as hard as it has to.
         is_bounded: driven_plate.is_none(),
     })
 }
@@ -294,7 +294,7 @@ fn drained_soil(scene: SceneKind, soil: &Material) -> Material {
     Material { hydraulic_conductivity: sealing * soil.hydraulic_conductivity, ..*soil }
 }
 
-/// How a scene's load lies on the surface.
+/// Variation of a scene's load along the surface.
 fn load_shape(scene: SceneKind, column: &Column) -> LoadShape {
     match scene.definition().load {
         SceneLoad::Cosine => LoadShape::Cosine { length: column.extent() },

@@ -1,4 +1,4 @@
-//! What a body is made of: grid, points, nodes, cells.
+//! State of a body: grid, points, nodes, cells.
 
 pub mod cells;
 pub mod grid;

@@ -1,6 +1,6 @@
 //! The whole explicit step gives the same bits in registers of two numbers and of four.
 //!
-//! What is compared was compiled twice from one source (`crates/mpm/src/wide.rs`); without optimisation, and on a processor
+//! The two steps are compiled from one source (`crates/mpm/src/wide.rs`); without optimisation, and on a processor
 //! without registers of four, both are the same code and agree by themselves.
 
 use crate::integrate::critical_step::formula;

@@ -12,7 +12,7 @@ pub struct TiedRows {
     rows: Vec<TiedRow>,
 }
 
-/// One of them.
+/// A row under the plate.
 #[derive(Clone, Copy, Debug)]
 struct TiedRow {
     /// Place in the grid arrays.
@@ -23,7 +23,7 @@ struct TiedRow {
 }
 
 impl TiedRows {
-    /// Those of a body, by the rows of its nodes.
+    /// The tied rows of a body; `number` has the row of each node.
     pub fn new<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
         let tied = body.actions.plate.as_ref().map_or(&[][..], |plate| &plate.nodes);
         let fields = &body.nodes;
@@ -80,7 +80,7 @@ pub struct SlidingRows {
     components: Vec<SlidingComponent>,
 }
 
-/// One of them.
+/// A component in which the water slides.
 #[derive(Clone, Copy, Debug)]
 struct SlidingComponent {
     /// Place in the grid arrays.
@@ -91,7 +91,7 @@ struct SlidingComponent {
 }
 
 impl SlidingRows {
-    /// Those of a body, by the rows of its nodes.
+    /// The sliding components of a body; `number` has the row of each node.
     pub fn new<const D: usize>(body: &Body<D>, number: &[Option<usize>]) -> Self {
         let fields = &body.nodes;
         let of_node = |(node, row): (usize, &Option<usize>)| {

@@ -74,7 +74,7 @@ impl<const D: usize> AssembledStep<D> {
     }
 }
 
-/// What has moved, and how.
+/// Displacements and velocities at the end of a step of `dt` seconds.
 struct Moved<'a, const D: usize> {
     displacements: Displacements<'a, D>,
     velocity: [&'a [Vector<D>]; 2],

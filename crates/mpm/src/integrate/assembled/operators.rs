@@ -14,13 +14,13 @@ pub struct FrozenOperators<const D: usize> {
     pub nodes: Vec<usize>,
     /// Nodes of the body.
     pub node_count: usize,
-    /// One where a component of a phase is free, else zero, by row.
+    /// 1 where a component of a phase is free, else 0, by row.
     pub free: Vec<[Vector<D>; 2]>,
     /// `D`: dilation at each site over the displacements, `[site] → (row, 1/m)`.
     pub divergence: Vec<Vec<(usize, Vector<D>)>>,
     /// `A Q`: force of a unit dilation of each site with its sign turned, `[row] → (site, N)`.
     pub pressure_force: Vec<Vec<(usize, Vector<D>)>>,
-    /// What is solved between `D` and `A Q` where the storage is projected.
+    /// The linear system between `D` and `A Q` where the storage is projected.
     pub storage: Option<ProjectedStorage>,
     /// `K_σ`: force of the effective stress over the displacements with its sign turned,
     /// `[row] → (row, N/m)`.

@@ -1,4 +1,4 @@
-//! How the rows of a frozen step are stored, chosen by their structure: as bands where rows reach only their nearest
+//! Storage of the rows of a frozen step, chosen by their structure: as bands where rows reach only their nearest
 //! neighbours, as those of a column do, and as lists of entries elsewhere. Both answer the same questions about a block of
 //! rows that lie side by side: the forces on its nodes, and the projection of velocities onto them.
 
@@ -11,7 +11,7 @@ use crate::kernel::projection::ProjectedStorage;
 use crate::operators::sparse_rows::SparseRows;
 use oedometer_soil::tensor::{Tensor, Vector};
 
-/// What a step multiplies grid arrays with. Arrays hold `[MARGIN + row][component]`.
+/// Operators by which a step multiplies grid arrays. Arrays hold `[MARGIN + row][component]`.
 pub trait Rows<const D: usize> {
     /// Forces of the pressures, `K_p U_f`, and of the effective stresses, `K_σ U_s`, on the nodes of a
     /// block with their signs turned, N.
@@ -147,7 +147,7 @@ impl<const D: usize, const R: usize> Rows<D> for BandsWithin<'_, D, R> {
     }
 }
 
-/// What the rows of a block reach of a field.
+/// Entries of a field that the rows of a block reach.
 #[inline(always)]
 fn window<const D: usize, const R: usize>(field: &[Vector<D>], block: usize) -> &[Vector<D>] {
     let first = block * LANES + MARGIN - R;
@@ -204,9 +204,9 @@ pub struct SparseStorage<const D: usize> {
     pressure_force: SparseRows<Vector<D>>,
     skeleton_force: SparseRows<Tensor<D>>,
     projection: SparseRows<[f64; 2]>,
-    /// What is solved between the two factors where the storage is projected, and the moduli `Q` of the sites, Pa.
+    /// The linear system between the two factors where the storage is projected, and the moduli `Q` of the sites, Pa.
     storage: Option<Box<(ProjectedStorage, Vec<f64>)>>,
-    /// One where a component of a phase is free, else zero, by row.
+    /// 1 where a component of a phase is free, else 0, by row.
     free: Vec<[Vector<D>; 2]>,
 }
 

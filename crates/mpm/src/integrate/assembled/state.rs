@@ -36,7 +36,7 @@ pub struct FrozenState<const D: usize> {
     pub flux_displacement: Vec<Vector<D>>,
     /// Displacement of the nodes themselves, m.
     pub displacement: Vec<Vector<D>>,
-    /// Dilation at the sites, where rows ask for it.
+    /// Dilation at the sites, where rows need it.
     pub dilation: Vec<f64>,
 }
 
@@ -84,13 +84,13 @@ pub fn set_lanes<const D: usize>(field: &mut [Vector<D>], block: usize, componen
     }
 }
 
-/// What forces come from: slices that a step takes once, for a vector would be asked for its place after every store.
+/// Displacements that cause forces, as slices taken once per step: a vector's place would be looked up after every store.
 #[derive(Clone, Copy, Debug)]
 pub struct Displacements<'a, const D: usize> {
-    /// What strained the skeleton, m, `[MARGIN + row][component]`.
+    /// Displacement that strained the skeleton, m, `[MARGIN + row][component]`.
     pub strained: &'a [Vector<D>],
-    /// That of the flux, m, by row too.
+    /// Displacement of the flux, m, by row too.
     pub flux: &'a [Vector<D>],
-    /// Dilation at the sites, where rows ask for it.
+    /// Dilation at the sites, where rows need it.
     pub dilation: &'a [f64],
 }

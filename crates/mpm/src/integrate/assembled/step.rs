@@ -58,10 +58,10 @@ struct LoadedRow<const D: usize> {
 pub(crate) struct BlockConstants<const D: usize> {
     mixture_force: [Lanes; D],
     water_force: [Lanes; D],
-    /// One where a component of a phase is free, else zero.
+    /// 1 where a component of a phase is free, else 0.
     pub(crate) free: [[Lanes; D]; 2],
     porosity: Lanes,
-    /// One over the mass of the grains, where the skeleton is free, 1/kg.
+    /// Inverse of the mass of the grains, where the skeleton is free, 1/kg.
     per_solid_mass: [Lanes; D],
     /// Mass of the water over that of the grains, where the skeleton is free.
     water_share: [Lanes; D],
@@ -72,7 +72,7 @@ pub(crate) struct BlockConstants<const D: usize> {
     drag: Lanes,
     /// Acceleration of the water over its force for one kick and drag, 1/kg.
     per_water_inertia: [Lanes; D],
-    /// What the drag at the new velocities makes of the mixture's acceleration, kg.
+    /// `w Δt D` of the drag at the new velocities, kg (`NodalDrag::implicit`).
     implicit_drag: Lanes,
 }
 

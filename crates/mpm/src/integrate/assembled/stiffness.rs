@@ -71,7 +71,7 @@ fn entry_after<'a, T>(
     &mut row[*place].1
 }
 
-/// What a node's displacement `u` does to the strain at a point: the gradient `u ⊗ g + (b·u/D) I`.
+/// Strain at a point by a node's displacement `u`: the gradient `u ⊗ g + (b·u/D) I`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainEntry<const D: usize> {
     /// Node.

@@ -7,12 +7,12 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// What a search comes to.
+/// Result of a search for the critical step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
-    /// Largest stable step, s; where something grows under any step, the largest under which nothing grows much faster.
+    /// Largest stable step, s; where a mode grows under any step, the largest under which nothing grows much faster.
     pub step: Option<f64>,
-    /// Growth per such step of what grows under any step.
+    /// Growth per such step of the mode that grows under any step.
     pub growth: Option<f64>,
 }
 
@@ -27,9 +27,9 @@ static KNOWN: LazyLock<Mutex<HashMap<Key, Limit>>> = LazyLock::new(Mutex::defaul
 /// Steps after which a disturbance has felt every entry of the operator.
 const FEW_STEPS: usize = 4;
 
-/// The key of a search from a safe step, s: what becomes of a disturbance of all wavelengths, which two operators share only
-/// where they are the same. Steps of one size are enough: their result depends on stiffness, drag and inertia, and these
-/// determine steps of any other size.
+/// The key of a search from a safe step, s: the state of a disturbance of all wavelengths after a few steps, which two
+/// operators share only where they are the same. Steps of one size are enough: their result depends on stiffness, drag and
+/// inertia, and these determine steps of any other size.
 pub(super) fn key_of<const D: usize>(
     step: &AssembledStep<D>,
     settings: &ExplicitSettings,

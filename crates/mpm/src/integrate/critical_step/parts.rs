@@ -26,8 +26,8 @@ fn is_mirrored(operator: &DMatrix<f64>, images: &[Image]) -> bool {
     })
 }
 
-/// What an operator does to unknowns whose images are `parity` times themselves, by the first of each pair; an unknown that
-/// is its own image is in one part alone.
+/// The operator on unknowns whose images are `parity` times themselves, by the first of each pair; an unknown that is its own
+/// image is in one part alone.
 fn part(operator: &DMatrix<f64>, images: &[Image], parity: f64) -> DMatrix<f64> {
     let is_kept = |unknown: &usize| {
         let (image, sign) = images[*unknown];

@@ -1,4 +1,4 @@
-//! What the points of the water take from the soil where they have moved: porosities, domains and operators.
+//! Porosities, domains and operators of the water points, taken from the soil at their new places.
 
 use crate::integrate::double_point::DoublePoint;
 use oedometer_soil::elementary;
@@ -112,7 +112,7 @@ mod tests {
             let volume = pores / porosity(water.position[point][0]);
             assert!((water.volume[point] / volume - 1.0).abs() < 1e-2, "{point}: {}", water.volume[point]);
             assert!((2.0 * water.half_length[point][0] / volume - 1.0).abs() < 1e-2);
-            // What a pressure changes by over its domain stays as the domain stretches.
+            // The change of a pressure over its domain stays as the domain stretches.
             let change = water.slope[point][0] * water.half_length[point][0];
             assert!((change / (3e4 * halves[point][0]) - 1.0).abs() < 1e-12, "{change}");
         }

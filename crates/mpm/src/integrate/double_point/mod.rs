@@ -4,7 +4,7 @@
 //! [`DoublePoint`] puts the water beside it and takes the explicit step of [`Body::kick_and_drift`], each phase on its
 //! own points. `water_points` are the water's state, `following_water` what it takes from the soil, `water_pressure` its continuity and what its pressure
 //! does to the nodes, `pressure_lines` what its points forget, `sliver_nodes` the nodes that the surface has all but
-//! left, `samples` what a snapshot tells. Balances of momentum, kicks and the skeleton's strain are those of a
+//! left, `samples` the content of a snapshot. Balances of momentum, kicks and the skeleton's strain are those of a
 //! single set of points.
 
 mod following_water;
@@ -41,12 +41,12 @@ pub struct DoublePoint<const D: usize> {
     pub recovery: RecoveryOperator<D>,
     /// Pressure increments at the sites, Pa; `[cell]` or `[point]`.
     pub site_values: Vec<f64>,
-    /// What the water points give to each cell: weight times pressure, and weight, of its points, and the same of the
+    /// Sums over the water points of each cell: weight times pressure, and weight, of its points, and the same of the
     /// domains that reach into it, or of its points a second time; m^D Pa and m^D.
     pub(crate) cell_sums: Vec<[f64; 4]>,
-    /// Middle of what the soil fills of each cell with water points, m.
+    /// Middle of the part that the soil fills in each cell with water points, m.
     pub(crate) middles: Vec<Vector<D>>,
-    /// Slope over each of these cells of what is looked at, per m.
+    /// Slope over each of these cells of the field being mapped, per m.
     pub(crate) slopes: Vec<Vector<D>>,
     /// `A = Σ N m_w/n_w` at the nodes, kg: the water's inertia in its balance per volume of water.
     pub inertia: Vec<f64>,
@@ -56,7 +56,7 @@ pub struct DoublePoint<const D: usize> {
     pub takes_means: bool,
     /// Whether the pressure's forces are those of the cells' means: where points move and a cell has one rate.
     pub presses_by_cells: bool,
-    /// Whether what a cell presses with takes the cell's own rate, while its points are given more than that.
+    /// Whether the pressure that a cell exerts takes the cell's own rate, while its points are given more than that.
     pub keeps_cell_rates: bool,
     /// Mass of the water at the start, kg.
     pub initial_mass: f64,

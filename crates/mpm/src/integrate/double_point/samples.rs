@@ -82,7 +82,7 @@ impl<const D: usize> DoublePoint<D> {
         }
     }
 
-    /// Pores and the water in them, and what has left.
+    /// Pores, the water in them, and the water that has left.
     fn water_totals(&self) -> WaterTotals {
         let (soil, points, water) = (&self.body.material, &self.body.points, &self.water);
         let pores = |point: usize| points.volume(point) * soil.porosity_at(points.volume_ratio[point]);

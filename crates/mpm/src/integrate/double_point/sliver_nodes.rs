@@ -49,7 +49,7 @@ impl SliverNodes {
         }
     }
 
-    /// Whether they leave a cell without a top of its own.
+    /// Whether all nodes of a cell's top are slivers.
     #[inline]
     pub fn close<const D: usize>(&self, grid: &Grid<D>, first_node: usize) -> bool {
         let top = first_node + grid.node_stride()[D - 1];

@@ -39,7 +39,7 @@ pub struct LinearSystem<const D: usize> {
     pub mean_displacement: SparseRows<f64>,
     /// Mean over the surface of the relative flux `n (v_w − v_s)`, as a row times `x`, m/s.
     pub surface_outflow: SparseRows<f64>,
-    /// That mean flux at the start, m/s.
+    /// The same mean flux at the start, m/s.
     pub start_outflow: f64,
 }
 

@@ -38,7 +38,7 @@ pub const SECOND_STAGE: f64 = (1.0 - SDIRK_GAMMA) / SDIRK_GAMMA;
 /// Error of a step from the increments of its two stages: the difference from the first-order solution with the weights
 /// ½ and ½, `(½ − γ)/γ (z_1 − z_2)`.
 ///
-/// It is one order lower than the local error of the step, and so of the order of the accumulated error.
+/// The estimate is one order lower than the local error of the step, and so of the order of the accumulated error.
 pub const ERROR_SHARE: f64 = (0.5 - SDIRK_GAMMA) / SDIRK_GAMMA;
 
 /// Scales of the errors of the scaled unknowns.

@@ -1,4 +1,4 @@
-//! What is known of a point's strain between two residuals of a step.
+//! A point's strain and the logarithm of its stretch, kept from one residual of a step to the next.
 
 use oedometer_soil::elementary::ln;
 use oedometer_soil::tensor::Tensor;

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `H` is the inverse that the factors represent. The updated one maps the change of `F` exactly to the step that was taken.
-//! It costs a few vectors and no residual, instead of new factors: points that moved to other cells change a few rows of
+//! The update costs a few vectors and no residual, instead of new factors: points that moved to other cells change a few rows of
 //! the tangent, and a few corrections make up for them. On large-strain columns of 10 and 40 cells
 //! most runs with cell pressures take 14 to 63 % more iterations without them.
 
@@ -86,7 +86,7 @@ mod tests {
         residual
     }
 
-    /// Size of the correction after so many, each told to the next one or not.
+    /// Size of the last of so many corrections, with secants learnt from each or without.
     fn left(corrections: usize, secants: Option<&mut Secants>) -> f64 {
         let (mut x, mut before, mut nothing) = (vec![0.0; COUNT], Vec::new(), Secants::default());
         let learns = secants.is_some();
@@ -112,7 +112,7 @@ mod tests {
         // Twice as many as rows that differ, and two (Gay 1979).
         let remainder = left(6, Some(&mut secants));
         assert!(remainder < 1e-14, "{remainder}");
-        // What is known of the rows serves on, until they are others.
+        // The secants serve until the rows change.
         let known = left(2, Some(&mut secants));
         assert!(known < 0.1, "{known}");
         secants.clear();

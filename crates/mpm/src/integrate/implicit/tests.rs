@@ -245,7 +245,7 @@ fn loading_unloading_and_reloading_follow_finite_volumes() {
         ]);
     }
     for [settlement, coarse, fine, pressure, coarse_pressure, fine_pressure] in &references {
-        // They are of first order in their size: twice the finer less the coarser is their limit.
+        // The errors are of first order in the step: twice the finer less the coarser is their limit.
         let [limit, limit_pressure] = [2.0 * fine - coarse, 2.0 * fine_pressure - coarse_pressure];
         let misses = [settlement / limit - 1.0, pressure - limit_pressure];
         assert!((coarse / fine - 1.0).abs() < 1e-2, "{references:?}");

@@ -15,9 +15,9 @@ use oedometer_soil::tensor::{Tensor, Vector, dot, identity, inverse, product};
 /// Time level at which the effective stress acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Skeleton {
-    /// That of the anchored state.
+    /// The level of the anchored state.
     Explicit,
-    /// That of the trial state.
+    /// The level of the trial state.
     Implicit,
 }
 

@@ -51,7 +51,7 @@ pub struct Unknowns<const D: usize> {
     pub scales: Scales,
 }
 
-/// What an unknown stands for, during sorting.
+/// Kind of an unknown, during sorting.
 #[derive(Clone, Copy)]
 enum UnknownKind {
     Displacement { node: usize, direction: usize },

@@ -124,13 +124,13 @@ impl Failure {
 }
 
 impl fmt::Display for Failure {
-    /// What happened, when, and why.
+    /// Name, place and reason of the failure.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}{}: {}", self.kind.name(), self.place(), self.reason)
     }
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunStatus {
     /// All outputs reached.
@@ -188,7 +188,7 @@ pub struct HistoryPoint {
 /// Everything a run leaves behind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// How it ended.
+    /// End of the run.
     pub status: RunStatus,
     /// State at the start.
     pub start: Snapshot,

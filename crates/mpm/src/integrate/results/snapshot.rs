@@ -21,10 +21,10 @@ pub struct Samples {
     pub effective_stress: Vec<f64>,
     /// Vertical displacement of the skeleton, m, upward positive.
     pub displacement: Vec<f64>,
-    /// What a second dimension adds.
+    /// Components along the layer, in two dimensions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneSamples>,
-    /// What water points add: `pressure` is then that of the nearest of them.
+    /// Samples of the water points; `pressure` is then that of the nearest of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub water: Option<WaterSamples>,
 }
@@ -53,7 +53,7 @@ pub struct WaterSamples {
     pub pressure: Vec<f64>,
 }
 
-/// What the samples of two dimensions have beside those of a column.
+/// Components along the layer, which samples of two dimensions have beside those of a column.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PlaneSamples {
     /// Initial distance of each place along the layer, m.

@@ -1,4 +1,4 @@
-//! Weight in the balances: what rests must rest, in every method, and what is told is the excess.
+//! Weight in the balances: a column at rest stays at rest under every method, and results give the excess.
 
 use super::*;
 use crate::kernel::body::Problem;
@@ -114,7 +114,7 @@ fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
                 let problem = column_problem::<1>(scene, &column, &Material::default(), method, 8, 2);
                 Body::new(problem.expect("a column"))
             };
-            // What is left is what the load leaves of points off their lattice, weight or not.
+            // Only the load leaves points off their lattice unbalanced, with weight as without.
             let [mut weighing, mut weightless] =
                 [true, false].map(|weighs| start(SceneKind::Terzaghi, weighs, 1.0));
             weighing.map_forces();

@@ -90,7 +90,7 @@ impl<const D: usize> CellPlanes<D> {
     }
 }
 
-/// What each point keeps of the values of its cell's points.
+/// Rows of the filter: weights of the values of a cell's points in what each of them keeps.
 pub fn rows<const D: usize>(at: &PointsInCells<'_, D>) -> Vec<Vec<(usize, f64)>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); at.grid.cell_count()];
     for (point, cell) in at.cells.of_point.iter().enumerate() {
