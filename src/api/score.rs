@@ -404,7 +404,8 @@ mod tests {
         let (depths, x) = ([0.1, 0.5, 0.9], [0.0, 0.2, 0.6, 1.0]);
         let set = ["layer.length=3.0".to_owned()];
         let found = exact("cosine-layer", &[0.1], &depths, &x, &set).expect("inside");
-        let places = depths.iter().flat_map(|depth| x.iter().map(move |x| (found_height(*depth), 3.0 * x)));
+        // Heights over the base of a layer 1 m high.
+        let places = depths.iter().flat_map(|depth| x.iter().map(move |x| (1.0 - depth, 3.0 * x)));
         let (height, distance): (Vec<f64>, Vec<f64>) = places.unzip();
         let scored = |along: &[f64], sample: &str| {
             let samples = Samples {
@@ -456,10 +457,5 @@ mod tests {
         let told = score("terzaghi", &samples, "places", None, &[]).err().map(|error| error.to_string());
         let words = "unknown kind of places `places`: expected points, centres, nodes, surface";
         assert_eq!(told.as_deref(), Some(words));
-    }
-
-    /// Height over the base of a layer 1 m high.
-    fn found_height(depth: f64) -> f64 {
-        1.0 - depth
     }
 }

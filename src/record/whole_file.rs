@@ -41,16 +41,12 @@ pub enum StoreError {
 static PLACE: LazyLock<String> = LazyLock::new(|| {
     let host = host_name();
     let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-    let boot = line_of("/proc/sys/kernel/random/boot_id");
-    let tag = blake3::hash(format!("{host} {boot} {}", namespace.display()).as_bytes()).to_hex();
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+    let tag = blake3::hash(format!("{host} {} {}", boot.trim(), namespace.display()).as_bytes()).to_hex();
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
     let host: String = host.chars().map(plain).take(HOST_LETTERS).collect();
     format!("{host}-{}", &tag[..8])
 });
-
-fn line_of(path: &str) -> String {
-    fs::read_to_string(path).unwrap_or_default().trim().to_owned()
-}
 
 /// Writes a file under a temporary name and renames it, making its folders; it is on the disk then.
 ///

@@ -320,7 +320,7 @@ impl Method {
     /// the suffix `-moments` for moment-fitted volumes.
     pub fn named(name: &str) -> Option<Self> {
         if let Some(bare) = name.strip_suffix(CELLS_SUFFIX) {
-            let method = Self::named(bare).filter(|method| method.can_move())?;
+            let method = Self::named(bare).filter(|method| method.configuration.is_none())?;
             return (method.memory == Memory::Points).then_some(Self { memory: Memory::Cells, ..method });
         }
         if let Some(bare) = name.strip_prefix(TOTAL_PREFIX) {
@@ -358,11 +358,6 @@ impl Method {
         let fitted: Vec<String> = fitted.map(|row| format!("{}{MOMENTS_SUFFIX}", row.0)).collect();
         let fitted_total: Vec<String> = fitted.iter().map(|name| format!("{TOTAL_PREFIX}{name}")).collect();
         bare.chain(fixed).chain(total).chain(cells).chain(fitted).chain(fitted_total).collect()
-    }
-
-    /// Whether the method leaves it to the scene to move its points.
-    fn can_move(self) -> bool {
-        self.configuration.is_none()
     }
 
     /// The operators in the words of a study file: `basis+strain+pressure+recovery`.

@@ -65,11 +65,6 @@ struct PaperRun<'b, 'a> {
     record: &'a Record,
 }
 
-/// The runs of Fig. 3, at small strain, and of Fig. 4, at large strain.
-fn paper_runs<'b, 'a>(results: &'b [StudyResults<'a>]) -> Vec<PaperRun<'b, 'a>> {
-    [3, LARGE_STRAIN_FIGURE].into_iter().filter_map(|number| PaperRun::new(number, results)).collect()
-}
-
 /// Methods of a figure of consolidation, the paper's first.
 const MOST_METHODS: usize = 3;
 
@@ -150,7 +145,9 @@ impl PaperFinding {
     /// # Errors
     /// When an exact solution refuses the paper's column.
     pub(crate) fn new(results: &[StudyResults<'_>]) -> Result<Option<Self>, ExactError> {
-        let runs = paper_runs(results);
+        // Fig. 3 is at small strain.
+        let figures = [3, LARGE_STRAIN_FIGURE].into_iter();
+        let runs: Vec<_> = figures.filter_map(|number| PaperRun::new(number, results)).collect();
         if runs.is_empty() {
             return Ok(None);
         }

@@ -79,7 +79,8 @@ impl<'a> WorkPrecision<'a> {
             (run.record.case.method.to_string(), run.record.case.integrator.name())
         });
         let fronts = groups.into_iter().map(|(_, runs)| {
-            let points: Vec<_> = runs.iter().map(|run| run.point()).collect();
+            let point = |run: &&TimedRun<'_>| CostPoint { cost: run.wall.median, error: run.error };
+            let points: Vec<_> = runs.iter().map(point).collect();
             let best = runs.iter().zip(front(&points)).filter(|(_, on_front)| *on_front);
             MethodFront {
                 method: runs[0].record.case.method,
@@ -88,12 +89,6 @@ impl<'a> WorkPrecision<'a> {
             }
         });
         fronts.collect()
-    }
-}
-
-impl TimedRun<'_> {
-    fn point(&self) -> CostPoint {
-        CostPoint { cost: self.wall.median, error: self.error }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Settlements at the outputs of a study in m, exact and of the run that its answer names: what an engineer looks up by date.
 
-use crate::case::{Case, Norm, Quantity, Sample};
+use crate::case::{Norm, Quantity, Sample};
 use crate::judge::findings::QuantityWithin;
 use crate::judge::findings::within::{choice, problem};
 use crate::judge::paths::grouped;
@@ -74,7 +74,7 @@ pub fn settlement_tables(
             let exact = reference.settlement(*time_factor)?;
             let error = error.map(|row| row.value).filter(|value| value.is_finite());
             Ok(SettlementRow {
-                seconds: seconds_at(case, *time_factor),
+                seconds: time_factor * case.seconds_per_time_factor(),
                 time_factor: *time_factor,
                 degree: has_degree.then(|| reference.degree_of_consolidation(*time_factor)).transpose()?,
                 exact,
@@ -86,10 +86,6 @@ pub fn settlement_tables(
         Ok(SettlementTable { run: case.label(), reference: reference.name().to_owned(), rows })
     })
     .collect()
-}
-
-fn seconds_at(case: &Case, time_factor: f64) -> f64 {
-    time_factor * case.seconds_per_time_factor()
 }
 
 #[cfg(test)]

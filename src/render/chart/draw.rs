@@ -9,7 +9,7 @@ use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
-use crate::render::chart::{Chart, ChartAxis, Series, Style};
+use crate::render::chart::{Chart, ChartAxis, Style};
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
@@ -131,10 +131,6 @@ fn shape(chart: &Chart, (x, y): (Ends, Ends), room: f64, tall: f64) -> (f64, f64
     ((unit * dx).max(30.0), (unit * dy).max(30.0))
 }
 
-fn has_markers(series: &Series) -> bool {
-    matches!(series.style, Style::Markers | Style::LineAndMarkers)
-}
-
 /// Sentences on what the figure cannot show.
 fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
     let mut lost: BTreeMap<Reason, (usize, Vec<&str>)> = BTreeMap::new();
@@ -145,7 +141,7 @@ fn notes(chart: &Chart, x: &Ends, y: &Ends) -> Vec<String> {
                 // The first reason that hides the point altogether; lines are cut at the frame without a word.
                 (Err(Reason::Outside) | Ok(_), Err(other)) | (Err(other), _) => other,
             };
-            if reason == Reason::Outside && !has_markers(series) {
+            if reason == Reason::Outside && !matches!(series.style, Style::Markers | Style::LineAndMarkers) {
                 continue;
             }
             let (count, names) = lost.entry(reason).or_default();

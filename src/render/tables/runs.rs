@@ -155,10 +155,6 @@ mod tests {
         crate::campaign::runner::records_of(text).remove(0)
     }
 
-    fn shown(row: &[Cell]) -> Vec<String> {
-        row.iter().map(Cell::show).collect()
-    }
-
     #[test]
     fn a_limit_that_is_not_known_has_no_difference_and_a_run_beside_it_is_told_by_its_end() {
         let probe = |steps: u64, growth: Option<f64>| Probe {
@@ -197,7 +193,8 @@ mod tests {
             });
             critical_step_row(&critical_steps(&[record])[0])
         };
-        assert_eq!(shown(&found(Some(0.75), None))[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2", "–"]);
+        let shown: Vec<String> = found(Some(0.75), None).iter().map(Cell::show).collect();
+        assert_eq!(shown[1..6], ["5.00e-1", "7.50e-1", "50.0 %", "2", "–"]);
         let none = Cell::missing("no step was stable");
         assert_eq!(found(None, None)[2..4], [none.clone(), none]);
         let unknown = found(Some(0.75), Some("a reason"));

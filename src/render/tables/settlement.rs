@@ -117,11 +117,10 @@ mod tests {
         assert_eq!((shown.len(), shown[1][0].as_str()), (2, "ν 0.4"));
         // Two outputs of a run, and a single run, keep a table of their own.
         assert_eq!(tables_of(&[of_run("0.3", &[0.1, 0.2]), of_run("0.4", &[0.1])]).len(), 2);
-        assert_eq!(tables_of(&[of_run("0.3", &[0.1])])[0].0, heading_of_one());
+        assert_eq!(
+            tables_of(&[of_run("0.3", &[0.1])])[0].0,
+            "Settlement of MPM implicit cells=16 (u-p, ν 0.3), against Terzaghi's solution with compressible water"
+        );
         assert!(tables_of(&[]).is_empty());
-    }
-
-    fn heading_of_one() -> String {
-        "Settlement of MPM implicit cells=16 (u-p, ν 0.3), against Terzaghi's solution with compressible water".to_owned()
     }
 }

@@ -336,9 +336,11 @@ fn names(given: &Given<'_>) -> Vec<(f64, String)> {
         let stiff = moduli(given).into_iter().map(|(ratio, asked)| (ratio, asked.to_owned()));
         all.extend(stiff);
     }
+    // A stiffness could be meant too, where no displacement tells it.
+    let or_stiffness = if given.moves() { ", or c_v," } else { ", or c_v or E_oed," };
     for decades in (1..=9).flat_map(|power| [power, -power]) {
         let factor = exp(f64::from(decades) * ln(10.0));
-        all.push((factor, format!("is k{} off by a power of ten?", or_modulus(given))));
+        all.push((factor, format!("is k{or_stiffness} off by a power of ten?")));
     }
     all
 }
@@ -346,11 +348,6 @@ fn names(given: &Given<'_>) -> Vec<(f64, String)> {
 /// A number rounded to three digits: a fit gives no more.
 fn three_digits(number: f64) -> f64 {
     format!("{number:.2e}").parse().unwrap_or(number)
-}
-
-/// Further inputs that only a stiffness could be, where no displacement tells it.
-fn or_modulus(given: &Given<'_>) -> &'static str {
-    if given.moves() { ", or c_v," } else { ", or c_v or E_oed," }
 }
 
 /// The inputs of which each alone would make the time run faster by a factor, with the numbers that they would be.
