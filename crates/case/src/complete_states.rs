@@ -95,7 +95,7 @@ mod tests {
     type Change<'a> = &'a dyn Fn(&mut Vec<Snapshot>);
 
     #[test]
-    fn states_that_are_not_whole_are_a_failure_by_what_they_lack() {
+    fn incomplete_states_fail_and_name_what_is_missing() {
         let case =
             Case { cells: 2, time_factors: vec![0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) };
         let mut complete = Snapshot { time: 0.1 * case.seconds_per_time_factor(), ..Snapshot::default() };

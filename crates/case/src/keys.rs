@@ -437,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_brings_what_follows_from_it_and_counts_for_those_who_heed_it() {
+    fn setting_an_input_sets_its_dependents_and_counts_for_solvers_that_read_it() {
         let mut case = Case::seed(Task::Solve, SceneKind::Terzaghi);
         let set = |case: &mut Case, name: &str, value: Value| {
             Key::named(name, "sweep").expect("a key").set(case, value);

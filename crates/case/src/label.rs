@@ -131,10 +131,11 @@ impl Case {
 mod tests {
     use super::*;
     use crate::{Attached, SolverName};
+    use oedometer_mpm::kernel::Drag;
     use oedometer_mpm::scene::SceneKind;
 
     #[test]
-    fn a_label_names_what_is_unusual_and_its_step_where_that_is_no_question() {
+    fn a_label_names_unusual_inputs_and_the_step_unless_the_step_is_the_question() {
         type Change = fn(&mut Case);
         let other_soil: Change = |case| {
             case.task = Task::Stability;
@@ -153,6 +154,7 @@ mod tests {
             (other_soil, all),
             (|case| case.material.poissons_ratio = 0.49, ""),
             (|case| case.column.points.water_per_cell = 3, "two point sets, 3 of the water"),
+            (|case| case.settings.drag = Drag::Implicit, "implicit drag"),
             (swept, "FLIP 0.25, drag=explicit, porosity=0.3, cells=8"),
         ] {
             let mut case = Case { cells: 8, ..Case::seed(Task::Solve, SceneKind::Terzaghi) };

@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_the_integrators_take_makes_no_other_case_of_an_attached_solver() {
+    fn inputs_of_integrators_alone_do_not_change_an_attached_case() {
         let foreign = Case { method: foreign("ogs", "0123456789abcdef"), ..seed() };
         let explicit = foreign.clone().as_its_solver_knows();
         let mut implicit = foreign.clone();
@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_without_own_weight_has_the_identity_that_it_had_before_there_was_any() {
+    fn a_case_without_self_weight_keeps_the_hash_from_before_the_key() {
         let text = serde_json::to_string(&seed()).expect("plain data");
         assert!(!text.contains("self_weight"), "{text}");
     }
@@ -462,12 +462,5 @@ mod tests {
         hashes.sort();
         hashes.dedup();
         assert_eq!(hashes.len(), all, "every change is another case");
-    }
-
-    #[test]
-    fn the_label_tells_what_is_special() {
-        let mut case = seed();
-        case.settings.drag = Drag::Implicit;
-        assert_eq!(case.label(), "GC-SRI-patch explicit cells=10 points=2 stable=0.5 (implicit drag)");
     }
 }

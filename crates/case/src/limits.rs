@@ -292,7 +292,7 @@ mod tests {
     use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 
     #[test]
-    fn choices_of_moving_points_are_refused_where_points_move_and_nothing_heeds_them() {
+    fn choices_of_moving_points_are_refused_where_points_move_and_the_solver_ignores_them() {
         use IntegratorKind::{Explicit, Implicit, SemiImplicit};
         use SceneKind::XieLeo;
         // Scene, method, integrator, point sets; then whether APIC and stress slopes are taken there.
@@ -368,7 +368,7 @@ mod tests {
 "#;
 
     #[test]
-    fn a_combination_is_refused_by_its_own_key_sentence_and_help_and_what_is_near_it_is_taken() {
+    fn each_refusal_has_its_key_sentence_and_help_and_near_combinations_are_accepted() {
         use Formulation::{QuasiStatic, UP};
         use SceneKind::{DynamicColumn, Footing, Layered, SealedElement, Terzaghi, XieLeo};
         type Change = fn(&mut Case);
@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_moves_choices_of_moving_points_are_taken_and_named_as_idle() {
+    fn where_nothing_moves_choices_of_moving_points_are_accepted_and_named_as_idle() {
         let seed = |integrator: IntegratorKind| {
             let mut case = Case::seed(Task::Solve, SceneKind::Terzaghi);
             (case.integrator, case.formulation) = (integrator, integrator.default_formulation());

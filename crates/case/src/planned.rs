@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_that_is_changed_has_its_own_and_the_others_keep_theirs() {
+    fn changing_a_copy_leaves_the_others_unchanged() {
         let first = Shared::from(Material::default());
         let mut other = first.clone();
         assert!(other.is_one_with(&first));
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn an_equal_value_becomes_one_with_another_and_a_different_one_stays() {
+    fn equal_values_are_shared_and_different_ones_are_not() {
         let first = Shared::from(Material::default());
         let [mut equal, mut other] = [0.3, 0.4].map(|porosity| Shared::from(Material { porosity, ..*first }));
         equal.share_with(&first);
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shared_is_written_and_read_as_the_value_itself() {
+    fn a_shared_value_is_written_and_read_as_the_value_itself() {
         let times = Shared::from(vec![0.1, 0.2]);
         let text = serde_json::to_string(&times).expect("plain");
         assert_eq!((text.as_str(), format!("{times:?}")), ("[0.1,0.2]", "[0.1, 0.2]".to_owned()));

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kind_of_step_follows_what_moves_and_who_integrates() {
+    fn the_kind_of_step_follows_the_motion_and_the_integrator() {
         use IntegratorKind::{Explicit, Implicit, SemiImplicit};
         let kind = |scene, method, integrator| StepKind::for_case(&case(scene, method, integrator, 10));
         assert_eq!(kind(SceneKind::Terzaghi, "MPM", Explicit), StepKind::Assembled);
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_costs_more_with_points_with_width_and_with_fits() {
+    fn a_step_costs_more_with_points_width_and_fits() {
         let column = |method, cells| {
             seconds_per_step(&case(SceneKind::XieLeo, method, IntegratorKind::Explicit, cells))
         };

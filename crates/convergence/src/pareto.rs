@@ -55,4 +55,24 @@ pub enum ParetoChange {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    fn point(cost: f64, error: f64) -> CostPoint {
+        CostPoint { cost, error }
+    }
+
+    #[test]
+    fn the_front_holds_what_no_other_point_dominates() {
+        let points = [
+            point(1.0, 1.0),
+            point(2.0, 0.5),
+            point(2.0, 0.6),
+            point(3.0, 0.5),
+            point(0.5, f64::NAN),
+            point(4.0, 0.1),
+            point(4.0, 0.1),
+        ];
+        assert_eq!(front(&points), [true, true, false, false, false, true, true]);
+    }
+}

@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn levels_are_put_from_coarse_to_fine() {
+    fn levels_are_sorted_from_coarse_to_fine() {
         let series = ErrorSeries::from_pairs(&[(0.1, 1.0), (0.4, 3.0), (0.2, 2.0)]);
         assert_eq!(series.points().unwrap(), vec![(0.4, 3.0), (0.2, 2.0), (0.1, 1.0)]);
         assert_eq!(series.at(0.2).unwrap().error, Some(2.0));

@@ -430,14 +430,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_name_is_its_own_display() {
+    fn a_named_method_is_displayed_by_its_name() {
         for name in Method::names() {
             assert_eq!(Method::named(&name).map(|method| method.to_string()), Some(name));
         }
     }
 
     #[test]
-    fn names_that_are_none_are_refused() {
+    fn unknown_names_are_refused() {
         for name in [
             "",
             "uMPM",
@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn a_free_combination_tells_its_choices() {
+    fn a_free_combination_is_displayed_by_its_choices() {
         let method = Method {
             basis: Basis::Hat,
             strain: StrainGradient::Cmpm,

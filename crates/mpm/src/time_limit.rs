@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_is_over_at_its_end_and_no_limit_never() {
+    fn a_time_limit_is_over_at_its_end_and_an_absent_one_never() {
         assert!(TimeLimit::after(0.0).is_over());
         assert!(!TimeLimit::after(f64::INFINITY).is_over() && !TimeLimit::default().is_over());
     }

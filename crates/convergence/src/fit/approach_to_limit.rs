@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_or_grows_without_end_goes_to_no_limit() {
+    fn errors_that_fall_or_grow_without_end_have_no_limit() {
         assert_eq!(limit_of(&values(&[4e-2, 1e-2, 2.5e-3, 6e-4])), None);
         assert_eq!(limit_of(&values(&[1e-2, 2.6e-3, 2.3e-3, 2.2e-3])), None);
         assert_eq!(limit_of(&values(&[1.0, 1.1, 1.2, 1.3, 1.4])), None);

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_term_is_told_with_and_without_a_formal_order() {
+    fn the_second_term_is_found_with_and_without_a_formal_order() {
         for formal in [None, Some(2.0)] {
             for levels in [5, 6, 7] {
                 let bend = |error: fn(f64) -> f64| explain(&points(error, levels), formal);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nothing_fits_is_not_explained() {
+    fn a_series_that_no_second_term_fits_is_not_explained() {
         let mut data = points(|h| h * h, 6);
         for (point, factor) in data.iter_mut().zip([1.0, 0.3, 2.0, 0.5, 1.0, 2.0]) {
             point.1 *= factor;

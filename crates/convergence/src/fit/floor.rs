@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_order_is_undefined() {
+    fn series_without_an_order_are_undefined() {
         assert_eq!(fit_floor(&points(|h| 1.0 / h)), Err(Undefined::NotDetermined));
         assert_eq!(fit_floor(&points(|_| 1.0)), Err(Undefined::NotDetermined));
         let cliff = points(|h| if h > 0.15 { 1.0 } else { 1e-3 });

@@ -29,7 +29,7 @@ fn with_and_without_order(class: Class) -> [Class; 2] {
 }
 
 #[test]
-fn the_four_series_of_the_issue() {
+fn a_higher_term_a_lower_term_a_floor_and_growth_get_their_classes() {
     for context in [formal(2.0), Context::default()] {
         let higher = classify(&series(|h| h * h + 8.0 * h.powi(3)), &context);
         assert_eq!(higher.class, Class::Asymptotic, "{higher:?}");
@@ -68,7 +68,7 @@ fn clean_series_are_asymptotic_at_any_ratio() {
 }
 
 #[test]
-fn nonsense_is_not_evaluable() {
+fn errors_that_are_not_positive_and_finite_are_not_evaluable() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-3, 0.0, 1e-310] {
         for place in 0..6 {
             let mut errors = SIZES.map(|h| h * h);
@@ -193,7 +193,7 @@ fn signs_decide_only_where_they_belong_to_the_errors() {
 }
 
 #[test]
-fn three_levels_claim_no_floor_and_four_do() {
+fn three_levels_cannot_show_a_floor_and_four_can() {
     for formal_order in [None, Some(2.0)] {
         let context = Context { formal_order, ..Context::default() };
         for errors in [[0.3, 0.3, 0.3], [4e-3, 1.2e-3, 1.0e-3], [3e-3, 3.6e-4, 8.9e-5]] {
@@ -221,7 +221,7 @@ fn three_levels_claim_no_floor_and_four_do() {
 }
 
 #[test]
-fn of_two_classes_that_fit_the_documented_one_is_given() {
+fn of_two_classes_that_fit_the_documented_one_wins() {
     let class_of = |errors: &[f64], context: Context| classify(&listed(errors), &context).class;
     let plain = Context::default;
     // Nonsense in the context before round-off, and round-off before everything else.
@@ -250,7 +250,7 @@ fn of_two_classes_that_fit_the_documented_one_is_given() {
 }
 
 #[test]
-fn growing_and_oscillating_are_told_apart() {
+fn growing_and_oscillating_errors_get_different_classes() {
     assert_eq!(class(&listed(&[1.0, 2.0, 4.0])), with_and_without_order(Class::Divergent));
     assert_eq!(class(&listed(&[4e-2, 1e-2, 2.5e-3, 6e-3, 2e-2])), with_and_without_order(Class::Divergent));
     assert_eq!(class(&listed(&[1.0, 1.1, 1.2, 1.3, 1.4, 1.5])), with_and_without_order(Class::Divergent));
@@ -295,7 +295,7 @@ fn round_off_does_not_choose_between_explanations() {
 }
 
 #[test]
-fn a_second_term_is_told_before_the_order_leaves_the_band() {
+fn a_second_term_is_named_before_the_order_leaves_the_band() {
     // At a fifth of the finest error a floor governs, though the order is still above 1.75.
     let with_floor = |floor: f64| classify(&series(|h| h * h + floor), &formal(2.0)).class;
     assert_eq!(with_floor(1.1e-5), Class::FloorLimited);
@@ -310,7 +310,7 @@ fn a_lower_order_that_has_settled_is_wrong_only_where_another_is_expected() {
 }
 
 #[test]
-fn a_floor_is_put_down_to_what_fits_it_with_advice() {
+fn a_floor_is_attributed_to_the_cause_that_fits_it_with_advice() {
     let limiter =
         |kind, name: &str, magnitude| Limiter { kind, name: name.to_owned(), magnitude, order: None };
     let step = limiter(LimiterKind::Step, "the time step", Some(2.2e-4));
@@ -348,7 +348,7 @@ fn a_poor_reference_is_no_evidence() {
 }
 
 #[test]
-fn a_context_of_nonsense_does_not_pass() {
+fn an_invalid_context_is_not_evaluable() {
     let clean = series(|h| h * h);
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
         let contexts = [
@@ -461,7 +461,7 @@ proptest! {
 
 /// `h^p + b h^q` on six levels that halve: the share of the second term in the finest error, by hand.
 #[test]
-fn the_share_of_a_second_term_is_told_at_the_finest_level() {
+fn the_share_of_a_second_term_is_given_at_the_finest_level() {
     for (p, q, share, class) in [
         (1.0, 0.0, 0.21, Class::FloorLimited),
         (2.0, 1.0, 0.22, Class::Contaminated),

@@ -362,7 +362,7 @@ fn digits_that_move_are_exact_or_a_floor_and_never_divergence() {
 }
 
 #[test]
-fn the_floor_that_was_called_an_order_is_a_floor() {
+fn a_floor_of_two_thirds_of_the_finest_error_is_not_an_order() {
     // 0.4 h and a floor of two thirds of the finest error, on 8, 12, 18 and 27 cells.
     let points = [8.0, 12.0, 18.0, 27.0_f64].map(|cells| (1.0 / cells, 0.4 / cells + 0.8 / 27.0));
     for formal_order in [None, Some(1.0), Some(2.0)] {
@@ -377,7 +377,7 @@ fn the_floor_that_was_called_an_order_is_a_floor() {
 }
 
 #[test]
-fn values_that_go_to_and_fro_have_no_order() {
+fn oscillating_values_have_no_order() {
     let sizes = [0.1, 0.05, 0.025, 0.0125, 0.006_25];
     let values = [1.04, 0.99, 1.0025, 0.999_375, 1.000_156_25];
     for levels in 4..=5 {

@@ -161,7 +161,7 @@ fn ups_and_downs(draw: &mut Draw, text: &mut String) {
 }
 
 #[test]
-fn classes_of_series_are_told_with_their_numbers() {
+fn classes_of_series_come_with_their_numbers() {
     let mut draw = Draw(19_880_401);
     let mut text = String::new();
     for (kind, make) in KINDS {
@@ -249,7 +249,7 @@ fn series_that_cannot_be_evaluated_say_why() {
 }
 
 #[test]
-fn uncertainties_of_values_are_told_with_everything_they_are_derived_from() {
+fn uncertainties_come_with_everything_they_are_derived_from() {
     let mut draw = Draw(5_551_212);
     let mut text = String::new();
     for turn in 0..70 {
@@ -308,7 +308,7 @@ fn uncertainties_of_values_are_told_with_everything_they_are_derived_from() {
 }
 
 #[test]
-fn demands_that_are_none_say_what_is_wrong_with_them() {
+fn invalid_demands_are_refused_with_a_reason() {
     let none = SeriesDemand::default();
     let at = |size, below, above| Some(ErrorBound { size, below, above });
     let order = |value, minus, plus| Some(OrderBand { value, minus, plus });

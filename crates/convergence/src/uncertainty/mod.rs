@@ -203,7 +203,7 @@ mod tests {
     /// Values on a way of first or second order whose middle one is off, so that they go to and fro: half their range
     /// misses the error of the finest by up to a factor of 4.5, three times the range covers it.
     #[test]
-    fn three_values_that_go_to_and_fro_are_covered() {
+    fn three_oscillating_values_are_covered() {
         let (mut cases, mut by_half_the_range) = (0, 0);
         for ratio in [1.2, 1.5, 2.0_f64, 4.0] {
             for order in [1, 2] {
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_has_no_uncertainty() {
+    fn unusable_values_have_no_uncertainty_and_a_reason() {
         assert_eq!(estimate(&FOUR, |_| 1.0), Err(Undefined::EqualValues));
         assert_eq!(estimate(&FOUR, |h| 1.0 / h), Err(Undefined::NotConverging));
         assert_eq!(estimate(&FOUR[..2], |h| h), Err(Undefined::TooFewLevels { levels: 2, needed: 3 }));

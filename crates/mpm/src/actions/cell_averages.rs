@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadratic_field_is_remembered_exactly() {
+    fn cell_averages_reproduce_a_quadratic_field() {
         let (_, points, _) = crossed();
         let field: Vec<f64> = points.position.iter().map(|x| 3.0 - 2.0 * x[0] + 5.0 * x[0] * x[0]).collect();
         for (got, exact) in spread(&field).iter().zip(&field) {

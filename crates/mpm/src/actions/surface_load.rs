@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_load_is_whole_and_acts_where_the_surface_is() {
+    fn nodal_forces_sum_to_the_load_and_act_at_the_surface() {
         let grid = Grid::new(0.1, [12]);
         let mut points = Points::lattice(0.1, [10], 2);
         let surface = LoadedSurface::new(&points, 5.0);
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cosine_load_has_no_resultant_and_its_own_amplitude() {
+    fn a_cosine_load_has_no_resultant_and_the_given_amplitude() {
         let grid = Grid::new(0.25, [4, 5]);
         let points = Points::<2>::lattice(0.25, [4, 4], 2);
         let surface = LoadedSurface::new(&points, 3.0).shaped(LoadShape::Cosine { length: 1.0 }, &points);

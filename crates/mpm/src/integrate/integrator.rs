@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_explicit_steps_leapfrog_with_centred_drag_alone_is_of_second_order() {
+    fn only_leapfrog_with_centred_drag_is_an_explicit_step_of_second_order() {
         for scheme in [Scheme::ForwardEuler, Scheme::Leapfrog] {
             for drag in [Drag::Explicit, Drag::Implicit, Drag::Centred] {
                 let settings = ExplicitSettings { scheme, drag, ..ExplicitSettings::default() };

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_is_held_to_what_consolidation_and_waves_can_reach() {
+    fn a_column_is_bounded_by_what_consolidation_and_waves_can_reach() {
         let soil = Material::default();
         let bounds = bounds_of(SceneKind::Terzaghi, &Column::default(), &soil);
         let final_settlement = 1.0 / soil.oedometric_modulus();
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_in_balance_is_accelerated_by_the_release_of_its_water_and_by_its_starts_waves() {
+    fn the_bound_on_unbalanced_forces_allows_the_release_of_water_and_the_first_waves() {
         let soil = Material { hydraulic_conductivity: 1e-6, ..Material::default() };
         let bounds = bounds_of(SceneKind::Terzaghi, &Column { load: 50.0, ..Column::default() }, &soil);
         // Of 50 Pa on five cells a hundredth, and half a millisecond for a wave.

@@ -197,14 +197,14 @@ mod tests {
     }
 
     #[test]
-    fn constant_steps_fill_the_way() {
+    fn constant_steps_fill_the_interval() {
         assert_eq!(StepLimit::Constant(0.3).row(0.1, 1.0), EqualSteps::first(0.1, 0.3, 3));
         assert_eq!(StepLimit::Constant(0.4).row(0.0, 1.0).count, 3);
         assert_eq!(StepLimit::Constant(0.25).expected_steps(1.0), 4);
     }
 
     #[test]
-    fn steps_that_grow_stop_at_the_most_that_they_may_be() {
+    fn growing_steps_stop_at_their_largest_size() {
         let limit = StepLimit::Growing { first: 1e-3, growth: 0.1, most: 7e-3 };
         let (mut time, mut largest) = (0.0, 0.0_f64);
         // After the first output a tenth of the time is far more.
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn courant_steps_of_layers_are_those_of_the_fastest_waves_wherever_they_run() {
+    fn courant_steps_of_layers_are_those_of_the_fastest_layer() {
         let soil = Material { water_bulk_modulus: 1e5, ..Material::default() };
         let method = Method::named("GIMP").expect("known");
         let layer = |youngs_modulus: f64| SoilLayer {

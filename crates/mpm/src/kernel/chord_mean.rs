@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn between_full_cells_it_is_the_chord_of_two_points_and_at_the_surface_that_to_the_end() {
+    fn the_mean_is_the_chord_of_two_points_between_full_cells_and_that_to_the_end_at_the_surface() {
         let ratios = [0.95, 0.9, 0.8, 0.78, 0.7];
         let load = LOAD / Material::default().oedometric_modulus();
         for (law, potential, stress, end) in [

@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn energy_may_fall_and_come_from_work_and_nothing_else() {
+    fn energy_may_fall_and_rises_only_by_work() {
         let mut account = EnergyAccount::of_scale(1.0);
         let energy = |kinetic, stored, work| Energy { kinetic, stored, work };
         for (kinetic, stored, work) in [(0.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.5, 1.0, 1.5), (0.0, 5.0, 6.0)] {

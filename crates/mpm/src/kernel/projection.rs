@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_free_of_the_projection_and_a_checkerboard_is_not() {
+    fn a_projection_leaves_constants_and_resists_a_checkerboard() {
         let body = layer("PPP");
         let (sites, site_of_node) = body.nodal_sites();
         let rows = body.projection_rows(&sites, &site_of_node);
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_projected_storage_is_solved() {
+    fn the_projected_storage_solves_its_linear_system() {
         let body = layer("PPP");
         let (sites, site_of_node) = body.nodal_sites();
         let rows = body.projection_rows(&sites, &site_of_node);

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn domains_share_their_cell_by_what_they_fill_and_still_tile_it() {
+    fn domains_divide_their_cell_by_filled_volume_and_still_tile_it() {
         let (mut points, stacked) = squeezed([4]);
         let grid = Grid::new(0.25, [5]);
         let cells = cells_of(&grid, &points);
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_a_plane_go_as_a_column_does() {
+    fn each_row_of_a_plane_is_stacked_like_a_column() {
         let (mut line, stacked) = squeezed([4]);
         let grid = Grid::new(0.25, [5]);
         let cells = cells_of(&grid, &line);

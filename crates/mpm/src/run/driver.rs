@@ -254,7 +254,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parabola_is_noted_exactly_at_every_time_that_is_due() {
+    fn a_parabola_is_recorded_exactly_at_every_time_that_is_due() {
         let settlement = |time: f64| 0.3 + 2.0 * time - 0.7 * time * time;
         let rate = |time: f64| 2.0 - 1.4 * time;
         let due = [0.1, 0.15, 0.2, 0.75, 1.0];
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_rate_the_settlement_goes_straight() {
+    fn without_a_rate_the_settlement_is_interpolated_linearly() {
         let due = [0.25];
         let mut history = History::new(&due);
         let [before, after] = [(0.0, 1.0), (1.0, 3.0)].map(|(time, settlement)| HistoryPoint {

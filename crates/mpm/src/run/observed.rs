@@ -283,32 +283,28 @@ mod tests {
         Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
     }
 
-    fn agree(probes: &[Probe]) -> bool {
-        let limit = CriticalStep {
-            predicted: 1.0,
-            creeping_from: None,
-            unknown: None,
-            observed: Some(1.0),
-            wave_limit: 1.0,
-            drag_limit: 1.0,
-            combined_limit: 1.0,
-            probes: probes.to_vec(),
-            asymmetry: None,
-        };
-        limit.probes_agree()
-    }
-
     #[test]
-    fn below_the_limit_a_run_holds_and_above_it_leaves_by_a_name() {
-        let unstable = Some(FailureKind::Unstable);
+    fn probes_agree_where_the_run_below_the_limit_ends_and_the_one_above_is_unstable() {
         let [below, above] = SHARES;
         assert!(below < 1.0 && above > 1.0);
-        assert!(agree(&[probe(below, None), probe(above, unstable)]));
-        assert!(!agree(&[probe(below, unstable), probe(above, unstable)]), "it left below its limit");
-        assert!(!agree(&[probe(below, None), probe(above, None)]), "it held above its limit");
-        for stopped in [FailureKind::Stopped, FailureKind::TimedOut] {
-            assert!(!agree(&[probe(below, None), probe(above, Some(stopped))]), "a stop is no leaving");
-            assert!(!agree(&[probe(below, Some(stopped)), probe(above, unstable)]));
+        let [unstable, stopped, late] =
+            [FailureKind::Unstable, FailureKind::Stopped, FailureKind::TimedOut].map(Some);
+        for (probes, agrees) in [
+            (&[(below, None), (above, unstable)][..], true),
+            (&[(below, unstable), (above, unstable)], false),
+            (&[(below, None), (above, None)], false),
+            (&[(below, None), (above, stopped)], false),
+            (&[(below, None), (above, late)], false),
+            (&[(below, stopped), (above, unstable)], false),
+            (&[(below, late), (above, unstable)], false),
+            (&[(below, None)], false),
+            (&[(above, unstable)], false),
+            (&[], false),
+        ] {
+            let probes: Vec<_> = probes.iter().map(|(share, failure)| probe(*share, *failure)).collect();
+            let limit =
+                CriticalStep { predicted: 1.0, observed: Some(1.0), probes, ..CriticalStep::default() };
+            assert_eq!(limit.probes_agree(), agrees, "{:?}", limit.probes);
         }
     }
 
@@ -336,12 +332,5 @@ mod tests {
             let from_aside = observed_limit([low * predicted, high * predicted]);
             assert!((from_aside / about - 1.0).abs() < 2e-3, "{from_aside} for {about}");
         }
-    }
-
-    #[test]
-    fn one_side_alone_agrees_with_nothing() {
-        assert!(!agree(&[]));
-        assert!(!agree(&[probe(SHARES[0], None)]));
-        assert!(!agree(&[probe(SHARES[1], Some(FailureKind::Unstable))]));
     }
 }

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_spacing_down_is_on_the_faces() {
+    fn points_shifted_down_by_half_a_spacing_lie_on_the_faces() {
         let (cell_size, points) = arranged(Arrangement { offset: -0.5, ..Arrangement::default() }, 4, 2);
         for (i, place) in points.position.iter().enumerate() {
             assert!((place[0] - 0.5 * i as f64 * cell_size).abs() < 1e-15);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_shift_takes_out_of_the_body_stays_on_its_edge() {
+    fn points_shifted_out_of_the_body_stay_on_its_edge() {
         for (offset, jitter) in [(0.5, 0.5), (-0.5, 0.5), (0.3, 0.3)] {
             let (_, points) = arranged(Arrangement { offset, jitter, ..Arrangement::default() }, 30, 2);
             let heights: Vec<f64> = points.position.iter().map(|place| place[0]).collect();

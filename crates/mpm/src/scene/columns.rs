@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn the_floor_against_xie_and_leo_is_put_down_to_what_the_equations_drop() {
+    fn the_floor_against_xie_and_leo_is_attributed_to_the_neglected_terms() {
         use oedometer_soil::continuity::Continuity::{Conservative, ConstantPorosityGradient};
         for (continuity, law, cause) in [
             (Conservative, Law::LogLinear, "the water's storage"),

@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_soil_yields_at_what_its_preconsolidation_is_over_the_initial_stress() {
+    fn a_soil_yields_at_its_preconsolidation_less_the_initial_stress() {
         let scene = SceneKind::YieldFront;
         let soil = Material { law: scene.default_law(), preconsolidation: 5.0, ..Material::default() };
         let column = Column { initial_stress: 2.0, load: 10.0, ..scene.default_column() };

@@ -104,7 +104,7 @@ fn a_step_beyond_the_limit_ends_with_a_name_and_below_it_runs() {
 }
 
 #[test]
-fn outputs_are_hit_and_history_is_noted() {
+fn outputs_are_reached_and_the_history_is_recorded() {
     let outcome = run(problem("GIMP", 5, 2), &schedule(Kernel::Fastest, ExplicitSettings::default(), 0.01));
     let times: Vec<f64> = outcome.snapshots.iter().map(|snapshot| snapshot.time).collect();
     assert_eq!(times[0], 0.0);

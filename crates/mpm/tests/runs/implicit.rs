@@ -122,7 +122,7 @@ fn the_error_in_time_falls_with_the_square_of_the_step() {
 }
 
 #[test]
-fn scaled_results_know_neither_the_permeability_nor_a_stiff_water() {
+fn scaled_results_do_not_depend_on_permeability_or_stiff_water() {
     let pressure = |soil: &Material| {
         let outcome = implicit(seed("GC-SRI-patch", soil, 10), 0.05, &[0.05, 0.2, 1.0]);
         let fields = outcome.snapshots.into_iter().map(|snapshot| snapshot.points.pressure);
@@ -346,7 +346,7 @@ fn a_plane_column_at_large_strain_is_the_column() {
 }
 
 #[test]
-fn domains_that_drift_through_the_base_find_nothing_to_move_there() {
+fn domains_that_reach_through_the_base_leave_a_plane_column_equal_to_the_line() {
     // Its strain gradient and what carries its points differ, so that the lowest domains part from the base, and reach
     // through it at the sites of a node that nothing holds but a round-off.
     let column = Column { load: 2e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
@@ -376,7 +376,7 @@ fn loaded_plane(
 }
 
 #[test]
-fn a_full_integration_that_ends_in_the_plane_names_the_remedy() {
+fn full_integration_that_fails_in_the_plane_names_the_remedy() {
     // Which case ends hangs on round-off.
     let reasons: Vec<String> = [("GIMP", 2e6), ("GIMP", 2.2e9), ("MPM", 2e6)]
         .iter()
@@ -394,7 +394,7 @@ fn a_full_integration_that_ends_in_the_plane_names_the_remedy() {
 }
 
 #[test]
-fn a_full_integration_in_the_plane_is_its_column_while_it_holds() {
+fn full_integration_in_the_plane_equals_the_column_until_it_fails() {
     let soil = Material { water_bulk_modulus: 1e7, ..xie_leo_soil() };
     let column = Column { load: 2e5, ..Column::default() };
     for method in ["MPM", "GIMP"] {
@@ -426,7 +426,7 @@ fn a_plane_column_is_the_column() {
 }
 
 #[test]
-fn the_error_in_time_is_what_was_tolerated() {
+fn the_error_in_time_is_within_the_tolerance() {
     for (problem, exact) in [
         (seed("GC-SRI-patch", &Material::default(), 8), 1e-9),
         (large_strain("TL-GC-SRI-patch", &xie_leo_soil(), 6), 1e-7),
@@ -509,7 +509,7 @@ fn the_semi_implicit_integrator_moves_points_too() {
 }
 
 #[test]
-fn strains_that_round_off_all_but_hides_are_solved_without_smaller_steps() {
+fn strains_near_round_off_converge_without_smaller_steps() {
     // Strains of 1e-9: volume ratios near one tell them to seven digits, and the iteration asks for eleven.
     let soil = Material { law: Law::LogLinear, ..Material::default() };
     let settlement = |load: f64| {

@@ -293,7 +293,7 @@ proptest! {
 }
 
 #[test]
-fn a_patch_and_cmpm_are_not_the_same_as_going_without() {
+fn patch_and_cmpm_change_the_result() {
     let plain = Setup::new("GIMP-SRI").end();
     let patch = Setup::new("GIMP-SRI-patch").end();
     let gradient_and_patch = Setup::new("GC-SRI-patch").end();
@@ -365,7 +365,7 @@ fn pic_in_the_transfer_is_viscosity() {
 }
 
 #[test]
-fn pic_hurts_the_more_the_smaller_the_step() {
+fn the_viscosity_of_pic_rises_as_the_step_falls() {
     let (coarse, fine) = (1.0 - settlement_kept(0.9, 4e-6), 1.0 - settlement_kept(0.9, 1e-6));
     assert!(fine > 2.0 * coarse && coarse > 0.0, "its viscosity is h²/Δt: {coarse:e} then {fine:e}");
 }
@@ -400,7 +400,7 @@ fn mapping_back_or_not_consolidates_alike() {
 }
 
 #[test]
-fn the_step_size_is_no_part_of_the_answer() {
+fn results_do_not_depend_on_the_step_size() {
     let at = |share: f64| {
         let mut setup = Setup::new("GC-SRI-patch");
         setup.rule = TimeStepRule::Stable(share);

@@ -101,7 +101,7 @@ fn nothing_grows_under_a_plate() {
 }
 
 #[test]
-fn little_drag_shows_on_more_cells() {
+fn with_little_drag_a_rough_base_of_more_cells_has_no_limit() {
     let ladder = ["GC-SRI-patch".to_owned()];
     let weak = [(Drag::Implicit, 1e-3), (Drag::Implicit, 0.1)];
     // Rates of a patch are not the adjoint of the points' forces; with next to no drag their waves grow.
@@ -109,7 +109,7 @@ fn little_drag_shows_on_more_cells() {
 }
 
 #[test]
-fn a_share_of_a_limit_that_nobody_knows_is_refused_where_growth_spoils_the_result() {
+fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere() {
     let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
     let schedule = |end, rule| Schedule {
         // The last output ends the run.

@@ -170,7 +170,7 @@ fn the_assembled_plane_is_the_point_wise_step_to_round_off() {
 }
 
 #[test]
-fn the_predicted_step_of_a_plane_parts_stable_from_unstable_runs() {
+fn the_predicted_step_of_a_plane_separates_stable_from_unstable_runs() {
     for name in ["GIMP", "GIMP-SRI", "GC-SRI-patch", "PPP", "GC-Bbar-patch"] {
         for mapping_back in [true, false] {
             for (share, stable) in [(0.98, true), (1.02, false)] {

@@ -8,7 +8,7 @@ fn uncertainty(values: [f64; 7]) -> LeastSquaresUncertainty {
 }
 
 #[test]
-fn the_orders_of_a_published_figure_are_near() {
+fn the_orders_of_a_published_figure_are_reproduced() {
     // Figure 9 of the paper, Spalart–Allmaras at Re = 10⁷, sets A, B, C, as digitised for the
     // package cfdverify; the paper gives p = 1.37, p = 0.98 and a fit with first and second order.
     // Which of the thirteen grids the paper fitted is not known here: the seven finest agree with
@@ -41,7 +41,7 @@ fn a_manufactured_value_is_extrapolated_and_covered() {
 }
 
 #[test]
-fn an_order_beyond_the_formal_one_is_not_believed() {
+fn an_observed_order_beyond_the_formal_one_gets_a_safety_factor_of_three() {
     let computed = uncertainty(SIZES.map(|h| 3.0 + 0.01 * h.powi(4)));
     assert!(computed.observed_order > 3.9 && computed.model == ErrorModel::SecondOrder);
     assert_eq!(computed.safety_factor, 3.0);
@@ -61,7 +61,7 @@ fn noise_gives_a_wide_uncertainty_and_never_nan() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named() {
+fn unusable_values_are_refused_with_a_reason() {
     let equal: Vec<_> = SIZES.iter().map(|h| (*h, 0.3)).collect();
     assert_eq!(least_squares_uncertainty(&equal, 2.0), Err(Undefined::EqualValues));
     let zero: Vec<_> = SIZES.iter().map(|h| (*h, 0.0)).collect();

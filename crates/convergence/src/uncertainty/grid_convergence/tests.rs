@@ -2,7 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 #[test]
-fn the_published_example_is_met() {
+fn the_published_example_is_reproduced() {
     // Celik et al. 2008, table 1, φ = dimensionless reattachment length, and axial velocity.
     let first = [(1.0, 6.063), (1.5, 5.972), (1.5 * 1.333, 5.863)];
     let estimate = three_grids(first, None).unwrap().estimate.unwrap();
@@ -22,7 +22,7 @@ fn the_published_example_is_met() {
 }
 
 #[test]
-fn behaviour_comes_before_any_order() {
+fn values_that_diverge_oscillate_or_are_equal_get_no_estimate() {
     let for_values =
         |values: [f64; 3]| three_grids([(1.0, values[0]), (2.0, values[1]), (4.0, values[2])], None).unwrap();
     // The sequence for which other tools report order 2 and an index of 4 %.
@@ -59,7 +59,7 @@ fn the_formal_order_rules_the_safety_factor_and_the_asymptotic_check() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named() {
+fn unusable_values_are_refused_with_a_reason() {
     let ok = [(1.0, 1.0), (2.0, 1.1), (4.0, 1.5)];
     assert!(three_grids(ok, None).is_ok());
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {

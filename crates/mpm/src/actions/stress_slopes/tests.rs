@@ -70,7 +70,7 @@ fn exact_force(node: Vector<2>, cell_size: f64) -> [Vector<2>; 2] {
 }
 
 #[test]
-fn planes_of_stress_press_the_nodes_as_they_are_wherever_points_are() {
+fn forces_of_a_linear_stress_are_exact_wherever_the_points_lie() {
     let mut body = body_of_uneven_tiles();
     for point in 0..body.points.len() {
         (body.points.effective_stress[point], body.points.pressure[point]) =

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_stored_is_the_product_of_the_displacements_before_and_after_a_step() {
+    fn the_stored_energy_is_the_product_of_the_displacements_before_and_after_a_step() {
         for mapping_back in [true, false] {
             stored_between_two_displacements::<1>(mapping_back);
             stored_between_two_displacements::<2>(mapping_back);

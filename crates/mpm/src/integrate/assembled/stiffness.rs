@@ -238,7 +238,7 @@ mod tests {
     use oedometer_soil::material::Material;
 
     #[test]
-    fn the_stiffness_is_what_the_forces_do() {
+    fn the_stiffness_gives_the_forces_of_a_displacement() {
         // A projected storage makes pressures of dilations by a solution and not site by site.
         let is_tried = |name: &&String| *name != "MPM" && !name.starts_with("TL-") && !name.contains("PPP");
         for name in Method::names().iter().filter(is_tried) {

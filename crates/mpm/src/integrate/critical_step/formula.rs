@@ -76,14 +76,14 @@ mod tests {
     }
 
     #[test]
-    fn the_combined_limit_turns_into_the_drag_s_where_the_drag_rules() {
+    fn the_combined_limit_is_that_of_the_drag_where_drag_dominates() {
         let soil = Material { hydraulic_conductivity: 1e-9, ..Material::default() };
         let limit = combined_limit(&soil, 0.1, Drag::Explicit);
         assert!((limit / drag::step_limit(&soil) - 1.0).abs() < 1e-6);
     }
 
     #[test]
-    fn a_denser_packing_of_grains_is_faster() {
+    fn waves_are_faster_at_a_lower_porosity() {
         let soil = Material::default();
         let ratio = fastest_wave_speed(&soil, 0.17) / fastest_wave_speed(&soil, 0.3);
         assert!((ratio - 1.22).abs() < 0.01, "22 % faster at n = 0.17, got {ratio}");

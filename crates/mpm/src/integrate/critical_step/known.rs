@@ -76,7 +76,7 @@ mod tests {
     use oedometer_soil::material::Material;
 
     #[test]
-    fn a_search_is_known_by_all_that_it_depends_on() {
+    fn the_key_of_a_search_changes_with_each_of_its_inputs() {
         let usual = Material::default();
         let key = |name: &str, soil: &Material, drag: Drag, safe: f64, sharp: bool| {
             let method = Method::named(name).expect("a known method");

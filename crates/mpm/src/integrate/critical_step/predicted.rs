@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn one_point_set_is_that_with_more_points() {
+    fn of_two_point_sets_the_larger_one_gives_the_limit() {
         let method = Method::named("GIMP-SRI").expect("a known method");
         let of = |per_cell| {
             let (column, soil) = (Column::default(), Material::default());
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_press_with_one_rate_step_by_its_limit() {
+    fn cells_of_one_pressure_rate_have_the_limit_of_constant_recovery() {
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         let limit = |name: &str, scene: SceneKind, sets: usize| {
             let points = Arrangement { sets, ..Arrangement::default() };

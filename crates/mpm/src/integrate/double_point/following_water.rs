@@ -93,7 +93,7 @@ mod tests {
     use oedometer_soil::material::Material;
 
     #[test]
-    fn a_water_point_is_as_large_as_the_pores_it_fills_where_it_is() {
+    fn a_water_point_has_the_volume_of_the_pores_at_its_place() {
         let soil = Material::default();
         let mut double = moving_column::<1>("GIMP", [2, 2], 1.0, &soil);
         double.water.slope.fill([3e4]);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_above_the_surface_leaves_with_all_that_is_its_own() {
+    fn a_point_above_the_surface_is_removed_with_all_its_fields() {
         let mut double = moving_column::<1>("GIMP", [2, 2], 1.0, &Material::default());
         for point in 0..double.water.len() {
             // No two masses and velocities are alike.
@@ -149,7 +149,7 @@ mod tests {
     /// Water domains keep their axes. That is right where those of the skeleton do: in the only scene in which two
     /// sets move, a column.
     #[test]
-    fn nothing_turns_where_two_sets_move_in_the_plane() {
+    fn domains_of_a_plane_column_of_two_sets_do_not_turn() {
         let soil = Material { hydraulic_conductivity: 1e-3, ..Material::default() };
         let mut double = moving_column::<2>("CPDI-SRI-patch", [2, 2], 2e5, &soil);
         let settings = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };

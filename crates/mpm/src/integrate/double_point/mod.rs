@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_moves_equal_sets_are_one_to_round_off() {
+    fn frozen_equal_point_sets_are_one_set_to_round_off() {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         let names =
             ["MPM", "GIMP", "GIMP-SRI", "GC-SRI-patch", "GIMP-SRI-nodal", "GIMP-mean", "VP", "GC-Bbar-patch"];
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn an_undrained_start_is_the_same_pressure_at_other_water_points() {
+    fn an_undrained_start_has_the_same_pressure_at_other_water_points() {
         let settings = ExplicitSettings::default();
         let at = |of_water| {
             solved::<2>(problem(SceneKind::CosineLayer, "GIMP-SRI-patch", [2, of_water], 1.0), settings, 1e-6)
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_column_of_two_sets_is_the_column() {
+    fn a_plane_column_of_two_sets_equals_the_column_on_a_line() {
         let implicit = ExplicitSettings { drag: Drag::Implicit, ..ExplicitSettings::default() };
         // The domains of CPDI's skeleton could turn, and the water's keep their axes.
         for method in ["GIMP-SRI-patch", "CPDI-SRI-patch"] {

@@ -97,7 +97,7 @@ mod tests {
     use crate::tests::double_point_columns::with_water_shifted;
 
     #[test]
-    fn what_points_carry_beyond_their_line_fades_and_cells_press_as_before() {
+    fn deviations_from_the_pressure_line_fade_and_forces_of_cells_stay() {
         let mut double = with_water_shifted("GIMP-SRI-patch", 3);
         let line = |place: f64| 1e4 + 2e4 * place;
         for (pressure, place) in double.water.pressure.iter_mut().zip(&double.water.place) {
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_ends_the_middle_of_its_cell_and_the_lines_through_it() {
+    fn the_surface_cuts_the_middle_of_its_cell_and_the_slope_through_it() {
         let mut double = with_water_shifted("GIMP-SRI-patch", 3);
         let top = *double.cells.of_point.last().expect("points");
         let (grid, surface) = (double.body.grid.clone(), 0.9);

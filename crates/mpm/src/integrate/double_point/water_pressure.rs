@@ -228,7 +228,7 @@ mod tests {
     use crate::tests::double_point_columns::with_water_shifted;
 
     #[test]
-    fn a_uniform_pressure_presses_by_cells_as_by_points() {
+    fn a_uniform_pressure_has_the_same_forces_by_cells_and_by_points() {
         for method in ["GIMP-SRI", "GIMP-SRI-patch"] {
             let mut double = with_water_shifted(method, 3);
             assert!(double.presses_by_cells);
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_pressures_presses_with_its_value_in_the_middle() {
+    fn a_linear_pressure_acts_with_its_value_in_the_middle_of_the_cell() {
         // Of a single point too, wherever in its cell it lies.
         for of_water in [1, 3] {
             let mut double = with_water_shifted("GIMP-SRI-patch", of_water);

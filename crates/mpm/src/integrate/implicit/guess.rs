@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_along_a_parabola_are_guessed_whatever_sets_the_stages_apart() {
+    fn rates_along_a_parabola_are_guessed_despite_a_constant_difference_between_stages() {
         let parabola = |time: f64| 3.0 - 2.0 * time + 0.25 * time * time;
         for missed in missed(parabola, 6, 0.7) {
             assert!(missed < 1e-12, "{missed}");
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_is_guessed_by_the_last_rate_and_other_durations_forget() {
+    fn after_a_jump_the_last_rate_is_guessed_and_another_step_size_resets_the_guess() {
         let mut guess = StageGuess::new(1);
         for rate in [1.0, 2.0, 3.0, 9.0] {
             guess.begin_step(1.0);

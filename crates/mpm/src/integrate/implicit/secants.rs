@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn corrections_that_tell_end_where_others_crawl() {
+    fn corrections_with_secants_converge_where_others_crawl() {
         let mut secants = Secants::default();
         assert!(left(6, None) > 1e-3, "{}", left(6, None));
         // Twice as many as rows that differ, and two (Gay 1979).
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_step_is_what_its_change_of_the_residual_asks_for() {
+    fn secants_map_the_last_change_of_the_residual_to_the_last_step() {
         let mut secants = Secants::default();
         let before = residual(&[0.0; COUNT]);
         let after = residual(&before.iter().map(|entry| -entry).collect::<Vec<_>>());
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_correction_that_changed_nothing_and_what_is_no_number_tell_nothing() {
+    fn corrections_of_zero_and_nan_are_not_learnt() {
         let mut secants = Secants::default();
         for next in [[0.9, 0.0], [f64::NAN, 0.0], [f64::NEG_INFINITY, 0.0]] {
             let mut corrected = next;

@@ -307,7 +307,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknowns_of_a_group_share_no_row_and_there_are_no_more_groups_than_a_row_feels() {
+    fn unknowns_of_a_group_share_no_row_and_groups_are_no_more_than_the_unknowns_of_a_row() {
         // Bands of a width, and for more groups than a word has bits a row that feels all.
         for (count, reach, full) in [(40, 2, false), (150, 40, false), (70, 1, true)] {
             let felt = |row: usize| row.saturating_sub(reach)..(row + reach + 1).min(count);

@@ -77,7 +77,7 @@ fn newton_on_a_frozen_body_is_the_linear_system() {
 }
 
 #[test]
-fn a_step_that_is_given_up_leaves_no_trace_in_a_soil_that_remembers() {
+fn a_rejected_step_leaves_the_history_of_the_soil_unchanged() {
     let soil = Material {
         law: Law::Preconsolidated,
         reload_modulus: 4.8e6,
@@ -127,7 +127,7 @@ fn a_step_that_is_given_up_leaves_no_trace_in_a_soil_that_remembers() {
 }
 
 #[test]
-fn a_column_that_is_unloaded_keeps_what_it_has_yielded_and_reloads_stiffly() {
+fn an_unloaded_column_keeps_its_plastic_strain_and_reloads_stiffly() {
     let (virgin, reload, preconsolidation) = (Material::default().oedometric_modulus(), 6e6, 0.3);
     let soil = Material {
         law: Law::Preconsolidated,
@@ -254,7 +254,7 @@ fn loading_unloading_and_reloading_follow_finite_volumes() {
 }
 
 #[test]
-fn unknowns_follow_points_that_empty_cells_as_if_they_were_numbered_anew() {
+fn unknowns_renumbered_as_points_empty_cells_equal_a_fresh_numbering() {
     let soil = Material { law: Law::LogLinear, ..Material::default() };
     for method in ["GIMP-SRI-patch", "CE-SRI-patch-cells", "GIMP", "GC-Bbar-patch"] {
         let body = Body::new(large_strain(method, &soil, 8));

@@ -50,7 +50,7 @@ fn body(method: &str) -> Body<2> {
 }
 
 #[test]
-fn forces_of_a_volume_arrive_at_the_nodes_whole() {
+fn nodal_body_forces_sum_to_those_of_the_volume() {
     for method in ["GIMP-SRI-patch", "TL-GIMP", "uGIMP-SRI", "CPDI-SRI-patch"] {
         let mut body = body(method);
         // Half the volume everywhere: forces are of the current one.
@@ -176,7 +176,7 @@ fn domains_turn_with_a_step_and_carry_their_corners_along() {
 }
 
 #[test]
-fn points_that_bring_slopes_give_the_nodes_a_linear_field_wherever_they_are() {
+fn velocity_gradients_give_the_nodes_a_linear_field_wherever_the_points_lie() {
     let linear = |[x, y]: Vector<2>| [0.3 + 2.0 * x - y, 0.1 - x + 0.5 * y];
     for method in ["GIMP-SRI-patch", "CPDI-SRI-patch", "uGIMP"] {
         let mut body = body(method);

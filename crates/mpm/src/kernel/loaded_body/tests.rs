@@ -118,7 +118,7 @@ fn tying_keeps_momentum_and_makes_one_velocity() {
 }
 
 #[test]
-fn a_second_row_of_cells_changes_nothing() {
+fn a_second_row_of_cells_under_the_plate_changes_nothing() {
     for method in ["GIMP", "GIMP-SRI-patch"] {
         let single = implicit(slab(method, &soft(), 6, 1));
         let double = implicit(slab(method, &soft(), 6, 2));

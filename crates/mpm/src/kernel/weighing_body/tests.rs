@@ -57,7 +57,7 @@ fn an_unbalanced_weight_moves() {
 }
 
 #[test]
-fn what_is_told_is_the_excess_and_a_settled_surface_lies_under_free_water() {
+fn results_give_the_excess_and_a_settled_surface_lies_under_free_water() {
     for configuration in [Configuration::Updated, Configuration::Total] {
         let column = Column { load: 2e5, self_weight: true, ..Column::default() };
         let soil = Material { law: Law::LogLinear, ..Material::default() };

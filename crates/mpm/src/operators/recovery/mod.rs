@@ -172,7 +172,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn every_way_is_one_in_place_and_as_rows() {
+    fn every_recovery_is_the_same_in_place_and_as_rows() {
         let block = SiteBlock::new(0.25, [4, 3], 2);
         let at = block.at();
         for name in ["GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GIMP-SRI-nodal", "GIMP-null-space", "VP", "PPP"] {

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_filter_keeps_what_forces_feel_and_nothing_else() {
+    fn the_filter_keeps_pressures_that_change_forces_and_nothing_else() {
         let mut block = SiteBlock::new(0.5, [2, 2], 3);
         let at = block.at();
         let rows = rows(&at);

@@ -94,7 +94,7 @@ fn the_error_of_the_load_falls_with_the_cells() {
 }
 
 #[test]
-fn water_that_stays_bears_the_load_that_total_stress_does() {
+fn undrained_soil_of_two_phases_bears_the_load_of_total_stress() {
     let column = Column::under_footing();
     let footing = Footing { undrained: Undrained::TwoPhase, ..column.footing };
     let wet = Column { footing, ..column };
@@ -115,7 +115,7 @@ fn water_that_stays_bears_the_load_that_total_stress_does() {
 
 /// A single step far beyond yield finds no balance, and its halves do: together they last as long as it.
 #[test]
-fn a_step_that_finds_no_balance_is_taken_in_halves_and_ends_where_small_steps_do() {
+fn a_step_that_does_not_converge_is_halved_and_ends_where_small_steps_do() {
     let column = Column::under_footing();
     let soil = SceneKind::Footing.default_material();
     let single_step = TimeStepRule::Seconds(column_parameters(&column, &soil).time(0.05));
