@@ -73,7 +73,7 @@ impl StrainGradient {
     }
 }
 
-/// Where the divergence that drives the pore pressure is taken.
+/// Sites of the divergence that drives the pore pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressureIntegration {
     /// At the points: full integration.
@@ -155,7 +155,7 @@ impl Recovery {
 /// Where stress, pressure and volume are kept while points move through the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Memory {
-    /// Each point, all that ever happened to it.
+    /// Each point keeps its whole history.
     #[default]
     Points,
     /// The cells: within a cell the points follow the parabola through the means of its
@@ -226,7 +226,7 @@ pub struct Method {
     pub pressure: PressureIntegration,
     /// Way of the pressure increment back to the points; full integration needs none.
     pub recovery: Recovery,
-    /// Where the state is kept while points move.
+    /// Memory of the state while points move.
     #[serde(default, skip_serializing_if = "is_default")]
     pub memory: Memory,
     /// Volume that a point integrates.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// No limit is longer than this, s: a century.
+/// Longest limit, s: a century.
 const MOST_SECONDS: f64 = 3e9;
 
 /// The end of the time that a run has; none where it has all of it.

@@ -28,7 +28,7 @@ impl<const D: usize> VelocityGradients<D> {
         gradients
     }
 
-    /// Takes the gradients of the nodal velocities at the points.
+    /// Stores the gradients of the nodal velocities at the points.
     pub fn take(&mut self, grid: &Grid<D>, basis: &PointStencils<D>, nodes: &Nodes<D>) {
         for (point, [solid, water]) in self.0.iter_mut().enumerate() {
             *solid = basis.gradient(grid.node_stride(), point, &nodes.solid_velocity);

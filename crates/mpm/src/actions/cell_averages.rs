@@ -49,7 +49,7 @@ impl<const D: usize> CellAverages<D> {
         }
     }
 
-    /// Takes the places of the points in the cells that they were last located in.
+    /// Records the places of the points in the cells that they were last located in.
     fn place(&mut self, cells: &Cells<D>, points: &Points<D>) {
         self.weight.fill(0.0);
         self.centre.fill([0.0; D]);

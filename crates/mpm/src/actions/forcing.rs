@@ -95,7 +95,7 @@ impl<const D: usize> Forced<D> {
         self.take_forces(points, time);
     }
 
-    /// Takes the body forces of a time, s.
+    /// Evaluates the body forces at a time, s.
     pub fn take_forces(&mut self, points: &Points<D>, time: f64) {
         self.acting.body_forces(self.formulation, &points.initial_position, time, &mut self.forces);
     }
@@ -106,12 +106,12 @@ impl<const D: usize> Forced<D> {
         &self.forces
     }
 
-    /// Takes the sources of a time, s, at the centres of cells, by the points of the skeleton that were found there.
+    /// Evaluates the sources at a time, s, at the centres of cells, by the points of the skeleton that were found there.
     pub fn take_sources_at_centres(&mut self, mut cells: impl Iterator<Item = usize>, time: f64) {
         self.acting.sources(&self.at_centre, &mut cells, time, &mut self.sources[0]);
     }
 
-    /// Takes the sources of a time, s, at the points.
+    /// Evaluates the sources at a time, s, at the points.
     pub fn take_sources_at_points(&mut self, points: &Points<D>, time: f64) {
         let (places, sources) = (&points.initial_position, &mut self.sources[1]);
         self.acting.sources(places, &mut (0..places.len()), time, sources);

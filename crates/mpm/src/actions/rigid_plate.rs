@@ -60,20 +60,20 @@ impl RigidPlate {
         component == NORMAL && self.is_tied[node]
     }
 
-    /// Puts the force on the plate beside what acts on the nodes already.
+    /// Adds the force on the plate to those on the nodes.
     pub fn apply<const D: usize>(&self, nodes: &mut Nodes<D>) {
         if let Some(lead) = self.nodes.first() {
             nodes.external_force[*lead][NORMAL] -= self.force;
         }
     }
 
-    /// Gives the nodes of the plate the one acceleration that their masses have under all forces.
+    /// Sets the accelerations of the plate's nodes to that of their total mass under all forces.
     pub fn tie_accelerations<const D: usize>(&self, nodes: &mut Nodes<D>) {
         let Nodes { solid_mass, water_mass, solid_acceleration, water_acceleration, .. } = nodes;
         self.tie([solid_mass, water_mass], [solid_acceleration, water_acceleration]);
     }
 
-    /// Gives the nodes of the plate the one velocity that keeps their momentum.
+    /// Sets the velocities of the plate's nodes to the one that keeps their momentum.
     pub fn tie_velocities<const D: usize>(&self, nodes: &mut Nodes<D>) {
         let Nodes { solid_mass, water_mass, solid_velocity, water_velocity, .. } = nodes;
         self.tie([solid_mass, water_mass], [solid_velocity, water_velocity]);

@@ -20,9 +20,9 @@ use oedometer_soil::tensor::{Tensor, Vector, inverse};
 /// direction.
 #[derive(Clone, Copy, Debug)]
 struct Levers {
-    /// Of the hat, m.
+    /// Mean lever of the hat, m.
     value: f64,
-    /// Of its gradient.
+    /// Mean lever of its gradient.
     gradient: f64,
 }
 

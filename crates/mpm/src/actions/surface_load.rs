@@ -40,7 +40,7 @@ impl LoadShape {
 pub struct LoadedSurface<const D: usize> {
     /// Load `q`, Pa, compression positive, carried by the total stress.
     pub load: f64,
-    /// Where it acts.
+    /// Places where the load acts.
     spots: Vec<Spot>,
     /// Sum of the squares of the spots' shapes.
     squares: f64,
@@ -184,7 +184,7 @@ impl<const D: usize> LoadedSurface<D> {
         nearest.map_or(f64::INFINITY, |spot| self.place(points, spot)[D - 1])
     }
 
-    /// Puts the load on the nodes as the external force of the mixture.
+    /// Adds the load to the external force of the mixture at the nodes.
     pub fn apply(&self, grid: &Grid<D>, points: &Points<D>, nodes: &mut Nodes<D>) {
         nodes.external_force.fill([0.0; D]);
         let share = if D == 1 { 1.0 } else { 1.0 / EDGE_SPOTS.len() as f64 };

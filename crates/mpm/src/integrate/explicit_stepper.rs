@@ -24,7 +24,7 @@ const WATCH_INTERVAL: u64 = 64;
 pub struct ExplicitStepper<const D: usize> {
     points: PointSets<D>,
     frozen: Option<AssembledStep<D>>,
-    /// Energy account of a frozen body whose step is point-wise: the criterion does not depend on the kernel.
+    /// Assembled copy of a frozen body whose step is point-wise, for its energy: the criterion does not depend on the kernel.
     account: Option<Box<AssembledStep<D>>>,
     start: Points<D>,
     initial_height: f64,
@@ -124,7 +124,7 @@ impl<const D: usize> ExplicitStepper<D> {
         stepper
     }
 
-    /// Puts the load of a growing time on the surface.
+    /// Sets the load on the surface to that of the time, where it grows.
     fn set_load_at(&mut self, time: f64) {
         self.load.act_at(self.points.body_mut(), time);
         for step in self.frozen.iter_mut().chain(self.account.as_deref_mut()) {

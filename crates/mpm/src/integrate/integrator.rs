@@ -37,7 +37,7 @@ pub enum StepBound {
     AllWaves,
     /// Stability of the skeleton's waves: a critical step by formula.
     SkeletonWaves,
-    /// Nothing but accuracy.
+    /// Accuracy alone.
     Accuracy,
 }
 

@@ -50,7 +50,7 @@ impl EqualSteps {
         Self { start, dt, done: 0, count }
     }
 
-    /// So many of the steps that follow these.
+    /// The next `count` steps after these.
     #[must_use]
     pub fn next(&self, count: u64) -> Self {
         Self { done: self.done + self.count, count, ..*self }

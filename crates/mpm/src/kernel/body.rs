@@ -276,7 +276,7 @@ impl<const D: usize> Body<D> {
         self.turn_domains();
     }
 
-    /// Lets points bring the gradients of their velocities to the nodes, beginning with those of the present nodal ones.
+    /// Makes points bring the gradients of their velocities to the nodes, from those of the present nodal velocities on.
     pub fn use_apic(&mut self) {
         let gradients =
             VelocityGradients::new(self.points.len(), &self.grid, &self.operators.basis, &self.nodes);
@@ -288,7 +288,7 @@ impl<const D: usize> Body<D> {
         self.actions.stress_planes = Some(StressPlanes::new(&self.grid));
     }
 
-    /// Takes domains that turn with the points' deformation since the start of the run.
+    /// Switches to domains that turn with the points' deformation since the start of the run.
     pub(crate) fn turn_domains(&mut self) {
         if let Some(domains) = &mut self.operators.domains {
             domains.follow(&self.points.inverse_deformation);
@@ -324,7 +324,7 @@ impl<const D: usize> Body<D> {
         !self.points.history.is_empty()
     }
 
-    /// Brings operators and masses up to the points' places and volumes: all of them where points
+    /// Updates operators and masses to the points' places and volumes: all of them where points
     /// move, what follows the volumes where shape functions stay on the initial configuration.
     pub fn follow_points(&mut self) {
         self.follow_places();
@@ -333,7 +333,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Brings the operators alone up to the points' places and volumes.
+    /// Updates the operators alone to the points' places and volumes.
     pub(crate) fn follow_places(&mut self) {
         if self.is_pushed_forward {
             self.cells.sum_volumes(&self.points, &self.soils);
@@ -408,7 +408,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Brings an explicit step's operators up to the points' places, sums what the points give to the nodes in the same
+    /// Updates an explicit step's operators to the points' places, sums what the points give to the nodes in the same
     /// pass, and puts the load on the surface. The rows of gradient and recovery are left to the passes that take them.
     pub(crate) fn follow_moved_points(&mut self) {
         self.end_splines();

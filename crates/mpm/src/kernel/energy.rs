@@ -28,7 +28,7 @@ const ROUND_OFF: f64 = 1e-24;
 pub struct Energy {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Of stresses and pressures, since the start or on the whole.
+    /// Energy of stresses and pressures, since the start or in all.
     pub stored: f64,
     /// Work of the actions since the start.
     pub work: f64,

@@ -39,7 +39,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Brings cells and nodes to the volumes of the middle of a step of points that have been strained, and back.
+    /// Switches cells and nodes to the volumes in the middle of a step of points that have been strained, and back.
     fn enter_middle(&mut self) {
         let Some(forced) = &mut self.actions.forcing else { return };
         forced.find_middle(&self.points);
@@ -81,7 +81,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Takes the sources at the method's sites, so many seconds after the start of the step.
+    /// Evaluates the sources at the method's sites, so many seconds after the start of the step.
     fn take_sources(&mut self, later: f64) {
         let Some(forced) = &mut self.actions.forcing else { return };
         let time = forced.time + later;
@@ -93,7 +93,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Takes the body forces and the sources so many seconds after the start of the step: for balances that are asked
+    /// Evaluates the body forces and the sources so many seconds after the start of the step: for balances that are asked
     /// for there many times.
     pub(crate) fn act_later(&mut self, later: f64) {
         if let Some(forced) = &mut self.actions.forcing {

@@ -31,7 +31,7 @@ impl GrowingLoad {
         self.share
     }
 
-    /// Puts the load of a time, s, on the surface, where it grows.
+    /// Sets the load on the surface to that of a time, s, where it grows.
     pub fn act_at<const D: usize>(&mut self, body: &mut Body<D>, time: f64) {
         if self.loading_time > 0.0 {
             self.share = (time / self.loading_time).min(1.0);
@@ -48,7 +48,7 @@ impl<const D: usize> Body<D> {
         self.actions.plate.as_ref().is_some_and(|plate| plate.ties(node, component))
     }
 
-    /// Puts all loads on the nodes as the external force of the mixture.
+    /// Adds all loads to the external force of the mixture at the nodes.
     pub fn apply_loads(&mut self) {
         self.actions.surface.apply(&self.grid, &self.points, &mut self.nodes);
         if let Some(plate) = &self.actions.plate {

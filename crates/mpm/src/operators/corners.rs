@@ -90,7 +90,7 @@ impl<const D: usize> Domains<D> {
         })
     }
 
-    /// Takes the edges of the deformation since the start of the run, by its inverses: `r_i = F r_i0`.
+    /// Sets the edges from the deformation since the start of the run, by its inverses: `r_i = F r_i0`.
     pub fn follow(&mut self, inverse_deformation: &[Tensor<D>]) {
         let lengths = self.initial.iter().zip(inverse_deformation);
         for (edges, (lengths, back)) in self.half_edges.iter_mut().zip(lengths) {
@@ -103,7 +103,7 @@ impl<const D: usize> Domains<D> {
         }
     }
 
-    /// Takes a point's edges with the deformation of a step.
+    /// Deforms a point's edges by the deformation of a step.
     pub fn carry(&mut self, point: usize, deformation: &Tensor<D>) {
         for edge in &mut self.half_edges[point] {
             let before = *edge;

@@ -14,7 +14,7 @@ pub struct Row<const W: usize> {
 }
 
 impl<const W: usize> Row<W> {
-    /// Takes the nodes beyond a wall out of the row: a field goes on there as a line through its value
+    /// Removes the nodes beyond a wall from the row: a field continues there as a line through its value
     /// at the wall and that at the mirrored node, which for a velocity that the wall holds is its odd
     /// image. Linear fields are still met exactly, and the row still sums to one; a field that bends
     /// at the wall, as above a rough base, is met to first order there.
@@ -37,7 +37,7 @@ impl<const W: usize> Row<W> {
         }
     }
 
-    /// Takes the nodes above a last one out of the row: their values go on along the line through the last
+    /// Removes the nodes above a last one from the row: their values continue along the line through the last
     /// two. Linear fields are still met exactly, and the row still sums to one. A row that would be
     /// left with one node keeps two.
     pub fn straighten_beyond(&mut self, last: usize) {

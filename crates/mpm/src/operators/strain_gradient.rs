@@ -43,7 +43,7 @@ impl<const D: usize> StrainOperator<D> {
         }
     }
 
-    /// Brings the stencils up to the points' places; half-lengths of the domains in m, `[point][direction]`.
+    /// Updates the stencils to the points' places; half-lengths of the domains in m, `[point][direction]`.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>, half_length: &[Vector<D>]) {
         let (places, per_cell) = (cells.place.iter().enumerate(), grid.inverse_cell_size());
         match self {

@@ -125,7 +125,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// Takes a row of steps, from look to look.
+    /// Makes a row of steps, with a look after every few.
     fn take_row(&mut self, row: &EqualSteps) -> Result<(), StepFailure> {
         let mut some = EqualSteps { count: 0, ..*row };
         let mut left = row.count;

@@ -61,7 +61,7 @@ pub struct CriticalStep {
     /// Says that no limit is known, where a mode grows under any step; `predicted` is the formula's step then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unknown: Option<String>,
-    /// From runs, s; none where none failed.
+    /// Observed in runs, s; none where none failed.
     pub observed: Option<f64>,
     /// `h/c` with the fastest undamped wave, s.
     pub wave_limit: f64,

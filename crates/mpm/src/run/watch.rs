@@ -32,7 +32,7 @@ pub struct Watch<'a> {
     steps_to_account: u64,
     /// The steps before the last look, until an output takes account of them.
     seen: Option<EqualSteps>,
-    /// All of them so far.
+    /// Steps so far.
     done: u64,
     /// Physical bounds, widened by the state at the start.
     bounds: PhysicalBounds,
@@ -46,7 +46,7 @@ impl<'a> Watch<'a> {
         Self { plan, velocity: 0.0, growth: None, energy, steps_to_account, seen, done, bounds: plan.bounds }
     }
 
-    /// Takes its bounds from the state at the start.
+    /// Widens the bounds by the state at the start.
     pub fn begin(&mut self, start: &Snapshot) {
         self.bounds =
             self.plan.bounds.widened_by_start(start.points.pressures().0, start.totals.unbalanced_force);

@@ -90,7 +90,7 @@ pub enum SceneLoad {
     Cosine,
 }
 
-/// Where the points' state at the start comes from.
+/// Origin of the points' state at the start.
 pub enum SceneStart {
     /// A function of the depth.
     OverDepth(fn(&Column, &Material) -> Result<ColumnStart, ExactError>),

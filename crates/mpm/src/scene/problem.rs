@@ -75,12 +75,12 @@ impl SceneProblem {
         }
     }
 
-    /// Its predicted critical step, s: that of the formula where no limit is known.
+    /// The predicted critical step of the problem, s: that of the formula where no limit is known.
     pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
         self.predicted(settings).0
     }
 
-    /// Its predicted critical step, s, where a limit is known.
+    /// The predicted critical step of the problem, s, where a limit is known.
     pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
         let (step, growing) = self.predicted(settings);
         growing.is_none().then_some(step)

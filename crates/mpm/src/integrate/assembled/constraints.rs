@@ -44,7 +44,7 @@ impl TiedRows {
         self.rows.iter().map(of_row).sum()
     }
 
-    /// Gives the rows one acceleration, and the velocities that it leads to within `kick` seconds.
+    /// Sets one acceleration for the rows, and the velocities that it leads to within `kick` seconds.
     pub fn tie_accelerations<const D: usize>(&self, state: &mut FrozenState<D>, kick: f64) {
         let rate = self.mean(&state.acceleration);
         for row in &self.rows {

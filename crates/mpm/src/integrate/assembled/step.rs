@@ -126,7 +126,7 @@ impl<const D: usize> AssembledStep<D> {
         }
     }
 
-    /// Lets a share of the load act that was there at the assembly.
+    /// Applies a share of the load of the assembly.
     pub fn set_load_share(&mut self, share: f64) {
         for node in &self.loaded {
             let block = &mut self.constants[node.row / LANES];
@@ -287,7 +287,7 @@ impl<const D: usize> BlockConstants<D> {
         }
     }
 
-    /// Takes over what is constant about one node.
+    /// Copies the constants of a node.
     fn set(&mut self, i: usize, body: &Body<D>, node: usize) {
         let fields = &body.nodes;
         let water_share = fields.water_mass[node] * fields.per_solid_mass[node];
@@ -466,8 +466,8 @@ impl<const D: usize> AssembledStep<D> {
         bits
     }
 
-    /// Forgets loads, stresses and displacements and sets every node in some motion: what grows from
-    /// there on grows by the step alone.
+    /// Forgets loads, stresses and displacements and sets every node in some motion: any growth
+    /// from there on is that of the step alone.
     pub fn disturb(&mut self) {
         self.forget_loads();
         // A fixed sequence without a pattern on any grid (Knuth's multiplicative hash).

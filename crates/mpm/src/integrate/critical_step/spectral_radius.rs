@@ -52,7 +52,7 @@ impl Powers {
         if size == 0.0 { 0.0 } else { elementary::exp(self.log_scale + self.share * elementary::ln(size)) }
     }
 
-    /// Goes on to `A^(2m)`; false where that is zero or not finite.
+    /// Replaces `A^m` by `A^(2m)`; false where that is zero or not finite.
     fn square(&mut self) -> bool {
         let norm = self.power.norm();
         if norm == 0.0 || !norm.is_finite() {

@@ -7,7 +7,7 @@ use oedometer_soil::elementary;
 const LEAST_SHARE: f64 = 1e-3;
 
 impl<const D: usize> DoublePoint<D> {
-    /// Brings porosities, volumes and domains of the water up to the soil, and the operators up to the domains.
+    /// Updates porosities, volumes and domains of the water to the soil, and the operators to the domains.
     pub fn follow_water(&mut self) {
         self.take_porosities();
         self.take_domains();

@@ -116,7 +116,7 @@ impl<const D: usize> DoublePoint<D> {
         double
     }
 
-    /// Takes note of the pressures now: a burst may ring down again before the next output.
+    /// Records the largest pressure now: a burst may ring down again before the next output.
     pub(crate) fn note_largest_pressure(&mut self) {
         self.largest_pressure =
             self.water.pressure.iter().fold(self.largest_pressure, |largest, pressure| {
@@ -153,7 +153,7 @@ impl<const D: usize> DoublePoint<D> {
         }
     }
 
-    /// Brings the water to nodes that have the masses of the skeleton, and the velocities of both.
+    /// Maps the mass of the water and the velocities of both phases to nodes that have the masses of the skeleton.
     fn map_water(&mut self) {
         self.slivers.find(&self.body.grid, &self.body.nodes);
         if self.body.configuration.moves_points() {

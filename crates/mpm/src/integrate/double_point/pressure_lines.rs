@@ -18,7 +18,7 @@ use oedometer_soil::tensor::Vector;
 const FADINGS_PER_CELL: f64 = 2.0;
 
 impl<const D: usize> DoublePoint<D> {
-    /// Takes the middles of what the soil fills of the cells with water points.
+    /// Computes the middles of the parts that the soil fills in cells with water points.
     pub(crate) fn take_middles(&mut self) {
         let surface = self.body.actions.surface.lowest(&self.body.points);
         for cell in self.cells.occupied() {
@@ -45,7 +45,7 @@ impl<const D: usize> DoublePoint<D> {
         self.slopes = slopes;
     }
 
-    /// Lets fade what points carry beyond the lines of their cells' pressures, in a step of so many seconds.
+    /// Damps the deviations of the points from the pressure lines of their cells, in a step of so many seconds.
     pub(crate) fn fade_beyond_lines(&mut self, dt: f64) {
         self.sum_cell_pressures(0);
         for cell in self.cells.occupied() {

@@ -16,7 +16,7 @@ const LEAST_MASS: f64 = 0.1;
 pub struct SliverNodes {
     /// Mass of the grains around an inner node, kg; zero where no node is ever merged.
     full_mass: f64,
-    /// Each with the node below it.
+    /// Sliver nodes, each with the node below it.
     pairs: Vec<(usize, usize)>,
     /// Whether each node is one, `[node]`.
     is_sliver: Vec<bool>,
@@ -109,7 +109,7 @@ impl SliverNodes {
         }
     }
 
-    /// Gives each the accelerations of the node below.
+    /// Sets the accelerations of each sliver to those of the node below.
     pub fn follow_accelerations<const D: usize>(&self, nodes: &mut Nodes<D>) {
         for (sliver, below) in &self.pairs {
             nodes.solid_acceleration[*sliver] = nodes.solid_acceleration[*below];

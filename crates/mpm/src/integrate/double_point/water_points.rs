@@ -12,7 +12,7 @@ use crate::state::points::Points;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector};
 
-/// State of the water points, structure of arrays; index = point. A point that has left the soil is taken out.
+/// State of the water points, structure of arrays; index = point. A point that has left the soil is removed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WaterPoints<const D: usize> {
     /// Mass of the water, for ever, kg.
@@ -80,7 +80,7 @@ impl<const D: usize> WaterPoints<D> {
         self.mass.len()
     }
 
-    /// Takes a point out that has left the soil; the order of the others stays.
+    /// Removes a point that has left the soil; the order of the others stays.
     pub fn remove(&mut self, point: usize) {
         self.left_mass += self.mass.remove(point);
         for field in [&mut self.position, &mut self.half_length, &mut self.velocity] {

@@ -7,7 +7,7 @@ use crate::integrate::integrator::Formulation;
 use crate::integrate::stepper::StepFailure;
 use oedometer_soil::tensor::Vector;
 
-/// Where a stage starts: what is known before it is solved.
+/// Start of a stage: the terms known before it is solved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StageStart<const D: usize> {
     /// `γ Δt`, s.

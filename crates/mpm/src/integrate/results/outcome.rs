@@ -102,7 +102,7 @@ impl Failure {
         Self { kind, step: 0, time: 0.0, growth: None, reason }
     }
 
-    /// Its name, with the step at which it was seen where that is known.
+    /// Name of the failure, with the step at which it was seen where that is known.
     pub fn name_with_step(&self) -> String {
         let step = if self.has_place() { format!(" at step {}", self.step) } else { String::new() };
         format!("{}{step}", self.kind.name())
@@ -135,7 +135,7 @@ impl fmt::Display for Failure {
 pub enum RunStatus {
     /// All outputs reached.
     Ok,
-    /// Not all.
+    /// Ended before the last output.
     Failed(Failure),
 }
 

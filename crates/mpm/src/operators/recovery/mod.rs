@@ -49,14 +49,14 @@ impl<const D: usize> RecoveryOperator<D> {
         }
     }
 
-    /// Brings the operator up to the points' places.
+    /// Updates the operator to the points' places.
     pub fn build(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             wide!(rows.build(grid, cells));
         }
     }
 
-    /// Brings the operator up to the points' places for a step that takes every row once: it is made where it is taken.
+    /// Updates the operator to the points' places for a step that uses every row once: each row is made where it is used.
     pub fn look_around(&mut self, grid: &Grid<D>, cells: &Cells<D>) {
         if let Self::Patch(rows) = self {
             rows.look_around(grid, cells);
@@ -117,7 +117,7 @@ impl<const D: usize> RecoveryOperator<D> {
     }
 }
 
-/// Puts the value of each point into its place.
+/// Writes the value of each point to its place.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the innermost loops of the step")]
 fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f64) {

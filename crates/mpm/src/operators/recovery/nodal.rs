@@ -15,7 +15,7 @@ use crate::operators::basis::{Hat, ShapeFunction};
 use crate::operators::recovery::points_in_cells::PointsInCells;
 use crate::operators::row::Row;
 
-/// Where the values are that means are taken of.
+/// Sites of the values that are averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sites {
     /// In the occupied cells.
@@ -39,7 +39,7 @@ impl NodalMeans {
         Self { sites, mean: vec![0.0; nodes], volume: vec![0.0; nodes] }
     }
 
-    /// Takes the means of the values at the sites.
+    /// Computes the means of the values at the sites.
     pub fn fit<const D: usize>(&mut self, at: &PointsInCells<'_, D>, values: &[f64]) {
         self.mean.fill(0.0);
         self.volume.fill(0.0);

@@ -1,4 +1,4 @@
-//! Where the points are among cells and nodes, which every recovery looks at.
+//! Places of the points among cells and nodes, the input of every recovery.
 
 use crate::operators::sparse_rows::entry_of;
 use crate::operators::stencil::PointStencils;
@@ -7,7 +7,7 @@ use crate::state::grid::Grid;
 use crate::state::nodes::Nodes;
 use oedometer_soil::tensor::Vector;
 
-/// Where the points are among cells and nodes: what every recovery looks at.
+/// Places of the points among cells and nodes: the input of every recovery.
 #[derive(Clone, Copy, Debug)]
 pub struct PointsInCells<'a, const D: usize> {
     /// Background grid.
