@@ -10,6 +10,8 @@ use oedometer_soil::wording::typed;
 
 /// The check whose complaint names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
+/// The check of the growth that the eigenvalues of the step promise.
+const GROWN_MODE: &str = "growth of a mode until the last output, by the eigenvalues of the step";
 /// Round-off of sums of numbers of similar size.
 const ROUND_OFF: f64 = 1e-9;
 /// Unbalanced force over the load that a direct solver may leave.
@@ -53,6 +55,9 @@ const MOST_PRESSURE: [f64; 2] = [1.6, 3.0];
 /// Bound of the pressure over the undrained strength under a plate: the mean stress of Prandtl's mechanism (1920) is at most
 /// 1 + π there, pressures that oscillate on four cells reach 11, and those of a method that locks go into the hundreds.
 const MOST_PRESSURE_UNDER_A_PLATE: f64 = 20.0;
+/// Factor by which a mode may grow until the last output: null modes of FLIP double under stable steps, and a short wave that
+/// is a hundredth of what moves becomes 2 % of it.
+const MOST_GROWTH: f64 = 2.0;
 /// Poisson's ratio above which the skeleton of a layer keeps its volume too.
 const LOCKING: f64 = 0.495;
 /// Least bound by [`WATER_IN_PORES`], on meshes so fine that other errors dominate; a wrong continuity causes fifty times
@@ -92,7 +97,7 @@ impl RecordCheck {
 pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
     let Some(start) = &record.start else { return Vec::new() };
     let missing = start.points_expected as f64 - start.points as f64;
-    vec![
+    let mut checks = vec![
         RecordCheck::of(POINTS_MISSING, missing, 0.0),
         RecordCheck::of("volume at the start, relative error", start.volume_error, volume_bound(record)),
         RecordCheck::of(
@@ -105,7 +110,11 @@ pub fn start_checks(record: &Record) -> Vec<RecordCheck> {
             start.unbalanced_force,
             unbalanced_bound(record),
         ),
-    ]
+    ];
+    // Where nothing grows there is nothing to show.
+    let growth = record.step_sizes.growth;
+    checks.extend(growth.map(|growth| RecordCheck::of(GROWN_MODE, growth, MOST_GROWTH)));
+    checks
 }
 
 /// Checks of the balances at an output.
@@ -344,6 +353,13 @@ pub fn complaints(record: &Record) -> Vec<String> {
             return record.start.map(|start| {
                 format!("{} points at the start instead of {}", start.points, start.points_expected)
             });
+        }
+        if check.what == GROWN_MODE {
+            return Some(format!(
+                "a mode grows by a factor of {:.2e} until the last output, by the eigenvalues of the step, more than \
+                 {bound:.1}: an earlier last output or another recovery of the pressure keeps it small",
+                check.value
+            ));
         }
         Some(format!("{} is {:.2e}{when}, more than {bound:.1e}", check.what, check.value))
     };

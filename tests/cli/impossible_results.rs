@@ -101,7 +101,9 @@ fn every_check_that_shows_a_mark_can_fail_and_spoils_the_record() {
         assert_eq!(soundness::complaints(&sound), Vec::<String>::new());
         let count = start_checks(&sound).iter().chain(&balance_checks(&sound, &sound.balance[1])).count();
         assert_eq!(count, 10);
-        let spoilt: [fn(&mut Record); 9] = [
+        let spoilt: [fn(&mut Record); 11] = [
+            |one| one.step_sizes.growth = Some(2.1),
+            |one| one.step_sizes.growth = Some(f64::NAN),
             |one| one.start.iter_mut().for_each(|start| start.points -= 1),
             |one| one.start.iter_mut().for_each(|start| start.volume_error = 1e-6),
             |one| one.start.iter_mut().for_each(|start| start.undrained_pressure_error = 1e-6),

@@ -155,7 +155,7 @@ impl Outcome {
             status,
             snapshots: Vec::new(),
             sample: None,
-            steps: StepSizes { predicted_critical: 0.0, target: 0.0, largest: 0.0 },
+            steps: StepSizes::default(),
             inside: None,
             foreign: None,
             wall: Vec::new(),

@@ -330,7 +330,7 @@ fn outcome(case: &Case, left: Left, mut about: AttachedRun, wall: Vec<WallSample
         Err(failure) => Outcome::of_failure(failure),
     };
     let step = suggested_step(case);
-    let steps = StepSizes { predicted_critical: 0.0, target: step, largest: step };
+    let steps = StepSizes { target: step, largest: step, ..StepSizes::default() };
     outcome.with_steps(steps).made_by(about).timed(wall)
 }
 

@@ -52,10 +52,10 @@ impl<'a> Plan<'a> {
     pub fn new<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
-        let (critical, growing) = match (schedule.integrator.step_bound(), schedule.critical_step) {
+        let (critical, prediction) = match (schedule.integrator.step_bound(), schedule.critical_step) {
             (StepBound::AllWaves, None) => {
-                let (critical, growing) = predict_for_run(problem, settings);
-                (critical, growing.filter(|mode| !mode.stays_small_for(end)))
+                let prediction = predict_for_run(problem, settings);
+                (prediction.critical_step, Some(prediction))
             }
             (StepBound::AllWaves, Some(known)) => (known, None),
             (StepBound::SkeletonWaves, _) if problem.points.began_as_full_lattice() => {
@@ -69,12 +69,13 @@ impl<'a> Plan<'a> {
                 (problem.least_of_soils(limit), None)
             }
         };
-        let growing = growing.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
-        let sizes = StepSizes {
-            predicted_critical: critical,
-            target: schedule.rule.step(problem, critical),
-            largest: 0.0,
-        };
+        let target = schedule.rule.step(problem, critical);
+        let prediction = prediction.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
+        let grows_far = |mode: &GrowingMode| !mode.stays_small_for(end);
+        let growing = prediction.as_ref().and_then(|prediction| prediction.growing).filter(grows_far);
+        let growth =
+            prediction.filter(|_| growing.is_none()).and_then(|found| found.growth_over(end, target));
+        let sizes = StepSizes { predicted_critical: critical, target, growth, ..StepSizes::default() };
         // Steps that grow must not outgrow what an explicit skeleton can stand.
         let most = match schedule.integrator.step_bound() {
             StepBound::SkeletonWaves => LARGEST_SHARE * sizes.predicted_critical,

@@ -2,7 +2,7 @@
 //! of dimensions into a type.
 
 use crate::actions::surface_load::LoadShape;
-use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run, whole_growth};
+use crate::integrate::critical_step::predicted::{predict_for_run, whole_growth};
 use crate::integrate::results::outcome::Outcome;
 use crate::kernel::ExplicitSettings;
 use crate::kernel::body::{DrivenPlate, Problem};
@@ -77,19 +77,17 @@ impl SceneProblem {
 
     /// The predicted critical step of the problem, s: that of the formula where no limit is known.
     pub fn predicted_critical_step(&self, settings: &ExplicitSettings) -> f64 {
-        self.predicted(settings).0
+        match self {
+            Self::Column(problem) => predict_for_run(problem, settings).critical_step,
+            Self::Plane(problem) => predict_for_run(problem, settings).critical_step,
+        }
     }
 
     /// The predicted critical step of the problem, s, where a limit is known.
     pub fn known_critical_step(&self, settings: &ExplicitSettings) -> Option<f64> {
-        let (step, growing) = self.predicted(settings);
-        growing.is_none().then_some(step)
-    }
-
-    fn predicted(&self, settings: &ExplicitSettings) -> (f64, Option<GrowingMode>) {
         match self {
-            Self::Column(problem) => predict_for_run(problem, settings),
-            Self::Plane(problem) => predict_for_run(problem, settings),
+            Self::Column(problem) => predict_for_run(problem, settings).known_step(),
+            Self::Plane(problem) => predict_for_run(problem, settings).known_step(),
         }
     }
 

@@ -134,8 +134,17 @@ fn stable_steps_are_refused_where_a_mode_grows_far_and_give_its_growth_elsewhere
         panic!("it ran");
     };
     assert!(failure.step == 0 && failure.reason.starts_with("no limit is known: "), "{}", failure.reason);
-    assert_eq!(run(problem(), &schedule(0.5 * end, share)).status, RunStatus::Ok);
-    assert_eq!(run(problem(), &schedule(1e-6, TimeStepRule::Seconds(1e-7))).status, RunStatus::Ok);
+    let run_of = |end, rule| {
+        let outcome = run(problem(), &schedule(end, rule));
+        assert_eq!(outcome.status, RunStatus::Ok);
+        outcome.step_sizes
+    };
+    let sizes = run_of(0.5 * end, share);
+    let of_step = problem().growth_under(&settings, sizes.target).expect("a small plane");
+    let wanted = of_step.powf(0.5 * end / sizes.target);
+    let growth = sizes.growth.expect("a mode grows");
+    assert!(growth > 2.0 && (growth / wanted - 1.0).abs() < 1e-3, "{growth} for {wanted}");
+    assert_eq!(run_of(1e-6, TimeStepRule::Seconds(1e-7)).growth, None, "steps as they are asked for");
 }
 
 #[test]

@@ -32,6 +32,8 @@ pub struct Prediction<const D: usize> {
     pub critical_step: f64,
     /// A mode that grows under any step, where there is one: then no limit is known for runs in which it grows far.
     pub growing: Option<GrowingMode>,
+    /// Whether every growth under the critical step is too slow to count.
+    is_bounded: bool,
     assembled: AssembledStep<D>,
     settings: ExplicitSettings,
 }
@@ -66,10 +68,29 @@ impl fmt::Display for GrowingMode {
 }
 
 impl<const D: usize> Prediction<D> {
+    /// The critical step, s, where a limit is known.
+    pub fn known_step(&self) -> Option<f64> {
+        self.growing.is_none().then_some(self.critical_step)
+    }
+
     /// Largest step, s, under which no mode grows by more than `growth` per step.
     pub fn critical_step_for(&self, growth: f64) -> f64 {
         let safe = self.critical_step;
         spectral_radius::critical_step(&self.assembled, &self.settings, safe, growth, true).unwrap_or(safe)
+    }
+
+    /// Factor by which the fastest mode grows in a run of so many seconds under steps of a size. None where it may be
+    /// round-off: a growth per step up to [`GROWTH_TOLERANCE`], and up to [`SLOW_GROWTH`] in a run too short for a mode to
+    /// double at that. None, too, where the operator is too large for its eigenvalues.
+    pub fn growth_over(&self, seconds: f64, step: f64) -> Option<f64> {
+        let steps = seconds / step;
+        let may_double = D > 1 && steps * SLOW_GROWTH > std::f64::consts::LN_2;
+        if self.is_bounded && !may_double {
+            return None;
+        }
+        let per_step = spectral_radius::growth_by_parts(&self.assembled, step, &self.settings)?;
+        let growth = elementary::powf(per_step, steps).min(f64::MAX);
+        (per_step > 1.0 + GROWTH_TOLERANCE).then_some(growth)
     }
 
     /// Largest growth per step of any mode under steps of a size; none where the operator is too large.
@@ -83,16 +104,12 @@ impl<const D: usize> Prediction<D> {
 /// Computed from the problem's own operators. A long column is shortened in its middle, which changes the limit by less
 /// than a percent; a wide layer is cut to six by six cells.
 pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
-    predict_for_run(problem, settings).0
+    predict_for_run(problem, settings).critical_step
 }
 
-/// The critical step of [`predicted_critical_step`], and a mode that grows under any step where there is one.
-pub fn predict_for_run<const D: usize>(
-    problem: &Problem<D>,
-    settings: &ExplicitSettings,
-) -> (f64, Option<GrowingMode>) {
-    let prediction = predict(problem, settings, FEW_CELLS);
-    (prediction.critical_step, prediction.growing)
+/// The prediction of [`predicted_critical_step`].
+pub fn predict_for_run<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> Prediction<D> {
+    predict(problem, settings, FEW_CELLS)
 }
 
 /// Largest growth per step of any mode of a whole problem in a plane under steps of a size, s; none in one dimension and
@@ -151,7 +168,13 @@ pub fn predict<const D: usize>(
         search()
     };
     let growing = growth.map(|growth| GrowingMode { step: critical.unwrap_or(far_below), growth });
-    Prediction { critical_step: critical.unwrap_or(safe), growing, assembled, settings: *settings }
+    Prediction {
+        critical_step: critical.unwrap_or(safe),
+        growing,
+        is_bounded: critical.is_some() && growing.is_none(),
+        assembled,
+        settings: *settings,
+    }
 }
 
 /// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal

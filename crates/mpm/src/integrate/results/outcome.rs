@@ -171,6 +171,10 @@ pub struct StepSizes {
     pub target: f64,
     /// Largest step taken; outputs are hit exactly, so it is at most the target.
     pub largest: f64,
+    /// Factor by which the fastest mode grows until the last output under steps of the target, by the eigenvalues of the
+    /// step on the initial configuration; none where nothing grows beyond the round-off of the eigenvalues.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
 }
 
 /// Settlement at a time.
