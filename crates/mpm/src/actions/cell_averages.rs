@@ -199,7 +199,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn means_are_kept_and_remembering_twice_is_remembering_once(
+        fn cell_averages_keep_means_and_are_idempotent(
             field in proptest::collection::vec(-1.0..1.0_f64, 30)
         ) {
             let (_, points, cells) = crossed();

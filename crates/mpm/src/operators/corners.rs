@@ -148,7 +148,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn linear_fields_are_met_and_gradients_add_up_to_nothing(
+        fn linear_fields_are_reproduced_and_gradients_sum_to_zero(
             place in [1.0..2.0f64, 1.0..1.5f64],
             long in [0.1..0.4f64, -0.3..0.3f64],
             wide in [-0.09..0.09f64, 0.1..0.4f64],
@@ -172,7 +172,7 @@ mod tests {
         /// The gradient is the mean over the domain of that of the corners' bilinear interpolant: by its boundary,
         /// with the trapezoidal rule on each edge.
         #[test]
-        fn the_gradient_is_that_of_the_boundary(
+        fn the_mean_gradient_is_the_integral_over_the_boundary(
             place in [1.0..2.0f64, 1.0..1.5f64],
             [a, b] in [[0.1..0.4f64, -0.3..0.3f64], [-0.09..0.09f64, 0.1..0.4f64]],
         ) {

@@ -210,7 +210,7 @@ mod tests {
         }
 
         #[test]
-        fn so_they_are_in_the_plane(shifts in proptest::collection::vec([-0.05..0.05f64, -0.05..0.05f64], 16)) {
+        fn constant_and_linear_fields_are_integrated_exactly_in_the_plane(shifts in proptest::collection::vec([-0.05..0.05f64, -0.05..0.05f64], 16)) {
             let mut points = Points::<2>::lattice(0.5, [2, 2], 2);
             for (place, shift) in points.position.iter_mut().zip(&shifts) {
                 *place = [place[0] + shift[0], place[1] + shift[1]];

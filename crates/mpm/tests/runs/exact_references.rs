@@ -8,7 +8,7 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn pressure_lies_between_nothing_and_the_load(
+    fn pressure_lies_between_zero_and_the_load(
         porosity in 0.05..0.9_f64,
         stiffness in -1.0..6.0_f64,
         conductivity in -11.0..-2.0_f64,

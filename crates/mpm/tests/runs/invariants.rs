@@ -230,7 +230,7 @@ proptest! {
     }
 
     #[test]
-    fn grains_and_internal_forces_balance_all_the_way(
+    fn masses_of_grains_and_internal_forces_balance_throughout(
         name in any_method(),
         points_per_cell in 1..4_usize,
         load in 1.0..1e4_f64,
@@ -251,7 +251,7 @@ proptest! {
     /// Every cell's pressure follows from what crossed its faces, so all that left the top is what
     /// the water expanded; the patch spreads it between cells and is exact to its order.
     #[test]
-    fn water_that_left_is_water_that_expanded(
+    fn the_water_that_left_is_the_expansion_of_the_water(
         name in prop::sample::select(vec!["MPM", "GIMP", "GIMP-SRI"]),
         points_per_cell in 1..4_usize,
         mapping_back: bool,
@@ -269,7 +269,7 @@ proptest! {
     /// On the regular lattice no domain crosses a cell face, so GIMP's weights are the hat's, whose
     /// gradient is that of the cell's centre.
     #[test]
-    fn full_and_reduced_integration_and_hat_and_gimp_are_one_on_the_lattice(
+    fn full_and_reduced_integration_and_hat_and_gimp_agree_on_the_lattice(
         cells in 2..8_usize,
         points_per_cell in 1..5_usize,
         drag in prop::sample::select(vec![Drag::Explicit, Drag::Implicit]),
