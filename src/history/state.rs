@@ -8,6 +8,7 @@ use crate::golden::compare::compare;
 use crate::golden::inputs::CaseInputs;
 use crate::golden::text_error::GoldenTextError;
 use crate::history::repository::{Commit, GitError, Repository};
+use crate::record::named_cases::NamedCases;
 use crate::record::{Record, RecordStore, Status};
 use crate::study::check::Study;
 use crate::study::file::StudySource;
@@ -70,7 +71,7 @@ impl State {
             let store = RecordStore::new(folder, &name);
             state.notes.extend(store.passed_over());
             let hashes = store.hashes();
-            let records: Vec<Record> = hashes.iter().filter_map(|hash| store.read(hash)).collect();
+            let mut records: Vec<Record> = hashes.iter().filter_map(|hash| store.read(hash)).collect();
             if records.len() < hashes.len() {
                 let unread = count_of(hashes.len() - records.len(), "record", "records");
                 state.notes.push(format!(
@@ -78,6 +79,8 @@ impl State {
                     folder.display()
                 ));
             }
+            let earlier = NamedCases::read(store.folder()).and_then(|named| leave_out(&named, &mut records));
+            state.notes.extend(earlier.map(|told| format!("`{name}` in {}: {told}", folder.display())));
             if !records.is_empty() {
                 state.studies.insert(name.clone(), StudyState::of_records(&name, &records));
             }
@@ -130,6 +133,19 @@ impl State {
         }
         Ok(state)
     }
+}
+
+/// Takes the records out whose cases the study no longer names; a sentence on them where there are any.
+fn leave_out(named: &NamedCases, records: &mut Vec<Record>) -> Option<String> {
+    let earlier: Vec<Record> = records.extract_if(.., |record| !named.names(record)).collect();
+    let first = earlier.first()?;
+    let [record, is] = if earlier.len() == 1 { ["record", "is"] } else { ["records", "are"] };
+    Some(format!(
+        "{} {record} of earlier states of the study {is} left out, like {} {}",
+        earlier.len(),
+        first.hash,
+        first.case.label()
+    ))
 }
 
 impl StudyState {

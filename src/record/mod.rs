@@ -5,6 +5,7 @@
 
 pub mod calibration;
 pub mod csv;
+pub mod named_cases;
 pub mod pack;
 pub mod provenance;
 pub mod race_errors;

@@ -1,6 +1,7 @@
 //! The records of a study on disk: all of them in packs, whatever the size of the study.
 
 use crate::case::Case;
+use crate::record::named_cases::NamedCases;
 use crate::record::pack::{Entry, Packs};
 use crate::record::whole_file::{StoreError, sealed};
 use crate::record::{Origins, Provenance, Record, SCHEMA, WallSample};
@@ -9,6 +10,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Working folders of other programs, within that of a study's results.
 const CASES: &str = "cases";
@@ -46,6 +48,8 @@ struct WallLine {
 pub struct RecordStore {
     folder: PathBuf,
     packs: Arc<Packs>,
+    /// What the study names, and whether that is noted beside its records.
+    named: Option<Arc<(NamedCases, AtomicBool)>>,
 }
 
 impl RecordStore {
@@ -53,7 +57,25 @@ impl RecordStore {
     pub fn new(results: &Path, study: &str) -> Self {
         let folder = results.join(study);
         let packs = Arc::new(Packs::new(&folder));
-        Self { folder, packs }
+        Self { folder, packs, named: None }
+    }
+
+    /// The store of a study that names these cases: they are noted before a record is written.
+    #[must_use]
+    pub fn naming(self, cases: &[&Case]) -> Self {
+        let named = (NamedCases::of(cases), AtomicBool::new(false));
+        Self { named: Some(Arc::new(named)), ..self }
+    }
+
+    /// Notes beside the records which cases the study names; nothing where that is not known.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn note_named_cases(&self) -> Result<(), StoreError> {
+        match self.named.as_deref() {
+            Some((named, is_noted)) if !is_noted.swap(true, Ordering::Relaxed) => named.write(&self.folder),
+            _ => Ok(()),
+        }
     }
 
     /// Folder of the study's results.
@@ -195,6 +217,7 @@ impl RecordStore {
     /// # Errors
     /// When the file system refuses.
     pub fn write(&self, record: &Record) -> Result<(), StoreError> {
+        self.note_named_cases()?;
         // One that was read has the seal of its text.
         let unsealed;
         let record = if record.digest.is_empty() {

@@ -336,3 +336,53 @@ fn states_that_are_not_whole_are_told_in_sentences() {
     let said = String::from_utf8_lossy(&without.stderr);
     assert!(!without.status.success() && said.contains("cannot start `git`"), "{said}");
 }
+
+/// Golden values and records know a case by its label, which names what the study sweeps: `porosity`.
+#[test]
+fn records_of_earlier_states_of_a_study_are_left_out_and_each_case_keeps_its_label() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let run = |conductivity: &str, cells: &str, out: &str| {
+        let sweep = format!("porosity = [0.3, 0.4]\ncells = {cells}");
+        let text = STUDY.replace("cells = [5, 10]", &sweep);
+        let text = text.replace("porosity = 0.3\n", &format!("hydraulic_conductivity = {conductivity}\n"));
+        fs::write(at.join("gate.toml"), text).expect("written");
+        assert_eq!(call(at, &["run", "gate.toml", "--resume", "--out", out]).code, 0);
+    };
+    run("1e-4", "[5, 10]", "kept");
+    run("2e-4", "[5, 10]", "kept");
+    run("2e-4", "[5]", "kept");
+    run("2e-4", "[5]", "fresh");
+    let compared = || {
+        let told = call(at, &["compare", "fresh", "kept", "--format", "json"]);
+        let json: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+        (told, json)
+    };
+    let (told, json) = compared();
+    assert!(
+        told.err.contains("`gate` in kept: 6 records of earlier states of the study are left out"),
+        "{}",
+        told.err
+    );
+    assert!(!told.err.contains("in fresh"), "{}", told.err);
+    assert_eq!((told.code, &json[0]["unpaired"]), (0, &serde_json::json!(0)), "{}", told.out);
+    change_records(&at.join("kept"), "gate", |_, record| {
+        for row in record.errors.iter_mut().filter(|_| record.case.material.porosity == 0.4) {
+            (row.value, row.absolute) = (2.0 * row.value, 2.0 * row.absolute);
+        }
+    });
+    let (told, json) = compared();
+    let changes = json[0]["changes"].as_array().expect("changes");
+    assert_eq!((told.code, changes.len()), (1, 1), "{}", told.out);
+    assert!(changes[0]["case"].as_str().is_some_and(|case| case.ends_with("(porosity=0.4)")), "{}", told.out);
+    // A run that is refused names nothing.
+    let endless = STUDY.replace("implicit", "explicit").replace("growth = 0.05", "stable = 0.5");
+    let endless = endless.replace("porosity = 0.3", "hydraulic_conductivity = 1e-12");
+    fs::write(at.join("gate.toml"), endless).expect("written");
+    let told = call(at, &["run", "gate.toml", "--out", "refused"]);
+    assert!(told.code == 2 && !at.join("refused").exists(), "{}", told.err);
+    run("2e-4", "[5]", "kept");
+    // A merge brings what the study names.
+    assert_eq!(call(at, &["merge", "gate.toml", "kept", "--out", "merged"]).code, 0);
+    assert!(!call(at, &["compare", "fresh", "merged"]).err.contains("left out"));
+}

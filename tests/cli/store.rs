@@ -441,7 +441,10 @@ fn tables_have_the_records_of_other_sources_too_and_say_how_many() {
         .filter_map(|entry| entry.expect("an entry").file_name().into_string().ok())
         .collect();
     files.sort();
-    assert_eq!(files, ["columns.csv", "history.csv", "profiles.csv", "records", "short.csv"]);
+    assert_eq!(
+        files,
+        ["columns.csv", "history.csv", "named-cases.json", "profiles.csv", "records", "short.csv"]
+    );
     let table = || fs::read_to_string(at.join("out/short/short.csv")).expect("a table");
     let rows = table().lines().count();
     change_records(&at.join("out"), "short", |number, record| {

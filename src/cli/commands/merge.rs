@@ -84,7 +84,7 @@ fn stores_of(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> (Reco
     let real = |folder: &PathBuf| folder.canonicalize().ok();
     let others =
         folders.iter().filter(|folder| real(folder) != real(&arguments.out) || real(folder).is_none());
-    (store(&arguments.out), others.map(store).collect())
+    (store(&arguments.out).naming(&study.cases(Tier::Full)), others.map(store).collect())
 }
 
 /// What made the records of a study in target and folders: one program, of however many builds.
@@ -119,6 +119,9 @@ fn merge_study(study: &Study, folders: &[PathBuf], arguments: &Arguments) -> any
         }
     }
     let there = cases.len() - holes.len();
+    if there > 0 {
+        target.note_named_cases()?;
+    }
     if study.is_race {
         let records: Vec<Record> = cases.iter().filter_map(|case| target.kept(case)).collect();
         holes = refinement::wanted(study, holes, &records);

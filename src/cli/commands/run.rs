@@ -168,8 +168,8 @@ pub fn run_and_store(
     results: &Path,
     tables: Option<TableForm>,
 ) -> anyhow::Result<Vec<RunReport>> {
-    let stores: Vec<RecordStore> =
-        studies.iter().map(|study| RecordStore::new(results, &study.name)).collect();
+    let store_of = |study: &Study| RecordStore::new(results, &study.name).naming(&study.cases(Tier::Full));
+    let stores: Vec<RecordStore> = studies.iter().map(store_of).collect();
     for (study, store) in studies.iter().zip(&stores) {
         tell_of_passed_over(study, store);
     }
@@ -211,6 +211,7 @@ pub fn run_and_store(
         if report.tally.recorded == 0 {
             continue;
         }
+        store.note_named_cases()?;
         // The table of many shares is made once, by `merge`, and so is a large one where a case is run again.
         let is_share = options.shard.is_some_and(|shard| shard.count > 1);
         let is_one_of_many = chosen.planned.len() < study.planned.len() && is_compressed(study);
