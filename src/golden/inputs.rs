@@ -1,6 +1,7 @@
 //! Inputs of the cases of a golden file, and which of them changed: a changed input explains changed values.
 
 use crate::case::{Case, Key};
+use crate::golden::output_times;
 use crate::study::inputs::unit_of;
 use oedometer_soil::wording::count_of;
 use serde::{Deserialize, Serialize};
@@ -125,10 +126,12 @@ impl InputChange {
 }
 
 /// How the cases of two states belong together.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pairing {
     /// Label before and after, of cases that have another label now.
     renamed: BTreeMap<String, String>,
+    /// Time factors before and after that are the same times, by the label of their case before.
+    moved_times: BTreeMap<String, Vec<(f64, f64)>>,
     /// What differs, the most cases first.
     pub changes: Vec<InputChange>,
 }
@@ -143,12 +146,19 @@ impl Pairing {
         let (old, new) = (before.whole(), after.whole());
         let renamed = nearest(&old, &new);
         let mut counts: BTreeMap<(&str, &str, &str), usize> = BTreeMap::new();
+        let mut moved_times = BTreeMap::new();
         for (label, old) in &old {
             let Some(new) = new.get(renamed.get(label).unwrap_or(label)) else { continue };
-            for key in unlike(old, new) {
+            let moved = output_times::moved(old, new);
+            // Outputs at the same times are no other outputs.
+            let are_same = output_times::are_all_paired(old, new, &moved);
+            for key in unlike(old, new).filter(|key| !(are_same && *key == output_times::KEY)) {
                 let value =
                     |inputs: &BTreeMap<&'a str, &'a str>| inputs.get(key).copied().unwrap_or_default();
                 *counts.entry((key, value(old), value(new))).or_default() += 1;
+            }
+            if !moved.is_empty() {
+                moved_times.insert((*label).to_owned(), moved);
             }
         }
         let change = |((key, before, after), cases): ((&str, &str, &str), usize)| InputChange {
@@ -160,18 +170,21 @@ impl Pairing {
         let mut changes: Vec<InputChange> = counts.into_iter().map(change).collect();
         changes.sort_by(|a, b| b.cases.cmp(&a.cases).then_with(|| a.key.cmp(&b.key)));
         let owned = |(before, after): (&str, &str)| (before.to_owned(), after.to_owned());
-        Self { renamed: renamed.into_iter().map(owned).collect(), changes }
+        Self { renamed: renamed.into_iter().map(owned).collect(), moved_times, changes }
     }
 
-    /// What stands by the name of a value or the label of a case, that of cases with another label now under that label.
+    /// What stands by the name of a value or the label of a case, that of cases with another label now under that label, and of
+    /// outputs with another time factor now under that time factor.
     pub fn rename<T>(&self, all: BTreeMap<String, T>) -> BTreeMap<String, T> {
         let name = |name: String| {
             let (label, measure) =
                 name.split_once(" | ").map_or((&*name, None), |(label, rest)| (label, Some(rest)));
+            let moved = self.moved_times.get(label).map_or(&[][..], Vec::as_slice);
             match (self.renamed.get(label), measure) {
-                (Some(label), Some(measure)) => format!("{label} | {measure}"),
+                (Some(label), Some(measure)) => output_times::at_time(format!("{label} | {measure}"), moved),
                 (Some(label), None) => label.clone(),
-                (None, _) => name,
+                (None, Some(_)) => output_times::at_time(name, moved),
+                (None, None) => name,
             }
         };
         all.into_iter().map(|(one, value)| (name(one), value)).collect()
@@ -265,6 +278,42 @@ mod tests {
         assert_eq!(told(&before, &after), ["youngs_modulus 1e6 Pa → 1.1e6 Pa in 4 cases"]);
         assert_eq!(told(&before, &before), [""; 0]);
         assert_eq!(told(&CaseInputs::default(), &after), [""; 0], "what is not known differs in nothing");
+    }
+
+    #[test]
+    fn a_study_in_times_keeps_its_golden_values_where_another_soil_has_other_time_factors() {
+        let of = |material: &str, times: &str| {
+            let text = format!(
+                "title = \"t\"\nscene = \"terzaghi\"\noutput = {{ {times} }}\n{material}\n[[sweep]]\nmethod = [\"MPM\"]\n\
+                 integrator = [\"implicit\"]\ncells = [4]\n"
+            );
+            let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+            let case = &study.planned[0].case;
+            let name = |factor: &f64| format!("{} | pressure points l2 terzaghi T_v={factor}", case.label());
+            let names: Vec<String> = case.time_factors.iter().map(name).collect();
+            (CaseInputs::of([case]), names)
+        };
+        let times = "times = ['10 s', '20 s', '1 min']";
+        let (before, old) = of("", times);
+        for (material, key) in [
+            ("material.hydraulic_conductivity = 1.1e-4", "hydraulic_conductivity"),
+            ("material.youngs_modulus = 2e6", "youngs_modulus"),
+            ("material.poissons_ratio = 0.3", "poissons_ratio"),
+            ("column.height = 2.5", "height"),
+        ] {
+            let (after, new) = of(material, times);
+            assert_ne!(old, new, "{material}");
+            let pairing = Pairing::of(&before, &after);
+            let values: BTreeMap<String, f64> = old.iter().cloned().zip([1.0, 2.0, 3.0]).collect();
+            let moved: BTreeMap<String, f64> = new.into_iter().zip([1.0, 2.0, 3.0]).collect();
+            assert_eq!(pairing.rename(values), moved, "{material}");
+            let keys: Vec<&str> = pairing.changes.iter().map(|change| change.key.as_str()).collect();
+            assert_eq!(keys, [key], "{material}");
+        }
+        // Another output has no partner, and that is told.
+        let (after, _) = of("", "times = ['10 s', '30 s', '1 min']");
+        let told = told(&before, &after);
+        assert!(told.len() == 1 && told[0].starts_with("time_factors ["), "{told:?}");
     }
 
     #[test]

@@ -34,6 +34,7 @@
 pub mod compare;
 mod file_text;
 pub mod inputs;
+mod output_times;
 pub mod text_error;
 pub mod tolerance;
 
