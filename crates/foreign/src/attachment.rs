@@ -100,9 +100,10 @@ impl Solver for HeldBack<'_> {
 impl Solver for GivenResult<'_> {
     fn solve(&self, case: &Case, _: &Course<'_>) -> Result<Outcome, ExactError> {
         let solver = self.reading.solver;
-        let name = |typed: &String| solver.folder.join(typed.replace("{cells}", &case.cells.to_string()));
-        let paths: Vec<PathBuf> = solver.files.iter().map(name).collect();
-        let left = self.reading.taken(case, &paths, |unread| ending::of_given(unread, &solver.files));
+        let named = solver.files.iter().map(|typed| typed.replace("{cells}", &case.cells.to_string()));
+        let files: Vec<String> = named.collect();
+        let paths: Vec<PathBuf> = files.iter().map(|file| solver.folder.join(file)).collect();
+        let left = self.reading.taken(case, &paths, |unread| ending::of_given(unread, &files));
         // Records and messages name files as the study does.
         let folder = format!("{}/", solver.folder.display());
         let left = in_plain_words(left, |text| text.replace(&folder, ""));

@@ -111,9 +111,40 @@ impl StudySource {
         let start = error.span().map_or(0, |span| span.start.min(self.text.len()));
         let from = self.text.get(..start).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
         let line = self.text.get(from..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+        if error.message().starts_with("duplicate key")
+            && let Some(span) = error.span()
+        {
+            let (message, help) = given_twice(&self.text, span.clone(), line);
+            return Diagnostic { message, span: Some(span), help: Some(help) };
+        }
         let (message, help) = line_mistake(line);
         let said = || error.message().lines().next().unwrap_or_default().to_owned();
         Diagnostic { message: message.unwrap_or_else(said), span: error.span(), help: Some(help) }
+    }
+}
+
+/// What is said of a key or a table that stands at a place for the second time, in a line, with the line of the first.
+fn given_twice(text: &str, place: Range<usize>, line: &str) -> (String, String) {
+    let name = text.get(place.clone()).unwrap_or_default();
+    let lines: Vec<&str> = text.get(..place.start).unwrap_or_default().lines().map(str::trim).collect();
+    let is_table = line.trim_start().starts_with('[');
+    // A key is given twice in one table; the second beginning of a table may follow a key, `column.load = …`.
+    let is_header = |line: &&str| line.starts_with('[');
+    let from = if is_table { 0 } else { lines.iter().rposition(is_header).map_or(0, |header| header + 1) };
+    let gives = |line: &&str| {
+        let key = line.trim_start_matches('[').trim_start();
+        let rest = key.strip_prefix(name).map(str::trim_start);
+        rest.is_some_and(|rest| rest.starts_with(['=', '.', ']'])) && (is_table || !is_header(line))
+    };
+    let first = lines.iter().skip(from).position(gives).map(|place| from + place + 1);
+    let first = first.map_or(String::new(), |line| format!("line {line} has it too: "));
+    if is_table {
+        (
+            format!("the table `{name}` begins a second time"),
+            format!("{first}put all its keys below one `[{name}]`"),
+        )
+    } else {
+        (format!("`{name}` is given twice"), format!("{first}leave one of them out"))
     }
 }
 
@@ -441,5 +472,29 @@ mod tests {
         }
         let word = "x".repeat(45);
         assert_eq!(line_mistake(&format!("a = {word}")).0, Some(format!("`{}` needs quotes", &word[..40])));
+    }
+
+    #[test]
+    fn a_key_or_a_table_that_is_given_twice_is_told_with_the_line_of_the_first() {
+        let again = |line: usize| format!("line {line} has it too: ");
+        let (out, one) = ("leave one of them out", "put all its keys below one");
+        for (text, message, help) in [
+            ("a = 1\nb = 2\na = 3\n", "`a` is given twice", again(1) + out),
+            ("a = 1\n[t]\na = 2\nab = 4\na= 3\n", "`a` is given twice", again(3) + out),
+            ("[[s]]\nm = 1\n[[s]]\nm = 1\nm = 2\n", "`m` is given twice", again(4) + out),
+            (
+                "[t]\na = 1\n[u]\n[t]\nb = 2\n",
+                "the table `t` begins a second time",
+                again(1) + one + " `[t]`",
+            ),
+            ("t.a = 1\n[t]\nb = 2\n", "the table `t` begins a second time", again(1) + one + " `[t]`"),
+            ("t = { a = 1 }\n[t]\n", "the table `t` begins a second time", again(1) + one + " `[t]`"),
+        ] {
+            let source = StudySource { name: "t.toml".to_owned(), text: text.to_owned() };
+            let error = source.table().expect_err(text);
+            let told: Vec<_> =
+                error.diagnostics.iter().map(|one| (one.message.as_str(), one.help.as_deref())).collect();
+            assert_eq!(told, [(message, Some(help.as_str()))], "{text}");
+        }
     }
 }

@@ -109,8 +109,8 @@ impl Whole<'_> {
                     format!(", first at y = {} m{across}", short(height))
                 });
                 format!(
-                    "{repeated} of {all} rows repeat the place of another with other values{at}; where they are samples side \
-                     by side, keep the column that tells them apart"
+                    "{repeated} of {all} rows repeat the place of another with other values{at}: was this time written twice? \
+                     Where they are samples side by side, keep the column that tells them apart"
                 )
             })
         };

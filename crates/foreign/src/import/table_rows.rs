@@ -67,7 +67,16 @@ impl<'a> Table<'a> {
 
     /// The place of a column that must be there; `what` ends the sentence about one that is missing.
     fn find(&self, name: &str, what: &str) -> Result<usize, ImportError> {
-        self.place_of(name).ok_or_else(|| {
+        let found = self.place_of(name);
+        if let Some(column) = found.and_then(|place| self.header.get(place))
+            && self.header.iter().filter(|other| *other == column).count() > 1
+        {
+            return Err(self.error(format!(
+                "the header has `{}` more than once: rename the columns that are not meant",
+                excerpt(column)
+            )));
+        }
+        found.ok_or_else(|| {
             let names = self.header.iter().take(MOST_NAMES).map(|column| format!("`{}`", excerpt(column)));
             let more = self.header.len().saturating_sub(MOST_NAMES);
             let more = (more > 0).then(|| format!("and {more} more"));
@@ -88,8 +97,13 @@ impl<'a> Table<'a> {
 
     /// Goes to the next line; false at the end.
     fn next(&mut self) -> Result<bool, ImportError> {
-        let read = self.reader.read_record(&mut self.line);
-        read.map_err(|error| ImportError::content(self.path, error.to_string()))
+        self.reader.read_record(&mut self.line).map_err(|error| match error.kind() {
+            csv::ErrorKind::UnequalLengths { pos: Some(place), expected_len, len } => {
+                let line = line_of_record(self.reader.get_ref().get_ref(), place.byte(), self.comment);
+                ImportError::line(self.path, line, uneven(*len, *expected_len))
+            }
+            _ => ImportError::content(self.path, error.to_string()),
+        })
     }
 
     /// The number in a column of the line.
@@ -110,6 +124,17 @@ impl<'a> Table<'a> {
             ))
         })
     }
+}
+
+/// What is wrong with a line of more or fewer fields than the lines above it.
+fn uneven(fields: u64, expected: u64) -> String {
+    let why = if fields < expected {
+        "a value is missing, or the line is cut"
+    } else {
+        "there is a value too many; where a comma begins fractions, separate the columns by another sign"
+    };
+    let fields = if fields == 1 { "1 field".to_owned() } else { format!("{fields} fields") };
+    format!("the line has {fields}, and those above have {expected}: {why}")
 }
 
 /// Places of the columns in a header.

@@ -247,6 +247,35 @@ fn a_column_that_is_missing_is_told_with_the_first_thirty_there_are() {
 }
 
 #[test]
+fn a_ragged_line_and_a_column_that_is_there_twice_are_told_at_their_place() {
+    let cut = "a value is missing, or the line is cut";
+    let long =
+        "there is a value too many; where a comma begins fractions, separate the columns by another sign";
+    for (text, told) in [
+        (
+            "t,y,p,u_y\n1,0.5,3,0\n# note\n\n1,0.7,3\n",
+            format!("result.csv:5: the line has 3 fields, and those above have 4: {cut}"),
+        ),
+        (
+            "t,y,p,u_y\n1,0.5,3,0\n1\n",
+            format!("result.csv:3: the line has 1 field, and those above have 4: {cut}"),
+        ),
+        (
+            "t,y,p,u_y\n1,0.5,3,0\n1,0,7,3,0\n",
+            format!("result.csv:3: the line has 5 fields, and those above have 4: {long}"),
+        ),
+        (
+            "t,y,p,u_y,p\n1,0.5,3,0,4\n",
+            "result.csv: the header has `p` more than once: rename the columns that are not meant".to_owned(),
+        ),
+    ] {
+        let found = states(CONVENTION, text).expect_err(text);
+        assert!(found.ends_with(&told), "{text}: {found}");
+    }
+    assert!(states(CONVENTION, "t,y,p,u_y,of,of\n1,0.5,3,0,4,5\n").is_ok(), "nobody asks for these");
+}
+
+#[test]
 fn a_table_ends_with_a_line_break_of_any_kind_or_has_nothing() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("a.csv");
