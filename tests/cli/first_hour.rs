@@ -24,6 +24,8 @@ fn a_starter_runs_and_meets_what_it_expects() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let at = folder.path();
     assert_eq!(call(at, &["new", "my-study"]).code, 0);
+    assert_eq!(call(at, &["new", "studies/gate"]).code, 0, "docs/ci.md begins so");
+    fs::remove_dir_all(at.join("studies")).expect("removed");
     let told = call(at, &["check", "my-study.toml"]);
     assert!(told.out.contains("1 of 1 expectations met"), "{}{}", told.out, told.err);
     // At large strain, and in the plane.

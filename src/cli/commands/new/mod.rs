@@ -62,6 +62,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let text = starter(name, arguments.scene.as_deref())?;
     let path = arguments.name.with_file_name(format!("{name}.toml"));
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|error| not_written(folder, &error))?;
+    }
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| not_written(&path, &error))?;
     say!("wrote {}; next: oedometer check {}", path.display(), path.display());
