@@ -1,6 +1,7 @@
 //! The errors of a method over its meshes with the rate from each to the next, as a solver prints them at the end of a run.
 
 use crate::case::{Quantity, Sample};
+use crate::judge::path_labels::path_labels;
 use crate::judge::paths::{Path, StudyPaths, first_measure};
 use crate::record::Record;
 use crate::study::check::Study;
@@ -9,8 +10,10 @@ use oedometer_convergence::Class;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Most methods, with their points and steps, that are printed.
+/// Most methods, with their points and steps, that have a table each.
 const MOST_TABLES: usize = 8;
+/// Most series of which the finest mesh is printed.
+const MOST_SERIES: usize = 40;
 
 /// The errors of one method, its points and its steps over its meshes, at the last output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,7 +47,36 @@ pub struct ConvergenceColumn {
     pub class: Class,
 }
 
-/// The tables of a study: one per path over the mesh with two levels or more; empty where a study has more than a person reads.
+/// The finest meshes of more series than have a table each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FinestMeshes {
+    /// What all runs share.
+    pub shared: String,
+    /// The first series in the order of the study, each by what tells it from the others.
+    pub series: Vec<(String, ConvergenceTable)>,
+    /// Series that are left out.
+    pub more: usize,
+}
+
+impl FinestMeshes {
+    /// Those of a study; `None` where each series has a table of its own, or none has two meshes.
+    pub fn new(study: &Study, paths: &StudyPaths<'_>) -> Option<Self> {
+        let reference = study.references.first()?;
+        let paths = paths.along(Axis::Cells);
+        if study.is_race || paths.len() <= MOST_TABLES {
+            return None;
+        }
+        let labels = path_labels(paths);
+        let named = paths.iter().zip(labels.each).take(MOST_SERIES);
+        let series: Vec<(String, ConvergenceTable)> =
+            named.filter_map(|(path, label)| Some((label, table_of(path, reference.name())?))).collect();
+        let more = paths.len().saturating_sub(MOST_SERIES);
+        (!series.is_empty()).then_some(Self { shared: labels.shared, series, more })
+    }
+}
+
+/// The tables of a study: one per path over the mesh with two levels or more; empty where there are so many that [`FinestMeshes`]
+/// has them.
 pub fn convergence_tables(study: &Study, paths: &StudyPaths<'_>) -> Vec<ConvergenceTable> {
     let Some(reference) = study.references.first() else { return Vec::new() };
     let paths = paths.along(Axis::Cells);
@@ -145,5 +177,26 @@ mod tests {
             );
         }
         assert_eq!(table.columns[1].class, Class::Asymptotic, "the method promises first order");
+    }
+
+    #[test]
+    fn more_series_than_have_a_table_each_have_a_row_and_the_rest_is_counted() {
+        for (count, tables, rows, more) in [(8, 8, None, 0), (9, 0, Some(9), 0), (43, 0, Some(40), 3)] {
+            let porosities: Vec<f64> = (0..count).map(|place| 0.2 + 0.01 * f64::from(place)).collect();
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
+                 integrator = ['implicit']\ncells = [2, 4]\nporosity = {porosities:?}\n"
+            );
+            let (study, records) = solved("s", &text);
+            let paths = StudyPaths::of(&records);
+            assert_eq!(convergence_tables(&study, &paths).len(), tables, "{count}");
+            let finest = FinestMeshes::new(&study, &paths);
+            assert_eq!(finest.as_ref().map(|finest| finest.series.len()), rows, "{count}");
+            assert_eq!(finest.as_ref().map_or(0, |finest| finest.more), more, "{count}");
+            if let Some(finest) = finest {
+                assert_eq!(finest.series[0].0, "MPM, porosity=0.2");
+                assert_eq!(finest.series[0].1.cells, [2, 4]);
+            }
+        }
     }
 }

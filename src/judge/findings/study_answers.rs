@@ -3,7 +3,7 @@
 
 use crate::judge::answers::locking::LockingFinding;
 use crate::judge::findings::QuantityWithin;
-use crate::judge::findings::convergence::{ConvergenceTable, convergence_tables};
+use crate::judge::findings::convergence::{ConvergenceTable, FinestMeshes, convergence_tables};
 use crate::judge::findings::settlement::{SettlementTable, settlement_tables};
 use crate::judge::findings::within::within;
 use crate::judge::paths::StudyPaths;
@@ -22,6 +22,8 @@ pub struct StudyAnswers {
     pub locking: Option<LockingFinding>,
     /// Errors and rates over the meshes, of a study with a few methods.
     pub convergence: Vec<ConvergenceTable>,
+    /// The finest meshes of a study with more methods than that.
+    pub finest: Option<FinestMeshes>,
 }
 
 impl StudyAnswers {
@@ -38,6 +40,7 @@ impl StudyAnswers {
             settlements: settlement_tables(study, records, &within)?,
             locking: LockingFinding::of_study(study, records)?,
             convergence: convergence_tables(study, paths),
+            finest: FinestMeshes::new(study, paths),
             within,
         })
     }

@@ -64,6 +64,10 @@ pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
         let classes = wrapped(&convergence::classes(table), "", "  ");
         let _ = write!(text, "\n{heading}\n{}\n{classes}", convergence::table_of(table).to_text()?);
     }
+    if let Some(finest) = &answers.finest {
+        let heading = wrapped(&convergence::heading_of_finest(finest), "", "  ");
+        let _ = write!(text, "\n{heading}\n{}", convergence::table_of_finest(finest).to_text()?);
+    }
     text += &plain_paragraphs(&within(&answers.within)?);
     for (heading, table) in settlement::tables_of(&answers.settlements) {
         let _ = write!(text, "\n{}\n{}", wrapped(&heading, "", "  "), table.to_text()?);
