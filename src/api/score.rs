@@ -130,6 +130,7 @@ fn asked(scene: &str, reference: Option<&str>, assignments: &[String]) -> Result
     let outputs = Outputs {
         reference: reference.map(str::to_owned),
         time_factor: None,
+        times: None,
         set: Assignments { assignments: assignments.to_vec() },
     };
     Ok(Asked::of_scene(scene, &outputs)?)

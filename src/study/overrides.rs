@@ -131,6 +131,7 @@ fn why_ignored(kind: ReferenceKind, key: &str) -> &'static str {
         ("column.self_weight", _) => "it has no weight",
         ("material.grain_density", _) => "it has no inertia, and no weight without `column.self_weight=true`",
         ("output.time_factors", _) => "`--time-factor` has the times",
+        ("output.times", _) => "`--time` has them",
         _ => "the printed values do not depend on it",
     }
 }
@@ -144,6 +145,9 @@ pub struct Outputs {
     /// Time factors at which the result is compared, comma-separated
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub time_factor: Option<String>,
+    /// Times at which the result is compared, comma-separated: in s, or with a unit, like 30d or "1 year"
+    #[arg(long = "time", value_name = "LIST", allow_hyphen_values = true)]
+    pub times: Option<String>,
     #[command(flatten)]
     pub set: Assignments,
 }
@@ -191,6 +195,9 @@ impl StudyLines {
         if let Some(typed) = &outputs.time_factor {
             let list = toml_of(numbers("--time-factor", typed)?);
             self.give("output.time_factors", &list, "`--time-factor`")?;
+        }
+        if let Some(typed) = &outputs.times {
+            self.give("output.times", &toml_of(times("--time", typed)?), "`--time`")?;
         }
         if let Some(reference) = &outputs.reference {
             self.give("output.references", &toml_of(vec![reference.as_str()]), "`--reference`")?;
@@ -287,12 +294,41 @@ pub fn step_rule(typed: &str) -> Result<String, OverrideError> {
 /// Numbers of a comma-separated list.
 pub fn numbers(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
     let number = |entry: &str| {
-        let entry = entry.trim();
-        entry
-            .parse()
-            .map_err(|_| OverrideError::typed(format!("`{entry}` in `{name} {typed}` is not a number")))
+        let told = || format!("`{entry}` in `{name} {typed}` is not a number");
+        entry.parse().map_err(|_| match in_si(entry, "s") {
+            Ok(_) if name == "--time-factor" => format!("{}; a time is given by `--time {entry}`", told()),
+            _ => told(),
+        })
     };
-    typed.split(',').map(number).collect()
+    entries(name, typed)?.into_iter().map(|entry| number(entry).map_err(OverrideError::Typed)).collect()
+}
+
+/// Times of a comma-separated list, s: plain numbers, or numbers with a unit of time.
+pub fn times(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
+    let time = |entry: &str| {
+        let parsed = entry.parse().or_else(|_| in_si(entry, "s"));
+        parsed.map_err(|told| refused_quantity(&format!("{name} {typed}"), told))
+    };
+    entries(name, typed)?.into_iter().map(time).collect()
+}
+
+/// Entries of a comma-separated list. A number like `05` is what a decimal comma leaves.
+fn entries<'a>(name: &str, typed: &'a str) -> Result<Vec<&'a str>, OverrideError> {
+    let entries: Vec<&str> = typed.split(',').map(str::trim).collect();
+    match entries.iter().find(|entry| has_leading_zero(entry)) {
+        Some(entry) => Err(OverrideError::typed(format!(
+            "`{entry}` in `{name} {typed}` begins with a zero: write decimals with a point, like 0.{}, for a comma \
+             separates numbers",
+            entry.trim_start_matches(['+', '-'])
+        ))),
+        None => Ok(entries),
+    }
+}
+
+/// Whether a number begins with a zero and another digit.
+pub fn has_leading_zero(entry: &str) -> bool {
+    let mut letters = entry.trim_start_matches(['+', '-']).chars();
+    letters.next() == Some('0') && letters.next().is_some_and(|letter| letter.is_ascii_digit())
 }
 
 /// What a result is compared with: a scene, or a problem of the shelf, with its numbers.
@@ -331,7 +367,7 @@ impl Asked {
         let name = on_shelf.map_or(scene, |kind| SceneKind::of_solution(kind).name());
         let mut lines = StudyLines::of("score", name, "`--scene`")?;
         lines.give_outputs(&outputs)?;
-        let is_requested = lines.has("output.time_factors");
+        let is_requested = lines.has("output.time_factors") || lines.has("output.times");
         let study = lines.theory_study()?;
         let case = &study.planned[0].case;
         let own = study.references.iter().map(|kind| kind.for_soil(&case.material)).collect();
@@ -451,6 +487,26 @@ mod tests {
         }
         assert_eq!(step_rule("courant=1").unwrap_or_default(), "{ courant = 1.0 }");
         assert_eq!(step_rule("seconds=2 min").unwrap_or_default(), "{ seconds = \"2 min\" }");
+        for (typed, told) in [
+            (
+                "0,05",
+                "`05` in `--zeta 0,05` begins with a zero: write decimals with a point, like 0.05, for a comma separates numbers",
+            ),
+            (
+                "1,-007",
+                "`-007` in `--zeta 1,-007` begins with a zero: write decimals with a point, like 0.007, for a comma separates numbers",
+            ),
+            ("1 d", "`1 d` in `--zeta 1 d` is not a number"),
+        ] {
+            assert_eq!(numbers("--zeta", typed).map_err(|error| error.to_string()), Err(told.to_owned()));
+        }
+        assert_eq!(numbers("--zeta", "0, 0.05,-0.5,0e1").expect("numbers"), [0.0, 0.05, -0.5, 0.0]);
+        let told = "`1 d` in `--time-factor 1 d` is not a number; a time is given by `--time 1 d`";
+        assert_eq!(numbers("--time-factor", "1 d").map_err(|error| error.to_string()), Err(told.to_owned()));
+        assert_eq!(times("--time", "5, 2 min,1d").expect("times"), [5.0, 120.0, 86_400.0]);
+        for typed in ["05", "5 kPa", "soon", ""] {
+            assert!(times("--time", typed).is_err(), "{typed}");
+        }
         assert!(step_rule("seconds").is_err() && numbers("--zeta", "0.1,x").is_err());
     }
 

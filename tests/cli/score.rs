@@ -458,3 +458,54 @@ fn many_times_take_as_long_as_their_number() {
     assert_eq!(told.out.lines().filter(|line| line.contains("| pressure ")).count(), 40_000);
     assert!(started.elapsed().as_secs() < 600, "{:?}", started.elapsed());
 }
+
+/// Pressures of a column at its nodes on a mesh, each times a factor, without some of them.
+fn nodes(at: &Path, (solution, name): (&str, &str), cells: u32, factor: f64, without: &[u32], set: &[&str]) {
+    let depths: Vec<String> =
+        (0..=cells).map(|node| (f64::from(node) / f64::from(cells)).to_string()).collect();
+    let mut text = "t,y,p,u_y\n".to_owned();
+    let depths = depths.join(",");
+    let asked = [&[solution, "--time-factor", "0.1,0.5", "--zeta", &depths][..], set].concat();
+    for (place, row) in (0..).zip(exact(at, &asked)) {
+        if !without.contains(&(place % (cells + 1))) {
+            // What all of a column that has drained settles is no matter here: only whether it is there.
+            let moved = -row[3] * (1.0 - row[1]);
+            writeln!(text, "{},{},{},{moved}", row[0] * SECONDS, 1.0 - row[1], factor * row[2])
+                .expect("a line");
+        }
+    }
+    fs::write(at.join(name), text).expect("a file");
+}
+
+/// `T_v` = 0.1 of the seed column is 8.175 s.
+#[test]
+fn times_are_taken_as_a_study_takes_them() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    nodes(at, ("terzaghi", "a.csv"), 20, 1.0, &[], &[]);
+    for (command, time, factor) in [
+        (&["exact", "terzaghi", "--zeta", "0.5"][..], "0.13625 min,40.875", "0.1,0.5"),
+        (&["score", "a.csv", "--scene", "terzaghi", "--format", "csv"], "8175 ms", "0.1"),
+        (
+            &["solve", "terzaghi", "--integrator", "implicit", "--cells", "4", "--format", "csv"],
+            "8.175 s,4.73090277777777778e-4d",
+            "0.1,0.5",
+        ),
+    ] {
+        let rows = |option: &str, list: &str| {
+            let told = call(at, &[command, &[option, list]].concat());
+            assert_eq!(told.code, 0, "{}", told.err);
+            let row = |line: &str| {
+                line.split(',')
+                    .map(|field| {
+                        field.parse::<f64>().map_or(field.to_owned(), |number| format!("{number:.6e}"))
+                    })
+                    .collect::<Vec<_>>()
+            };
+            told.out.lines().map(row).collect::<Vec<_>>()
+        };
+        assert_eq!(rows("--time", time), rows("--time-factor", factor), "{command:?}");
+    }
+    let told = call(at, &["score", "a.csv", "--scene", "terzaghi", "--time", "1 h", "--strict"]);
+    assert!(told.code != 0 && told.err.contains("there is no T_v = 44"), "{}", told.err);
+}

@@ -5,7 +5,7 @@ use crate::api::scene_of;
 use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
-use crate::study::overrides::{Asked, Assignments, numbers};
+use crate::study::overrides::{Asked, Assignments, numbers, times};
 use clap::ValueEnum;
 use oedometer_exact::Accuracy;
 use oedometer_exact::exact_error::ExactError;
@@ -15,6 +15,7 @@ use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::{ShelfProblem, consolidation};
 use oedometer_mpm::scene::SceneKind;
+use oedometer_soil::wording::typed;
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
@@ -23,7 +24,7 @@ const DISTANCE_IN_MOTION: &str = "0.25";
 /// Depths if none are given.
 const DEFAULT_DEPTHS: &str = "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1";
 /// Time factors if none are given; a yield front has its scene's.
-const DEFAULT_TIMES: &str = "0.05,0.1,0.2,0.5,1.0";
+const DEFAULT_TIMES: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -39,11 +40,14 @@ enum Format {
 pub struct Arguments {
     /// Exact solution: terzaghi (compressible water), terzaghi-incompressible, single-mode, …
     scene: String,
-    /// Time factors `T_v` = `c_v` t/H², comma-separated
-    #[arg(long, default_value = DEFAULT_TIMES, value_name = "LIST", allow_hyphen_values = true)]
-    time_factor: String,
+    /// Time factors `T_v` = `c_v` t/H², comma-separated [default: 0.05,0.1,0.2,0.5,1.0]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    time_factor: Option<String>,
+    /// Times, comma-separated: in s, or with a unit, like 30d or "1 year"
+    #[arg(long = "time", value_name = "LIST", conflicts_with = "time_factor", allow_hyphen_values = true)]
+    times: Option<String>,
     /// Degrees of consolidation (by settlement) whose time factors are computed, instead of --time-factor
-    #[arg(long, value_name = "LIST", conflicts_with = "time_factor", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["time_factor", "times"], allow_hyphen_values = true)]
     degree: Option<String>,
     /// Lagrangian depths ζ below the drained surface, comma-separated
     #[arg(long, default_value = DEFAULT_DEPTHS, value_name = "LIST", allow_hyphen_values = true)]
@@ -135,13 +139,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let (parameters, kind) = (asked.parameters, asked.references[0]);
     // These have none of their own at the usual times.
     let has_other_times = matches!(asked.study.scene, SceneKind::YieldFront | SceneKind::StandingWave);
-    let time_factors = match &arguments.degree {
-        Some(degrees) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
-        None if has_other_times && arguments.time_factor == DEFAULT_TIMES => {
+    let time_factors = match (&arguments.degree, &arguments.times, &arguments.time_factor) {
+        (Some(degrees), ..) => time_factors_of(kind, &parameters, &numbers("--degree", degrees)?)?,
+        (_, Some(typed), _) => time_factors_at(kind, &parameters, &times("--time", typed)?)?,
+        (_, _, Some(typed)) => numbers("--time-factor", typed)?,
+        _ if has_other_times => {
             let case = &asked.study.planned[0].case;
             case.scene.default_time_factors(&case.column, &case.material)
         }
-        None => numbers("--time-factor", &arguments.time_factor)?,
+        _ => DEFAULT_TIMES.to_vec(),
     };
     let reference = Reference::new(kind, &parameters, &time_factors)?;
     let rows = match kind {
@@ -276,6 +282,24 @@ fn print(
         say!("the porosity stays above {porosity:.6e}");
     }
     Ok(())
+}
+
+/// Time factors of times, s.
+fn time_factors_at(
+    kind: ReferenceKind,
+    parameters: &ColumnParameters,
+    times: &[f64],
+) -> anyhow::Result<Vec<f64>> {
+    if !kind.has_time() {
+        return Err(Ended::usage(format!("`{kind}` has no time: leave `--time` out")));
+    }
+    match times.iter().find(|time| !(time.is_finite() && **time >= 0.0)) {
+        Some(time) => Err(Ended::usage(format!(
+            "a time of {} s: 0 is the undrained start, later times are positive",
+            typed(*time)
+        ))),
+        None => Ok(times.iter().map(|time| parameters.time_factor(*time)).collect()),
+    }
 }
 
 /// Time factors at which degrees of consolidation are reached.

@@ -14,7 +14,7 @@ use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
 use crate::render::checks::{Finding, junit_of_findings};
 use crate::render::tables::scores;
-use crate::study::overrides::{Asked, Outputs};
+use crate::study::overrides::{Asked, Outputs, has_leading_zero};
 use crate::study::solver::Preset;
 use crate::study::units::in_si;
 use oedometer_exact::reference::ReferenceKind;
@@ -78,6 +78,9 @@ pub struct Arguments {
 
 /// A time, s, as a plain number or with its unit.
 fn seconds(typed: &str) -> Result<f64, String> {
+    if has_leading_zero(typed) {
+        return Err(format!("`{typed}` begins with a zero: write decimals with a point, like 0.{typed}"));
+    }
     typed.parse().or_else(|_| in_si(typed, "s").map_err(|(message, help)| format!("{message}: {help}")))
 }
 
