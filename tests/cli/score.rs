@@ -477,6 +477,44 @@ fn nodes(at: &Path, (solution, name): (&str, &str), cells: u32, factor: f64, wit
     fs::write(at.join(name), text).expect("a file");
 }
 
+#[test]
+fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    let surface = "no sample lies on the surface (y = 1 m)";
+    let base = "no sample lies on the base (y = 0 m)";
+    let settlement = "no settlement is judged";
+    for (without, options, lacks) in [
+        (&[][..], &[][..], &[][..]),
+        (&[0], &[], &[surface, settlement]),
+        (&[0], &["--without", "settlement"], &[surface]),
+        (&[20], &[], &[base]),
+    ] {
+        nodes(at, ("terzaghi", "a.csv"), 20, 1.0, without, &[]);
+        let gate = |judged: &[&str]| {
+            let common = ["score", "a.csv", "--scene", "terzaghi", "--time-factor", "0.1,0.5"];
+            call(at, &[&common[..], options, judged].concat())
+        };
+        let strict = gate(&["--strict"]);
+        assert_eq!(strict.code, i32::from(!lacks.is_empty()), "{without:?} {options:?}: {}", strict.err);
+        let below = gate(&["--below", "1"]);
+        assert_eq!(below.code, 0, "{}", below.err);
+        let told = |told: &Told, word: &str, end: &str, lack: &str| {
+            told.err.lines().any(|line| line.starts_with(word) && line.contains(lack) && line.ends_with(end))
+        };
+        for lack in [surface, base, settlement] {
+            let is_lacking = lacks.contains(&lack);
+            assert_eq!(told(&strict, "fail: a.csv: ", "", lack), is_lacking, "{lack}: {}", strict.err);
+            assert_eq!(
+                told(&below, "note: a.csv: ", "`--strict` does not pass this", lack),
+                is_lacking,
+                "{}",
+                below.err
+            );
+        }
+    }
+}
+
 /// `T_v` = 0.1 of the seed column is 8.175 s.
 #[test]
 fn times_are_taken_as_a_study_takes_them() {

@@ -2,7 +2,7 @@
 
 use crate::import::SampledState;
 use crate::judge::score::coverage;
-use crate::judge::score::coverage::Bare;
+use crate::judge::score::coverage::{Bare, End};
 use crate::judge::score::score_series::time_factors;
 use oedometer_exact::{ColumnParameters, ExactError, Reference, ReferenceKind};
 use oedometer_soil::elementary::ln;
@@ -205,6 +205,27 @@ impl Whole<'_> {
             return None;
         };
         Some(format!("the samples lie at {place} m: nothing is known about the rest"))
+    }
+
+    /// Nodes of which the outermost row is missing at one end.
+    pub fn end_without_sample(&self, states: &[SampledState]) -> Option<Finding> {
+        let is_slab = self.reference == ReferenceKind::Mandel;
+        let told = |state: &SampledState| {
+            let lines = coverage::lines(&state.initial_height, self.parameters.height);
+            let [end, other, at] = match coverage::open_end(&lines, self.parameters.height)? {
+                End::Top if is_slab => ["the drained side", "the middle", "x"],
+                End::Bottom if is_slab => ["the middle", "the drained side", "x"],
+                End::Top => ["the surface", "the base", "y"],
+                End::Bottom => ["the base", "the surface", "y"],
+            };
+            let place =
+                if end == "the surface" || end == "the drained side" { self.parameters.height } else { 0.0 };
+            Some(format!(
+                "no sample lies on {end} ({at} = {} m), although one lies on {other} and the next are a whole spacing away",
+                short(place)
+            ))
+        };
+        self.first(states, Lack::HeightNotCovered, told)
     }
 
     fn bare_height(&self, state: &SampledState) -> Option<String> {

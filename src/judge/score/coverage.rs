@@ -9,6 +9,11 @@ const BARE_AT_END: f64 = 1.25;
 pub(crate) const SAME_PLACE: f64 = 1e-6;
 /// Spacings closer than this, relative, are equal.
 const SAME_SPACING: f64 = 0.02;
+/// Share of the next spacing from which on a gap at an end is a whole spacing: cells shrink by less than a quarter from one to
+/// the next, and points stand within half a spacing from an end.
+const WHOLE_SPACING: f64 = 0.75;
+/// Fewest gaps that have a spacing.
+const FEWEST_GAPS: usize = 2;
 /// Neighbours on either side of a gap that define the spacing around it.
 const AROUND: usize = 4;
 /// Samples that a band has on average where they have no order.
@@ -45,6 +50,38 @@ pub fn bare(lines: &[f64], extent: f64) -> Option<Bare> {
         empty_bands(lines, extent, (lines.len() / PER_INTERVAL).max(2))
     };
     longest(stretches)
+}
+
+/// An end of the height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Where places are 0.
+    Bottom,
+    /// Where places are the extent.
+    Top,
+}
+
+/// The end at which nodes lack their outermost row: the last place is a whole spacing away from it, and the other end has a
+/// place. Points in cells and centres stand half a spacing away, or less, from both.
+pub fn open_end(lines: &[f64], extent: f64) -> Option<End> {
+    let gaps: Vec<f64> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if gaps.len() < FEWEST_GAPS || bare(lines, extent).is_some() {
+        return None;
+    }
+    let [first, last] = [lines[0], extent - lines[lines.len() - 1]];
+    let is_reached = |gap: f64| gap.abs() <= SAME_PLACE * extent;
+    // The gap at an end, with the two next to it: spacings that change slowly.
+    let is_whole = |gap: f64, next: f64, after: f64| {
+        gap >= WHOLE_SPACING * next && (1.0 / BARE..=BARE).contains(&(next / after))
+    };
+    let count = gaps.len();
+    if is_reached(first) && is_whole(last, gaps[count - 1], gaps[count - 2]) {
+        Some(End::Top)
+    } else if is_reached(last) && is_whole(first, gaps[0], gaps[1]) {
+        Some(End::Bottom)
+    } else {
+        None
+    }
 }
 
 /// The longest of bare stretches.
@@ -232,6 +269,32 @@ mod tests {
             .collect();
         assert_eq!(bare(&jittered, 1.0), None, "points that were moved by chance");
         assert_eq!(bare(&scattered(400), 1.0), None, "no order at all");
+    }
+
+    #[test]
+    fn nodes_without_their_row_at_one_end_are_told_from_points_and_centres() {
+        let nodes = |ratio: f64| {
+            let gaps: Vec<f64> = (0..10).map(|cell| ratio.powi(cell)).collect();
+            let total: f64 = gaps.iter().sum();
+            let sums = gaps.iter().scan(0.0, |at, gap| {
+                *at += gap / total;
+                Some(*at)
+            });
+            [0.0].into_iter().chain(sums).collect::<Vec<f64>>()
+        };
+        for ratio in [0.8, 1.0, 1.25] {
+            let all = nodes(ratio);
+            assert_eq!(open_end(&all, 1.0), None, "{ratio}");
+            assert_eq!(open_end(&all[..10], 1.0), Some(End::Top), "{ratio}");
+            assert_eq!(open_end(&all[1..], 1.0), Some(End::Bottom), "{ratio}");
+            assert_eq!(open_end(&all[1..10], 1.0), None, "places of some choice: {ratio}");
+        }
+        for shares in
+            [&[0.5][..], &[0.25, 0.75], &[1.0 / 3.0, 2.0 / 3.0], &[0.211_325, 0.788_675], &[0.45, 0.95]]
+        {
+            assert_eq!(open_end(&points(10, shares), 1.0), None, "{shares:?}");
+        }
+        assert_eq!(open_end(&[0.0, 0.5], 1.0), None, "one gap has no spacing beside it");
     }
 
     #[test]

@@ -57,6 +57,9 @@ pub struct Score {
     pub worst: Vec<WorstPlace>,
     /// In what way the result is incomplete.
     pub warnings: Vec<Finding>,
+    /// What is not judged because the result has no data for it: `--strict` does not pass it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_judged: Vec<Finding>,
     /// What seems to be wrong with its numbers, one sentence for each.
     pub diagnosis: Vec<String>,
     /// What has no relative error because the exact value is zero or below round-off.

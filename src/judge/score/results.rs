@@ -245,6 +245,7 @@ impl Scored {
             self.score.warnings.extend(interior_zeros(parameters, states));
             self.run.notes.extend(whole.unit_of_volume(states));
             self.run.notes.extend(whole.profiles(states));
+            self.score.not_judged.extend(whole.end_without_sample(states));
             self.score.diagnosis = diagnosis(parameters, *own, states, held.mapping)?;
         }
         self.note_absences(held.case);
@@ -271,7 +272,7 @@ impl Scored {
         absent.chain(unended).chain(doubts).collect()
     }
 
-    /// Notes why a quantity has no error.
+    /// Says which quantity has no error, and why.
     fn note_absences(&mut self, case: &Case) {
         let has = |quantity: Quantity| self.score.errors.iter().any(|row| row.quantity == quantity);
         let [displacement, settlement] = [Quantity::Displacement, Quantity::Settlement].map(has);
@@ -288,7 +289,8 @@ impl Scored {
             } else {
                 "no sample lies on the surface"
             };
-            self.run.notes.push(format!("no settlement is judged: {why}"));
+            let sentence = format!("no settlement is judged: {why}");
+            self.score.not_judged.push(Finding::new(Lack::QuantityMissing, sentence));
         }
         let first = self.run.states.first();
         if is_plane && displacement && first.is_some_and(|state| state.horizontal_displacement.is_empty()) {
@@ -352,11 +354,7 @@ mod tests {
             let mut one = Scored { run: Run { states, ..Run::default() }, ..Scored::default() };
             one.run.leave_out(without);
             one.assess(&comparison, &comparison.parameters).expect("a score");
-            assert!(
-                !one.run.notes.iter().any(|note| note.starts_with("no settlement")),
-                "{:?}",
-                one.run.notes
-            );
+            assert_eq!(one.score.not_judged, [], "{times:?}");
             let all = [Pressure, Displacement, Settlement];
             let errors = all.map(|quantity| one.score.errors.iter().any(|row| row.quantity == quantity));
             let vanished =
@@ -398,7 +396,8 @@ mod tests {
             let run = Run { states, ..Run::default() };
             let mut one = Scored { run, score: Score { errors: errors.to_vec(), ..Score::default() } };
             one.note_absences(&Case::seed(Task::Solve, scene));
-            one.run.notes
+            let not_judged = one.score.not_judged.into_iter().map(|finding| finding.sentence);
+            not_judged.chain(one.run.notes).collect::<Vec<String>>()
         };
         let surface = "no settlement is judged: no sample lies on the surface";
         let crest = "no settlement is judged: no sample lies on the surface under the crest of the load";

@@ -65,7 +65,8 @@ pub struct Arguments {
     /// Quantities that the files lack on purpose, comma-separated: pressure, `effective_stress`, displacement, settlement
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
     without: Vec<String>,
-    /// Fail with exit code 1 if the result is incomplete: volume, height, rows, times
+    /// Fail with exit code 1 if the result is incomplete (volume, height, rows, times) or leaves something unjudged: the
+    /// settlement, a row of nodes at the surface or the base
     #[arg(long)]
     strict: bool,
     /// Write a `JUnit` report of what --below and --strict judge
@@ -162,6 +163,7 @@ fn lead(results: &Results, arguments: &Arguments, references: &[ReferenceKind]) 
             .score
             .warnings
             .iter()
+            .chain(scored.score.not_judged.iter().filter(|_| arguments.strict))
             .map(move |lack| format!("{name}: {}: {}", lack.name.name(), lack.sentence))
     });
     let reasons: Vec<String> = too_large.chain(incomplete).collect();
@@ -235,7 +237,8 @@ fn series_fields(found: Option<(usize, &ScoredSeries)>) -> [String; 3] {
 /// that scale.
 const VANISHING: f64 = 1e-3;
 
-/// Prints what the results lack and whether they pass. With `--below` or `--strict`, incomplete results fail.
+/// Prints what the results lack and whether they pass. With `--below` or `--strict`, incomplete results fail; with `--strict`
+/// also those that leave something unjudged.
 fn judged(
     results: &Results,
     below: Option<f64>,
@@ -248,7 +251,9 @@ fn judged(
     for scored in &results.all {
         let is_named = is_gate || results.all.len() > 1;
         let name = if is_named { format!("{}: ", scored.name()) } else { String::new() };
-        for lack in &scored.score.warnings {
+        let not_judged = &scored.score.not_judged;
+        let failing = not_judged.iter().filter(|_| strict);
+        for lack in scored.score.warnings.iter().chain(failing.clone()) {
             let word = if is_gate { "fail" } else { "warning" };
             let is_of_mapping = lack.name == Lack::Undeclared;
             if !(is_of_mapping && is_undeclared_told) {
@@ -259,11 +264,15 @@ fn judged(
             let subject = format!("{}/{}", scored.name(), lack.name.name());
             findings.push(Finding { subject, failure: Some(lack.sentence.clone()) });
         }
-        if is_gate && scored.score.warnings.is_empty() {
+        if is_gate && scored.score.warnings.is_empty() && failing.count() == 0 {
             findings.push(Finding { subject: format!("{}/complete", scored.name()), failure: None });
         }
         for note in &scored.run.notes {
             say!("note: {name}{note}");
+        }
+        for lack in not_judged.iter().filter(|_| !strict) {
+            let but = if is_gate { "; `--strict` does not pass this" } else { "" };
+            say!("note: {name}{}{but}", lack.sentence);
         }
     }
     if !is_gate {
