@@ -128,6 +128,7 @@ pub fn diagnosis(
         let own = World::own(&given).predict_by(&solution, &given);
         if let Some(own) = &own {
             given.hold_against(own);
+            given.has_common_factor = !reference.is_manufactured() && common_factor(&given, own).is_some();
         }
         own.map(|own| (given, own))
     });
@@ -309,18 +310,20 @@ fn loads(given: &Given<'_>, own: &World) -> Vec<World> {
     let tens = [10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].into_iter().filter(|_| given.moves() && given.is_stressed());
     let few = [3.0, 4.0, 5.0].into_iter().flat_map(|factor| [factor, 1.0 / factor]).filter(|_| !is_linear);
     let named = [2.0, 0.5].into_iter().chain(few).chain(tens).map(with);
-    let common = common_factor(given, own);
+    let common = own.predict(given).and_then(|predicted| common_factor(given, &predicted));
     // A factor without a name counts twice.
     named.chain(common.map(|factor| World { is_fitted: true, count: 2, ..with(factor) })).collect()
 }
 
 /// The factor that all columns have, where stresses and displacements agree on it.
-fn common_factor(given: &Given<'_>, own: &World) -> Option<f64> {
-    let predicted = own.predict(given).filter(|_| given.moves() && given.is_stressed())?;
+fn common_factor(given: &Given<'_>, predicted: &Predicted) -> Option<f64> {
+    if !(given.moves() && given.is_stressed()) {
+        return None;
+    }
     let of = |column: &Column| {
         let (mut both, mut square) = (0.0, 0.0);
         for ((computed, exact), weight) in
-            column.computed.iter().zip(column.exact(&predicted)).zip(&column.weights)
+            column.computed.iter().zip(column.exact(predicted)).zip(&column.weights)
         {
             both += weight * computed / column.scale * (exact / column.scale);
             square += weight * powi(exact / column.scale, 2);

@@ -116,6 +116,8 @@ pub struct Given<'a> {
     pub columns: Vec<Column>,
     /// Whether these are only some of the samples.
     pub are_picked: bool,
+    /// Whether stresses and displacements agree on one factor, which is the load's then.
+    pub has_common_factor: bool,
     /// The scene's own solution, for worlds of the same body.
     pub solution: Option<Reference>,
 }
@@ -144,7 +146,16 @@ impl<'a> Given<'a> {
         ];
         let columns = columns.into_iter().map(|(field, name, scale)| column(&states, field, name, scale));
         let columns = columns.filter(|column| !column.computed.is_empty()).collect();
-        Self { parameters, kind, mapping, states, columns, are_picked, solution: None }
+        Self {
+            parameters,
+            kind,
+            mapping,
+            states,
+            columns,
+            are_picked,
+            has_common_factor: false,
+            solution: None,
+        }
     }
 
     /// Keeps what shows something, with the size of the scene's own solution.

@@ -95,7 +95,7 @@ pub fn best(
     if with_patterns {
         all.extend(patterns::checkerboard(column, &exact, given));
     }
-    if all.is_empty() && is_own {
+    if all.is_empty() && is_own && !given.has_common_factor {
         all.extend(constant_factor(column, &exact, given).filter(|one| one.left <= FACTOR_LEFT * left));
     }
     let cost_of = |reading: &Reading| cost(reading.left, reading.count);

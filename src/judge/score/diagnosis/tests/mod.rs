@@ -55,6 +55,29 @@ fn scale(list: &mut [f64], factor: f64) {
     }
 }
 
+/// On a coarse mesh the factors of stresses and displacements are each off a little.
+#[test]
+fn factors_that_nearly_agree_are_that_of_the_load() {
+    let of = |pressure: f64, displacement: f64| {
+        told(&changed(0.0, |state| {
+            scale(&mut state.pressure, pressure);
+            scale(&mut state.effective_stress, pressure);
+            scale(&mut state.displacement, displacement);
+        }))
+    };
+    for (pressure, displacement) in [(1.1, 1.1), (1.098, 1.104), (0.902, 0.897)] {
+        let told = of(pressure, displacement);
+        assert!(
+            told.len() == 1
+                && told[0].starts_with("each of your p, effective_stress and u_y matches the exact one of")
+                && told[0].contains("is the load"),
+            "{told:?}"
+        );
+    }
+    let apart = of(1.1, 1.3);
+    assert!(!apart.is_empty() && apart.iter().all(|told| !told.contains("is the load")), "{apart:?}");
+}
+
 #[test]
 fn every_mistake_is_named_in_good_and_in_mediocre_results() {
     for off in [0.0, 1e-3, 0.05] {
