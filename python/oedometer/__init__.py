@@ -223,6 +223,8 @@ class Score:
     series: Table = field(default_factory=Table)
     """Of results on several meshes a row a measure: ``time_factor``, ``quantity``, ``sample``, ``norm``, ``reference``, the
     ``cells`` of the meshes with their ``errors``, ``order``, ``class`` and ``reason``."""
+    not_judged: List[str] = field(default_factory=list)
+    """What has no error for want of data: the settlement, nodes at the surface or the base."""
 
     def error(
         self,
@@ -407,6 +409,7 @@ def _score(found: Dict[str, Any], name: str = "") -> Score:
         warnings=[f"{one['name']}: {one['sentence']}" for one in found["warnings"]],
         diagnosis=found["diagnosis"],
         series=Table._of(found.get("series", [])),
+        not_judged=[one["sentence"] for one in found.get("not_judged", [])],
         reference=found["errors"][0]["reference"] if found["errors"] else "",
     )
 

@@ -482,13 +482,18 @@ fn what_is_not_judged_is_told_and_strict_does_not_pass_it() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
     let surface = "no sample lies on the surface (y = 1 m)";
-    let base = "no sample lies on the base (y = 0 m)";
+    let base = "on the base (y = 0 m)";
+    let declared = "sample = \"nodes\"\nunits = { stress = \"Pa\" }\nsign = { p = \"compression-positive\", u_y = \"up\" }\n";
+    fs::write(at.join("nodes.toml"), declared).expect("a file");
+    let nodes_declared = ["--mapping", "nodes.toml"];
     let settlement = "no settlement is judged";
     for (without, options, lacks) in [
         (&[][..], &[][..], &[][..]),
         (&[0], &[], &[surface, settlement]),
         (&[0], &["--without", "settlement"], &[surface]),
         (&[20], &[], &[base]),
+        (&[0, 20], &[], &[settlement]),
+        (&[0, 20], &nodes_declared, &[surface, base, settlement]),
     ] {
         nodes(at, ("terzaghi", "a.csv"), 20, 1.0, without, &[]);
         let gate = |judged: &[&str]| {

@@ -207,23 +207,26 @@ impl Whole<'_> {
         Some(format!("the samples lie at {place} m: nothing is known about the rest"))
     }
 
-    /// Nodes of which the outermost row is missing at one end.
-    pub fn end_without_sample(&self, states: &[SampledState]) -> Option<Finding> {
-        let is_slab = self.reference == ReferenceKind::Mandel;
+    /// Nodes of which the outermost row is missing at an end; a place declared to be one has its row at both.
+    pub fn end_without_sample(&self, states: &[SampledState], are_nodes: bool) -> Option<Finding> {
+        let [base, surface, axis] = match self.reference {
+            ReferenceKind::Mandel => ["the middle", "the drained side", "x"],
+            _ => ["the base", "the surface", "y"],
+        };
+        let place = |end: &str, at: f64| format!("{end} ({axis} = {} m)", short(at));
+        let bottom = place(base, 0.0);
+        let top = place(surface, self.parameters.height);
         let told = |state: &SampledState| {
             let lines = coverage::lines(&state.initial_height, self.parameters.height);
-            let [end, other, at] = match coverage::open_end(&lines, self.parameters.height)? {
-                End::Top if is_slab => ["the drained side", "the middle", "x"],
-                End::Bottom if is_slab => ["the middle", "the drained side", "x"],
-                End::Top => ["the surface", "the base", "y"],
-                End::Bottom => ["the base", "the surface", "y"],
-            };
-            let place =
-                if end == "the surface" || end == "the drained side" { self.parameters.height } else { 0.0 };
-            Some(format!(
-                "no sample lies on {end} ({at} = {} m), although one lies on {other} and the next are a whole spacing away",
-                short(place)
-            ))
+            Some(match coverage::open_end(&lines, self.parameters.height, are_nodes)? {
+                End::Top => {
+                    format!("no sample lies on {top}: the nodes have no row there, and one on {base}")
+                }
+                End::Bottom => {
+                    format!("no sample lies on {bottom}: the nodes have no row there, and one on {surface}")
+                }
+                End::Both => format!("no sample lies on {top} or on {bottom}: the nodes have no row there"),
+            })
         };
         self.first(states, Lack::HeightNotCovered, told)
     }

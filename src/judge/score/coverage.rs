@@ -59,17 +59,28 @@ pub enum End {
     Bottom,
     /// Where places are the extent.
     Top,
+    /// One end and the other.
+    Both,
 }
 
 /// The end at which nodes lack their outermost row: the last place is a whole spacing away from it, and the other end has a
-/// place. Points in cells and centres stand half a spacing away, or less, from both.
-pub fn open_end(lines: &[f64], extent: f64) -> Option<End> {
+/// place. Points in cells and centres stand half a spacing away, or less, from both. Places that are declared to be nodes reach
+/// both ends.
+pub fn open_end(lines: &[f64], extent: f64, are_nodes: bool) -> Option<End> {
     let gaps: Vec<f64> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if gaps.len() < FEWEST_GAPS || bare(lines, extent).is_some() {
         return None;
     }
     let [first, last] = [lines[0], extent - lines[lines.len() - 1]];
     let is_reached = |gap: f64| gap.abs() <= SAME_PLACE * extent;
+    if are_nodes {
+        return match [first, last].map(is_reached) {
+            [true, true] => None,
+            [true, false] => Some(End::Top),
+            [false, true] => Some(End::Bottom),
+            [false, false] => Some(End::Both),
+        };
+    }
     // The gap at an end, with the two next to it: spacings that change slowly.
     let is_whole = |gap: f64, next: f64, after: f64| {
         gap >= WHOLE_SPACING * next && (1.0 / BARE..=BARE).contains(&(next / after))
@@ -284,17 +295,17 @@ mod tests {
         };
         for ratio in [0.8, 1.0, 1.25] {
             let all = nodes(ratio);
-            assert_eq!(open_end(&all, 1.0), None, "{ratio}");
-            assert_eq!(open_end(&all[..10], 1.0), Some(End::Top), "{ratio}");
-            assert_eq!(open_end(&all[1..], 1.0), Some(End::Bottom), "{ratio}");
-            assert_eq!(open_end(&all[1..10], 1.0), None, "places of some choice: {ratio}");
+            assert_eq!(open_end(&all, 1.0, false), None, "{ratio}");
+            assert_eq!(open_end(&all[..10], 1.0, false), Some(End::Top), "{ratio}");
+            assert_eq!(open_end(&all[1..], 1.0, false), Some(End::Bottom), "{ratio}");
+            assert_eq!(open_end(&all[1..10], 1.0, false), None, "places of some choice: {ratio}");
         }
         for shares in
             [&[0.5][..], &[0.25, 0.75], &[1.0 / 3.0, 2.0 / 3.0], &[0.211_325, 0.788_675], &[0.45, 0.95]]
         {
-            assert_eq!(open_end(&points(10, shares), 1.0), None, "{shares:?}");
+            assert_eq!(open_end(&points(10, shares), 1.0, false), None, "{shares:?}");
         }
-        assert_eq!(open_end(&[0.0, 0.5], 1.0), None, "one gap has no spacing beside it");
+        assert_eq!(open_end(&[0.0, 0.5], 1.0, true), None, "one gap has no spacing beside it");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 mod other_water;
 
-use crate::case::{Case, Quantity};
+use crate::case::{Case, Quantity, Sample};
 use crate::import::Absent;
 use crate::import::mapping::Mapping;
 use crate::import::runs::Run;
@@ -247,7 +247,8 @@ impl Scored {
             self.score.warnings.extend(interior_zeros(parameters, states));
             self.run.notes.extend(whole.unit_of_volume(states));
             self.run.notes.extend(whole.profiles(states));
-            self.score.not_judged.extend(whole.end_without_sample(states));
+            let are_nodes = held.mapping.sample == Sample::Nodes;
+            self.score.not_judged.extend(whole.end_without_sample(states, are_nodes));
             self.score.diagnosis = diagnosis(parameters, *own, states, held.mapping)?;
         }
         self.note_absences(held.case);
@@ -316,7 +317,7 @@ fn beside_by_set(states: &[SampledState]) -> Vec<Vec<SampledState>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Norm, Sample, Task};
+    use crate::case::{Norm, Task};
     use crate::import::mapping::preset::CONVENTION;
     use crate::judge::score::tests::state;
     use crate::study::file::StudySource;
