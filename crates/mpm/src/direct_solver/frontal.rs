@@ -145,7 +145,11 @@ impl Front {
 
     /// Does the same on each of the fronts below, at once where there is more than one thread; the results in the order of
     /// the fronts.
-    fn on_children<T: Send>(&mut self, threads: usize, task: impl Fn(&mut Self, usize) -> T + Sync) -> Vec<T> {
+    fn on_children<T: Send>(
+        &mut self,
+        threads: usize,
+        task: impl Fn(&mut Self, usize) -> T + Sync,
+    ) -> Vec<T> {
         match &mut self.children[..] {
             [low, high] => on_halves([low, high], threads, task).into(),
             _ => Vec::new(),

@@ -162,7 +162,7 @@ impl<const D: usize, const W: usize> Building<'_, D, W> {
         let (cells, places) = self.cells.locate::<N>(self.grid, first, positions, volumes);
         let domains = [&places, some_of(self.half_lengths, first), &cells];
         let (lowest, lines) = (some_mut(self.blocks.0, first), some_mut(self.blocks.1, first));
-        build_blocks::<D, W, N, S>(self.grid, self.support, domains, (lowest, lines));
+        build_blocks::<D, W, N, S>(self.grid, self.support, domains, lowest, lines);
         for p in 0..N {
             let given = self.giving.given::<N, true, true, true>(first, p, &shares);
             self.sums.add(Stencil::of_block(&lowest[p], &lines[p]), &given);

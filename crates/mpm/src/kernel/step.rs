@@ -38,7 +38,7 @@ impl<const D: usize> Body<D> {
         self.step_by_step(kick, dt, settings, |_| ());
     }
 
-    /// The same, and word of each step that is done: for who takes their times.
+    /// The same step; `done` is called after each of its steps, so that they can be timed.
     #[inline]
     pub fn step_by_step(
         &mut self,

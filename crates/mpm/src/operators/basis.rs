@@ -156,14 +156,15 @@ fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     })
 }
 
-/// Lowest nodes and lines of `N` points at places (in cells) with half-lengths (m) of their domains and with their cells,
+/// Builds the lowest nodes and the lines of `N` points at places (in cells) with half-lengths (m) of their domains and with their cells,
 /// whole numbers, `[point][direction]`; without nodes beyond held faces.
 #[inline(always)]
 pub(crate) fn build_blocks<const D: usize, const W: usize, const N: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,
     support: &Support<D>,
     [places, half_lengths, cells]: [&[Vector<D>; N]; 3],
-    blocks: (&mut [usize; N], &mut [[Line<W>; D]; N]),
+    first: &mut [usize; N],
+    lines: &mut [[Line<W>; D]; N],
 ) {
     let (per_cell, stride) = (grid.inverse_cell_size(), grid.node_stride().map(|stride| stride as f64));
     // `[node][point][direction]`: every line of a shape function is a loop over points and directions.
@@ -172,15 +173,15 @@ pub(crate) fn build_blocks<const D: usize, const W: usize, const N: usize, S: Sh
     for p in 0..N {
         for d in 0..D {
             let half_length = half_lengths[p][d] * per_cell;
-            let (first, mut lines) = S::nodes(places[p][d], cells[p][d], half_length);
+            let (node, mut shares) = S::nodes(places[p][d], cells[p][d], half_length);
             if S::PASSES_WALLS {
-                let row = Row { first: integer_part(first), values: lines[0], gradients: lines[1] };
+                let row = Row { first: integer_part(node), values: shares[0], gradients: shares[1] };
                 let row = folded(support, grid, d, row);
-                lines = [row.values, row.gradients];
+                shares = [row.values, row.gradients];
             }
-            lowest[p] += first * stride[d];
+            lowest[p] += node * stride[d];
             for k in 0..W {
-                (values[k][p][d], gradients[k][p][d]) = (lines[0][k], lines[1][k] * per_cell);
+                (values[k][p][d], gradients[k][p][d]) = (shares[0][k], shares[1][k] * per_cell);
             }
         }
     }
@@ -191,10 +192,10 @@ pub(crate) fn build_blocks<const D: usize, const W: usize, const N: usize, S: Sh
     }
     let (lowest, values, gradients) = &rows;
     for p in 0..N {
-        blocks.0[p] = integer_part(lowest[p]);
+        first[p] = integer_part(lowest[p]);
         for d in 0..D {
+            let line = &mut lines[p][d];
             for k in 0..W {
-                let line = &mut blocks.1[p][d];
                 (line.values[k], line.gradients[k]) = (values[k][p][d], gradients[k][p][d]);
             }
         }

@@ -166,8 +166,7 @@ pub fn critical_step<const D: usize>(
             break;
         }
     }
-    let soon =
-        bracketed(start, &mut |dt| known.answer(dt).unwrap_or_else(|| is_bounded(dt, GROWTH_STEPS)));
+    let soon = bracketed(start, &mut |dt| known.answer(dt).unwrap_or_else(|| is_bounded(dt, GROWTH_STEPS)));
     match soon {
         _ if !has_radius => soon,
         Some(dt) if !sharp && soon != early && is_stable(dt) => soon,

@@ -198,5 +198,8 @@ fn rows_follow_the_occupied_cells() {
         shapes.push(cells.changes());
     }
     shapes.dedup();
-    assert!((2..10).contains(&shapes.len()), "some steps change the occupied cells, others do not: {shapes:?}");
+    assert!(
+        (2..10).contains(&shapes.len()),
+        "some steps change the occupied cells, others do not: {shapes:?}"
+    );
 }
