@@ -23,7 +23,7 @@ pub struct NamedCases {
 
 impl NamedCases {
     /// Those of all cases of a study.
-    pub fn of(cases: &[&Case]) -> Self {
+    pub fn from_cases(cases: &[&Case]) -> Self {
         let swept = cases.first().map(|case| case.swept.iter().map(|name| (*name).to_owned()).collect());
         Self { swept: swept.unwrap_or_default(), cases: cases.iter().map(|case| case.hash()).collect() }
     }

@@ -63,7 +63,7 @@ impl RecordStore {
     /// The store of a study that names these cases: they are noted before a record is written.
     #[must_use]
     pub fn naming(self, cases: &[&Case]) -> Self {
-        let named = (NamedCases::of(cases), AtomicBool::new(false));
+        let named = (NamedCases::from_cases(cases), AtomicBool::new(false));
         Self { named: Some(Arc::new(named)), ..self }
     }
 
