@@ -6,7 +6,7 @@ use oedometer_mpm::run::results::outcome::FailureKind;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::arrangement::Arrangement;
 use oedometer_soil::continuity::Continuity;
-use oedometer_soil::wording::typed;
+use oedometer_soil::wording::{short, typed};
 
 /// The check whose complaint names numbers of points.
 const POINTS_MISSING: &str = "points missing at the start";
@@ -356,9 +356,9 @@ pub fn complaints(record: &Record) -> Vec<String> {
         }
         if check.what == GROWN_MODE {
             return Some(format!(
-                "a mode grows by a factor of {:.2e} until the last output, by the eigenvalues of the step, more than \
-                 {bound:.1}: an earlier last output or another recovery of the pressure keeps it small",
-                check.value
+                "a mode grows by a factor of {} until the last output, by the eigenvalues of the step, more than {bound}: an \
+                 earlier last output or another recovery of the pressure keeps it small",
+                short(check.value)
             ));
         }
         Some(format!("{} is {:.2e}{when}, more than {bound:.1e}", check.what, check.value))

@@ -503,9 +503,11 @@ mod tests {
         let mut cells = Cells::new(&grid, points.len());
         points.take_soils(&[Material::default()]);
         cells.locate(&grid, &points, &[Material::default()]);
-        let occupied: Vec<usize> = cells.occupied().collect();
-        assert_eq!(occupied, [2, 3], "two ghosts below, the other cells empty");
+        assert!(cells.occupied().eq([2, 3]), "two ghosts below, the other cells empty");
         assert!((cells.porosity[3] - 0.3).abs() < 1e-15);
         assert!((cells.porosity[2] - (0.2 + 0.3) / 1.9).abs() < 1e-15);
+        points.position.iter_mut().for_each(|place| place[0] += 0.5);
+        cells.locate(&grid, &points, &[Material::default()]);
+        assert!(cells.occupied().eq([3, 4]), "as many cells as before, but others");
     }
 }
