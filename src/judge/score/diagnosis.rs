@@ -49,6 +49,9 @@ const UNEVEN_TOP: f64 = 0.02;
 const CLEAR: f64 = 1e-4;
 /// Largest relative difference of one factor in several columns.
 const COMMON: f64 = 0.05;
+/// Share of its distance from one by which factors may differ that are the load's: pressures of 1.01 beside exact displacements
+/// have a factor of their own.
+const SHARED: f64 = 0.25;
 /// Words of a question about one column, where the others match.
 const ONLY: &str = "and only it: ";
 /// A time factor before anything drains.
@@ -128,7 +131,9 @@ pub fn diagnosis(
         let own = World::own(&given).predict_by(&solution, &given);
         if let Some(own) = &own {
             given.hold_against(own);
-            given.has_common_factor = !reference.is_manufactured() && common_factor(&given, own).is_some();
+            let common = common_factor(&given, own).filter(|_| !reference.is_manufactured());
+            given.has_common_factor =
+                common.is_some_and(|(factor, spread)| spread <= SHARED * (factor - 1.0).abs());
         }
         own.map(|own| (given, own))
     });
@@ -312,11 +317,11 @@ fn loads(given: &Given<'_>, own: &World) -> Vec<World> {
     let named = [2.0, 0.5].into_iter().chain(few).chain(tens).map(with);
     let common = own.predict(given).and_then(|predicted| common_factor(given, &predicted));
     // A factor without a name counts twice.
-    named.chain(common.map(|factor| World { is_fitted: true, count: 2, ..with(factor) })).collect()
+    named.chain(common.map(|(factor, _)| World { is_fitted: true, count: 2, ..with(factor) })).collect()
 }
 
-/// The factor that all columns have, where stresses and displacements agree on it.
-fn common_factor(given: &Given<'_>, predicted: &Predicted) -> Option<f64> {
+/// The factor that all columns have, where stresses and displacements agree on it, and how far the furthest is from it.
+fn common_factor(given: &Given<'_>, predicted: &Predicted) -> Option<(f64, f64)> {
     if !(given.moves() && given.is_stressed()) {
         return None;
     }
@@ -333,7 +338,9 @@ fn common_factor(given: &Given<'_>, predicted: &Predicted) -> Option<f64> {
     let factors: Vec<f64> = given.columns.iter().filter(|column| !column.shows_nothing()).map(of).collect();
     let first = *factors.first()?;
     let are_one = factors.iter().all(|factor| (factor / first - 1.0).abs() <= COMMON);
-    (are_one && first > 0.0).then(|| factors.iter().sum::<f64>() / factors.len() as f64)
+    let mean = factors.iter().sum::<f64>() / factors.len() as f64;
+    let spread = factors.iter().fold(0.0, |most: f64, factor| most.max((factor - mean).abs()));
+    (are_one && first > 0.0).then_some((mean, spread))
 }
 
 /// Water that is incompressible, or stores where it should not.

@@ -496,6 +496,21 @@ mod tests {
     }
 
     #[test]
+    fn a_domain_reaches_into_the_empty_cell_beside_it() {
+        let grid = Grid::new(0.5, [4]);
+        for (shift, beyond) in [(0.5, None), (0.45, Some(2)), (0.55, Some(5))] {
+            let mut points = Points::lattice(0.5, [2], 2);
+            points.take_soils(&[Material::default()]);
+            points.position.iter_mut().for_each(|place| place[0] += shift);
+            let mut cells = Cells::new(&grid, points.len());
+            cells.locate(&grid, &points, &[Material::default()]);
+            cells.find_reached(&grid, &points);
+            let reached = (0..grid.cell_count()).filter(|cell| cells.is_reached(*cell));
+            assert!(reached.filter(|cell| ![3, 4].contains(cell)).eq(beyond), "moved by {shift} m");
+        }
+    }
+
+    #[test]
     fn cells_know_their_points_and_porosity() {
         let grid = Grid::new(0.5, [4]);
         let mut points = Points::lattice(0.5, [2], 2);

@@ -74,8 +74,9 @@ fn factors_that_nearly_agree_are_that_of_the_load() {
             "{told:?}"
         );
     }
-    let apart = of(1.1, 1.3);
-    assert!(!apart.is_empty() && apart.iter().all(|told| !told.contains("is the load")), "{apart:?}");
+    for apart in [of(1.1, 1.3), of(1.01, 1.0)] {
+        assert!(!apart.is_empty() && apart.iter().all(|told| !told.contains("is the load")), "{apart:?}");
+    }
 }
 
 #[test]
