@@ -138,13 +138,13 @@ impl Front {
         (front, boundary)
     }
 
-    /// Room for numbers of the factors, its own and those of the fronts below.
+    /// Numbers in the factors of the front and of those below it, at most.
     fn numbers(&self) -> usize {
         self.panels.numbers() + self.children.iter().map(Self::numbers).sum::<usize>()
     }
 
-    /// Does the same on each of the fronts below, at once where there is more than one thread; the results in the order of
-    /// the fronts.
+    /// Runs a task on each of the fronts below, at once on more than one thread; returns the results in the order of the
+    /// fronts.
     fn on_children<T: Send>(
         &mut self,
         threads: usize,
@@ -267,7 +267,7 @@ impl Front {
     }
 }
 
-/// Does the same with both halves of a set, at once where there is more than one thread.
+/// Runs a task on both halves of a set, at once on more than one thread.
 fn on_halves<H: Send, T: Send>(
     [low, high]: [H; 2],
     threads: usize,

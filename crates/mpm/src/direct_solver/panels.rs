@@ -48,7 +48,7 @@ impl Panels {
         Self { count, height, lower, upper, triangles }
     }
 
-    /// Room for numbers of `L` and `U` beside the triangles.
+    /// Numbers in `L` and `U` without the triangles, at most.
     pub fn numbers(&self) -> usize {
         WIDTH * (self.lower.capacity() + self.upper.capacity())
     }

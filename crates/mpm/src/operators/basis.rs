@@ -156,8 +156,8 @@ fn rows_at<const D: usize, const W: usize, S: ShapeFunction<W>>(
     })
 }
 
-/// Builds the lowest nodes and the lines of `N` points at places (in cells) with half-lengths (m) of their domains and with their cells,
-/// whole numbers, `[point][direction]`; without nodes beyond held faces.
+/// Builds the lowest nodes and the lines of `N` points from their places (in cells), the half-lengths of their domains (m) and
+/// their cells (whole numbers), `[point][direction]`, without nodes beyond held faces.
 #[inline(always)]
 pub(crate) fn build_blocks<const D: usize, const W: usize, const N: usize, S: ShapeFunction<W>>(
     grid: &Grid<D>,

@@ -123,7 +123,7 @@ impl<const D: usize> Cells<D> {
         self.changes += 1;
     }
 
-    /// How many times the occupied cells have changed: what is made of them alone stands until the next change.
+    /// How many times the occupied cells have changed: a list that depends on them alone is valid until the next change.
     #[inline]
     pub fn changes(&self) -> usize {
         self.changes

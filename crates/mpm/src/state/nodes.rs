@@ -263,7 +263,7 @@ impl<const D: usize> Nodes<D> {
         ]
         .map(|field| &mut field[..count]);
         let (solid_mass, cut_off) = (&self.solid_mass[..count], self.mass_cut_off);
-        // All nodes, without a branch: wide registers divide four times at once.
+        // Every node, without a branch: a wide register divides four numbers at once.
         wide!(for node in 0..count {
             let [[grain_volume, pore_volume, resistance, _]] = masses[node];
             let of_active = |value: f64| if solid_mass[node] > cut_off { value } else { 0.0 };
