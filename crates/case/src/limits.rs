@@ -289,7 +289,7 @@ impl<'a> Choices<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+    use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
     #[test]
     fn choices_of_moving_points_are_refused_where_points_move_and_the_solver_ignores_them() {

@@ -43,7 +43,6 @@ mod porous_soil;
 pub mod reference;
 pub mod shelf;
 pub mod single_mode;
-pub mod soil_layers;
 pub mod solution;
 mod talbot;
 pub mod terzaghi;

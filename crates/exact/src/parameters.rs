@@ -1,22 +1,11 @@
 //! The column and its material, as plain SI numbers.
 
 use crate::exact_error::{ExactError, normal, positive};
-use crate::soil_layers::SoilLayers;
+pub use oedometer_soil::base::Base;
+use oedometer_soil::layers::SoilLayers;
 use oedometer_soil::material::Material;
-use oedometer_soil::wording::words;
+pub use oedometer_soil::motion::MotionParameters;
 use std::f64::consts::PI;
-
-/// How a layer rests on its impermeable base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
-pub enum Base {
-    /// No displacement.
-    #[default]
-    Rough,
-    /// No vertical displacement and no shear.
-    Smooth,
-}
-
-words!(Base: Rough "rough", Smooth "smooth");
 
 /// Whether the water itself can be compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -52,21 +41,6 @@ impl Default for ShelfParameters {
             initial_stress: None,
         }
     }
-}
-
-/// A motion that is written down: its amplitudes and its frequency.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
-)]
-pub struct MotionParameters {
-    /// Amplitude `A` of the stretch along x.
-    pub amplitude_x: f64,
-    /// Amplitude `B` of the stretch along y.
-    pub amplitude_y: f64,
-    /// Amplitude of a vortex: its largest angle, rad.
-    pub amplitude: f64,
-    /// Frequency `ω` of `sin²(ωt)`, rad/s; 0 where nothing is made to move.
-    pub frequency: f64,
 }
 
 /// A saturated column of soil on an impermeable base, drained and loaded at its top.

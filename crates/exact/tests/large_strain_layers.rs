@@ -4,10 +4,10 @@ use oedometer_exact::large_strain::{LargeStrain, LargeStrainModel};
 use oedometer_exact::layered::LayeredColumn;
 use oedometer_exact::numerics::integrate;
 use oedometer_exact::parameters::ColumnParameters;
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_exact::solution::Solution;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 const TIMES: [f64; 4] = [0.05, 0.2, 0.4, 1.0];

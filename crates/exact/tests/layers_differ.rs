@@ -1,8 +1,8 @@
 //! Layers that differ in every key, in a column in which no two numbers are equal: settlement and pressure hold each other.
 
 use oedometer_exact::numerics::integrate;
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind};
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 /// Thickness, E, ν, n, `K_w` and k of the layers from the base up.

@@ -1,11 +1,11 @@
 //! Writes `case.json`, which describes the problem to an attached solver.
 
 use oedometer_case::{Case, Key};
-use oedometer_exact::soil_layers::SoilLayer;
 use oedometer_mpm::run::TimeStepRule;
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
 use oedometer_soil::elementary::powi;
+use oedometer_soil::layers::SoilLayer;
 use oedometer_soil::material::Material;
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -3,8 +3,7 @@
 //! Folders are floors; each uses only those below it, which a test keeps (`src/tests/source_order.rs` of `oedometer`). From the
 //! ground up:
 //!
-//! - `method`, `formulation`, `time_limit`, `wide`, `direct_solver`: choices, wide registers and linear systems, which know
-//!   nothing of points and nodes;
+//! - `time_limit`, `direct_solver`: deadlines and linear systems, which know nothing of points and nodes;
 //! - `state`: grid, points, nodes, cells;
 //! - `operators`: a method is four independent operators, each sparse between points, nodes and cell centres: shape
 //!   functions, strain gradient, pressure divergence and recovery;
@@ -24,16 +23,16 @@
 pub mod actions;
 mod direct_solver;
 mod drag;
-pub mod formulation;
 pub mod integrate;
 pub mod kernel;
-pub mod method;
 pub mod operators;
 pub mod run;
 pub mod scene;
 pub mod state;
 pub mod time_limit;
-mod wide;
+
+pub use oedometer_problem::{formulation, method};
+pub(crate) use oedometer_soil::wide;
 
 #[cfg(test)]
 mod tests {

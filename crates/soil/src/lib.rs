@@ -4,13 +4,17 @@
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod base;
 pub mod conductivity;
 pub mod continuity;
 pub mod elementary;
 pub mod law;
+pub mod layers;
 pub mod material;
+pub mod motion;
 pub mod plasticity;
 pub mod stiffness;
 pub mod tensor;
 pub mod von_mises;
+pub mod wide;
 pub mod wording;

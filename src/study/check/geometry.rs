@@ -9,9 +9,9 @@ use crate::study::reading::Placed;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
-use oedometer_exact::soil_layers::{MOST_LAYERS, SoilLayer, SoilLayers};
 use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::column_parameters;
+use oedometer_soil::layers::{MOST_LAYERS, SoilLayer, SoilLayers};
 use oedometer_soil::wording::short;
 use std::ops::Range;
 

@@ -1,6 +1,7 @@
 //! The load on the body's moving surface.
 
 use crate::method::Basis;
+use crate::operators::basis::Shapes;
 use crate::state::grid::Grid;
 use crate::state::nodes::{Nodes, Support};
 use crate::state::points::Points;

@@ -13,7 +13,7 @@ use crate::kernel::ExplicitSettings;
 use crate::kernel::body::Body;
 use crate::kernel::energy::Energy;
 use crate::kernel::loaded_body::GrowingLoad;
-use crate::kernel::scheme::Rhythm;
+use crate::kernel::rhythm::Rhythm;
 use crate::method::Configuration;
 use crate::state::points::Points;
 

@@ -10,12 +10,17 @@ pub mod critical_step;
 pub(crate) mod double_point;
 pub(crate) mod explicit_stepper;
 pub mod implicit;
-pub mod integrator;
 pub(crate) mod lost_point;
 pub(crate) mod physical_bounds;
-pub mod results;
 pub mod run_plan;
+pub mod sampling;
 pub mod schedule;
-pub mod step_rule;
 pub mod stepper;
 mod undrained_start;
+
+pub use oedometer_problem::{integrator, time_step as step_rule};
+
+/// What is left of a run.
+pub mod results {
+    pub use oedometer_problem::{outcome, snapshot};
+}

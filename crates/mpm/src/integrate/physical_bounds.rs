@@ -77,7 +77,7 @@ impl PhysicalBounds {
         } else {
             MOST_FORCE * of_load / cells
         };
-        let joining = 0.5 * problem.most_of_soils(drag::step_limit);
+        let joining = 0.5 * problem.most_of_soils(drag::drag_limit);
         let passing = cells * cell_size / problem.least_of_soils(formula::undrained_wave_speed);
         Self {
             settlement_scale: scale,

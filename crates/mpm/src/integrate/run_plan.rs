@@ -7,7 +7,7 @@ use crate::integrate::integrator::StepBound;
 use crate::integrate::physical_bounds::PhysicalBounds;
 use crate::integrate::results::outcome::StepSizes;
 use crate::integrate::schedule::Schedule;
-use crate::integrate::step_rule::{StepLimit, TimeStepRule};
+use crate::integrate::step_rule::{StepLimit, StepScales, TimeStepRule};
 use crate::kernel::body::{DrivenPlate, Problem};
 use crate::state::points::Points;
 use oedometer_soil::material::Material;
@@ -69,7 +69,13 @@ impl<'a> Plan<'a> {
                 (problem.least_of_soils(limit), None)
             }
         };
-        let target = schedule.rule.step(problem, critical);
+        let scales = StepScales {
+            critical,
+            cell_size,
+            wave_speed: problem.most_of_soils(|soil| formula::fastest_wave_speed(soil, soil.porosity)),
+            consolidation: problem.most_of_soils(Material::coefficient_of_consolidation),
+        };
+        let target = schedule.rule.first(&scales);
         let prediction = prediction.filter(|_| matches!(schedule.rule, TimeStepRule::Stable(_)));
         let grows_far = |mode: &GrowingMode| !mode.stays_small_for(end);
         let growing = prediction.as_ref().and_then(|prediction| prediction.growing).filter(grows_far);
@@ -82,7 +88,7 @@ impl<'a> Plan<'a> {
             StepBound::AllWaves | StepBound::Accuracy => f64::INFINITY,
         };
         Self {
-            limit: schedule.rule.limit(problem, sizes.target, most, &schedule.outputs),
+            limit: schedule.rule.limit(&scales, most, &schedule.outputs),
             growing,
             sizes,
             points: problem.points.len() + problem.water.as_ref().map_or(0, Points::len),
@@ -109,4 +115,57 @@ fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
         let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
         problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formulation::Formulation;
+    use crate::integrate::integrator::IntegratorKind;
+    use crate::integrate::schedule::Kernel;
+    use crate::kernel::ExplicitSettings;
+    use crate::method::Method;
+    use crate::scene::SceneKind;
+    use crate::scene::column::Column;
+    use crate::scene::problem::column_problem;
+    use crate::time_limit::TimeLimit;
+    use oedometer_soil::layers::{SoilLayer, SoilLayers};
+
+    #[test]
+    fn courant_steps_of_layers_are_those_of_the_fastest_layer() {
+        let soil = Material { water_bulk_modulus: 1e5, ..Material::default() };
+        let method = Method::named("GIMP").expect("known");
+        let layer = |youngs_modulus: f64| SoilLayer {
+            thickness: 0.5,
+            youngs_modulus: Some(youngs_modulus),
+            ..SoilLayer::default()
+        };
+        let speed_of = |layer: SoilLayer| {
+            let soil = layer.soil(&soil);
+            formula::fastest_wave_speed(&soil, soil.porosity)
+        };
+        let (soft, stiff) = (layer(1e6), layer(4e9));
+        for layers in [[soft, stiff], [stiff, soft]] {
+            let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
+            let problem =
+                column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
+            let schedule = Schedule {
+                outputs: vec![1.0],
+                history: Vec::new(),
+                rule: TimeStepRule::Courant(0.5),
+                settings: ExplicitSettings::default(),
+                kernel: Kernel::Fastest,
+                integrator: IntegratorKind::Explicit,
+                critical_step: Some(1.0),
+                formulation: Formulation::VW,
+                threads: 1,
+                time_limit: TimeLimit::default(),
+            };
+            let step = Plan::new(&problem, &schedule).sizes.target;
+            assert!((step * speed_of(stiff) / (0.5 * 0.25) - 1.0).abs() < 1e-12, "{step:e}");
+        }
+        assert!(
+            speed_of(stiff) > 1.5 * speed_of(soft).max(formula::fastest_wave_speed(&soil, soil.porosity))
+        );
+    }
 }

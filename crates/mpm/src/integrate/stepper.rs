@@ -3,6 +3,7 @@
 use crate::integrate::results::outcome::FailureKind;
 use crate::integrate::results::snapshot::Snapshot;
 use crate::kernel::energy::Energy;
+pub use oedometer_problem::time_step::EqualSteps;
 
 /// Why a step could not be taken, or what is wrong with the state that it led to.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,43 +30,6 @@ pub struct Work {
     pub iterations: u64,
     /// Steps that had to be taken again in smaller ones.
     pub rejected_steps: u64,
-}
-
-/// Some of a row of equal steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EqualSteps {
-    /// Time at which the row starts, s.
-    pub start: f64,
-    /// Size, s.
-    pub dt: f64,
-    /// Steps of the row that are behind these.
-    pub done: u64,
-    /// Number of steps.
-    pub count: u64,
-}
-
-impl EqualSteps {
-    /// The first steps of a row that starts at a time.
-    pub fn first(start: f64, dt: f64, count: u64) -> Self {
-        Self { start, dt, done: 0, count }
-    }
-
-    /// The next `count` steps after these.
-    #[must_use]
-    pub fn next(&self, count: u64) -> Self {
-        Self { done: self.done + self.count, count, ..*self }
-    }
-
-    /// Time after so many of these steps, s.
-    #[inline]
-    pub fn time_after(&self, steps: u64) -> f64 {
-        self.start + (self.done + steps) as f64 * self.dt
-    }
-
-    /// Time after all of them, s.
-    pub fn end(&self) -> f64 {
-        self.time_after(self.count)
-    }
 }
 
 /// A body on its way through time.

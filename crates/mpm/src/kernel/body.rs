@@ -10,6 +10,7 @@ use crate::actions::stress_slopes::StressPlanes;
 use crate::actions::surface_load::{LoadShape, LoadedSurface};
 use crate::method::{Configuration, Memory, Method, Recovery};
 use crate::operators::Operators;
+use crate::operators::basis::Shapes;
 use crate::operators::corners::build_corners;
 use crate::operators::stacked_points::StackedPoints;
 use crate::state::cells::Cells;

@@ -3,7 +3,7 @@
 //! [`body`] joins state, operators, soils and actions; [`step`] is the step of Zheng et al. by name and in order, on the
 //! passes of `points_to_nodes`, `nodes_to_points` and `stresses`. `volumetric` and `projection` are its divergence and
 //! recovery in place and as rows, `chord_mean` a drag of nodes; `loaded_body`, `weighing_body` and `forced_body` call the
-//! actions on a body, `energy` takes its balance. `scheme` are the step's choices.
+//! actions on a body, `energy` takes its balance. `rhythm` is how long its kicks are.
 
 pub mod body;
 mod chord_mean;
@@ -13,7 +13,7 @@ pub(crate) mod loaded_body;
 pub(crate) mod nodes_to_points;
 mod points_to_nodes;
 pub mod projection;
-pub mod scheme;
+pub mod rhythm;
 pub mod step;
 pub(crate) mod stresses;
 pub mod volumetric;
@@ -21,4 +21,9 @@ pub(crate) mod weighing_body;
 
 pub use crate::drag::Drag;
 pub(crate) use crate::kernel::nodes_to_points::Motion;
-pub use crate::kernel::scheme::ExplicitSettings;
+pub use oedometer_problem::settings::ExplicitSettings;
+
+/// Its scheme in time.
+pub mod scheme {
+    pub use oedometer_problem::settings::{ExplicitSettings, Scheme};
+}

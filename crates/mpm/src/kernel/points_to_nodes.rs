@@ -501,6 +501,7 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
 mod tests {
     use crate::kernel::body::Body;
     use crate::method::{Configuration, Method};
+    use crate::operators::basis::Shapes;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;

@@ -11,36 +11,12 @@
 
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::kernel::body::Body;
-use crate::method::{FULL_PROJECTION, Method};
 use crate::operators::recovery::points_in_cells::points_in_cells;
 use crate::operators::sparse_rows::entry_of;
 use crate::time_limit::TimeLimit;
-use oedometer_soil::material::Material;
 
 /// Rows of a matrix between sites.
 pub type SiteRows = Vec<Vec<(usize, f64)>>;
-
-impl Method {
-    /// Parameter `τ` of the projection in a soil, 1/Pa: `1/(2G)` (White & Borja 2008).
-    pub(crate) fn projection_parameter(&self, soil: &Material) -> f64 {
-        let source =
-            if self.has_projection() { (1.0 + soil.poissons_ratio) / soil.youngs_modulus } else { 0.0 };
-        source * f64::from(self.projection) / f64::from(FULL_PROJECTION)
-    }
-
-    /// Speed of the longest wave of a column of so many cells, `4H`, over that without a projection: the projection adds
-    /// `τ (κh)²/12` to the storage `n/K_w` of a wave of number `κ`. One for a method without it.
-    pub fn share_of_wave_speed(&self, soil: &Material, cells: usize) -> f64 {
-        if !self.has_projection() {
-            return 1.0;
-        }
-        let per_cell = 0.5 * std::f64::consts::PI / cells as f64;
-        let storage = soil.porosity / soil.water_bulk_modulus;
-        let added = self.projection_parameter(soil) * per_cell * per_cell / 12.0;
-        let modulus = |storage: f64| soil.oedometric_modulus() + 1.0 / storage;
-        (modulus(storage + added) / modulus(storage)).sqrt()
-    }
-}
 
 impl<const D: usize> Body<D> {
     /// The nodes that carry a pressure of their own, and the site of each node.
@@ -148,10 +124,12 @@ impl ProjectedStorage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::Method;
     use crate::scene::SceneKind;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
-    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+    use oedometer_soil::layers::{SoilLayer, SoilLayers};
+    use oedometer_soil::material::Material;
 
     /// `1/(2G)` of the seed soil, 1/Pa: E = 1 `MPa`, ν = 1/4, G = 400 kPa.
     const PARAMETER: f64 = 1.0 / 8e5;

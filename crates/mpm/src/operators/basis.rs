@@ -63,9 +63,36 @@ macro_rules! with_shape {
 }
 pub(crate) use with_shape;
 
-impl Basis {
+/// What shape functions make of points and surfaces, on a grid.
+pub trait Shapes: Sized {
     /// Room for the stencils of `points` points.
-    pub fn stencils<const D: usize>(self, points: usize) -> PointStencils<D> {
+    fn stencils<const D: usize>(self, points: usize) -> PointStencils<D>;
+
+    /// Builds `N` and `∇N` of points at places (in cells) with half-lengths of their domains (m), `[point][direction]`.
+    fn build<const D: usize>(
+        self,
+        stencils: &mut PointStencils<D>,
+        grid: &Grid<D>,
+        support: &Support<D>,
+        points: [&[Vector<D>]; 2],
+    );
+
+    /// Visits the nodes that carry a place of the surface (in cells), with the values of their shape functions: those
+    /// of the basis, and hats where domains smear them.
+    fn visit_surface<const D: usize>(
+        self,
+        grid: &Grid<D>,
+        support: &Support<D>,
+        place: &Vector<D>,
+        visitor: impl FnMut(usize, f64),
+    );
+
+    /// Last node that a surface at a height (in cells) leaves a spline to stand alone on; none without splines.
+    fn outermost_node(self, height: f64) -> Option<usize>;
+}
+
+impl Shapes for Basis {
+    fn stencils<const D: usize>(self, points: usize) -> PointStencils<D> {
         match self {
             Self::Hat => PointStencils::Two(Stencils::new(points, 1)),
             Self::Ugimp | Self::Cpgimp | Self::Cpdi | Self::Bspline2 => {
@@ -75,8 +102,7 @@ impl Basis {
         }
     }
 
-    /// Builds `N` and `∇N` of points at places (in cells) with half-lengths of their domains (m), `[point][direction]`.
-    pub fn build<const D: usize>(
+    fn build<const D: usize>(
         self,
         stencils: &mut PointStencils<D>,
         grid: &Grid<D>,
@@ -86,14 +112,7 @@ impl Basis {
         with_shape!(self, stencils, S, stencils => build::<D, _, S>(stencils, grid, support, points));
     }
 
-    /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are not nodal values.
-    pub fn is_spline(self) -> bool {
-        matches!(self, Self::Bspline2 | Self::Bspline3)
-    }
-
-    /// Visits the nodes that carry a place of the surface (in cells), with the values of their shape functions: those
-    /// of the basis, and hats where domains smear them.
-    pub fn visit_surface<const D: usize>(
+    fn visit_surface<const D: usize>(
         self,
         grid: &Grid<D>,
         support: &Support<D>,
@@ -115,8 +134,7 @@ impl Basis {
         }
     }
 
-    /// Last node that a surface at a height (in cells) leaves a spline to stand alone on; none without splines.
-    pub fn outermost_node(self, height: f64) -> Option<usize> {
+    fn outermost_node(self, height: f64) -> Option<usize> {
         match self {
             Self::Bspline2 => Some(integer_part(height + 0.5)),
             // The upper node of the cell that the surface is in; one on a face is in the cell below.

@@ -203,6 +203,7 @@ mod tests {
 
     #[test]
     fn a_domain_along_the_axes_has_products_of_one_dimensional_weights() {
+        use crate::operators::basis::Shapes;
         use crate::state::nodes::Support;
         let (place, half) = ([1.37, 0.81], [0.2, 0.13]);
         let (grid, corners) = point(place, [[half[0], 0.0], [0.0, half[1]]]);

@@ -10,6 +10,7 @@ pub mod stencil;
 pub mod strain_gradient;
 
 use crate::method::{Configuration, Method};
+use crate::operators::basis::Shapes;
 use crate::operators::corners::{Domains, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;

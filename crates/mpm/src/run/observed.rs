@@ -12,12 +12,10 @@ use crate::kernel::ExplicitSettings;
 use crate::kernel::body::{Body, Problem};
 use crate::run::{Kernel, Observer, Schedule, TimeStepRule, run};
 use crate::time_limit::TimeLimit;
-use serde::{Deserialize, Serialize};
+pub use oedometer_problem::critical_step::{CriticalStep, OBSERVED_STEPS, Probe, SHARES};
 
 /// Cells up to which the prediction is for the whole column; longer ones are shortened in their middle.
 const WHOLE_COLUMN: usize = 24;
-/// Steps of an observing run: growth of 1/700 per step shows.
-pub const OBSERVED_STEPS: u64 = 32_768;
 /// Bisections between a step that runs and one that fails.
 pub const BISECTIONS: u32 = 24;
 /// Width of the last bracket, relative.
@@ -28,85 +26,6 @@ const TINY_STRAIN: f64 = 1e-6;
 const SLOWEST_SEEN: f64 = 6.9e-5;
 /// Growth per step that a run of so many steps shows: `ln(5·10^4)/32768`.
 const VISIBLE_GROWTH: f64 = 3.3e-4;
-/// Shares of the predicted step that must run and must fail.
-pub const SHARES: [f64; 2] = [0.97, 1.03];
-
-/// One run at a share of the predicted step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Probe {
-    /// Share of the predicted critical step.
-    pub share: f64,
-    /// Step, s.
-    pub step: f64,
-    /// Spectral radius of the step operator: the largest growth per step; none where the problem is too large.
-    pub predicted_growth: Option<f64>,
-    /// Steps taken.
-    pub steps: u64,
-    /// Whether these steps reach the end of the scene.
-    pub reaches_end: bool,
-    /// Failure of the run, if it failed.
-    pub failure: Option<Failure>,
-}
-
-/// The critical step of a problem, predicted and observed.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct CriticalStep {
-    /// From the spectral radius, s: beyond it a mode grows by as much as is observed, `ln(5·10^4)/32768` per step, in a plane
-    /// a doubling in 10 000 steps.
-    pub predicted: f64,
-    /// Step, s, from which on a mode grows more slowly, where that begins long before: no run of a few thousand steps
-    /// shows it, but a million steps can.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub creeping_from: Option<f64>,
-    /// Says that no limit is known, where a mode grows under any step; `predicted` is the formula's step then.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unknown: Option<String>,
-    /// Observed in runs, s; none where none failed.
-    pub observed: Option<f64>,
-    /// `h/c` with the fastest undamped wave, s.
-    pub wave_limit: f64,
-    /// Limit of explicit drag alone, s.
-    pub drag_limit: f64,
-    /// The safe formula for both, s.
-    pub combined_limit: f64,
-    /// Runs at the shares 0.97 and 1.03 of the predicted step.
-    pub probes: Vec<Probe>,
-    /// Asymmetry of the stiffness of skeleton and water over its largest entry: zero to round-off where the power of the
-    /// forces is that of the stresses.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub asymmetry: Option<[f64; 2]>,
-}
-
-impl Probe {
-    /// Whether it ran below the predicted step, or failed above it; a run that was stopped or timed out did neither.
-    pub fn is_as_predicted(&self) -> bool {
-        match &self.failure {
-            None => self.share < 1.0,
-            Some(failure) => {
-                self.share > 1.0 && !matches!(failure.kind, FailureKind::Stopped | FailureKind::TimedOut)
-            }
-        }
-    }
-}
-
-impl CriticalStep {
-    /// Whether the runs on both sides of the prediction agree with it; false without a run on either side.
-    pub fn probes_agree(&self) -> bool {
-        let has = |side: fn(f64) -> bool| self.probes.iter().any(|probe| side(probe.share));
-        has(|share| share < 1.0) && has(|share| share > 1.0) && self.probes.iter().all(Probe::is_as_predicted)
-    }
-
-    /// The predicted step, s, where a limit is known.
-    pub fn known(&self) -> Option<f64> {
-        self.unknown.is_none().then_some(self.predicted)
-    }
-
-    /// Observed over predicted step, minus one.
-    pub fn deviation(&self) -> Option<f64> {
-        self.observed.map(|observed| observed / self.predicted - 1.0)
-    }
-}
-
 /// The observer stopped the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
@@ -161,7 +80,7 @@ pub fn critical_step<const D: usize>(
         observed,
         wave_limit: problem
             .least_of_soils(|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity)),
-        drag_limit: problem.least_of_soils(drag::step_limit),
+        drag_limit: problem.least_of_soils(drag::drag_limit),
         combined_limit: problem
             .least_of_soils(|soil| formula::combined_limit(soil, cell_size, settings.drag)),
         probes,
@@ -271,43 +190,6 @@ mod tests {
     use crate::scene::problem::column_problem;
     use oedometer_soil::material::Material;
 
-    fn probe(share: f64, failure: Option<FailureKind>) -> Probe {
-        let failed = |kind| Failure {
-            kind,
-            step: 7,
-            time: 1.0,
-            growth: None,
-            reason: "as the test wants it".to_owned(),
-        };
-        let failure = failure.map(failed);
-        Probe { share, step: share, predicted_growth: None, steps: 10, reaches_end: true, failure }
-    }
-
-    #[test]
-    fn probes_agree_where_the_run_below_the_limit_ends_and_the_one_above_is_unstable() {
-        let [below, above] = SHARES;
-        assert!(below < 1.0 && above > 1.0);
-        let [unstable, stopped, late] =
-            [FailureKind::Unstable, FailureKind::Stopped, FailureKind::TimedOut].map(Some);
-        for (probes, agrees) in [
-            (&[(below, None), (above, unstable)][..], true),
-            (&[(below, unstable), (above, unstable)], false),
-            (&[(below, None), (above, None)], false),
-            (&[(below, None), (above, stopped)], false),
-            (&[(below, None), (above, late)], false),
-            (&[(below, stopped), (above, unstable)], false),
-            (&[(below, late), (above, unstable)], false),
-            (&[(below, None)], false),
-            (&[(above, unstable)], false),
-            (&[], false),
-        ] {
-            let probes: Vec<_> = probes.iter().map(|(share, failure)| probe(*share, *failure)).collect();
-            let limit =
-                CriticalStep { predicted: 1.0, observed: Some(1.0), probes, ..CriticalStep::default() };
-            assert_eq!(limit.probes_agree(), agrees, "{:?}", limit.probes);
-        }
-    }
-
     #[test]
     fn a_search_finds_the_limit_from_probes_on_one_side_of_it() {
         let settings = ExplicitSettings::default();
@@ -319,7 +201,7 @@ mod tests {
             let probes = steps.map(|step| {
                 let (steps, failure) =
                     leaves(&problem, &settings, step, OBSERVED_STEPS, &|_, _| true).expect("nobody stops it");
-                Probe { step, steps, ..probe(1.0, failure.map(|failure| failure.kind)) }
+                Probe { share: 1.0, step, predicted_growth: None, steps, reaches_end: true, failure }
             });
             observed_step(&problem, &settings, &probes, &|_, _| true)
                 .expect("nobody stops it")

@@ -1,114 +1,46 @@
-//! Arrangements of the points in their cells: the regular lattice, shifted or jittered points, one or two point sets.
+//! The points of an arrangement at their places: the regular lattice, shifted, jittered or alternating.
 
 use crate::state::points::Points;
-use oedometer_soil::wording::is_default;
-use serde::{Deserialize, Serialize};
+pub use oedometer_problem::arrangement::Arrangement;
 
-/// Departure of the points from the regular lattice, the same for every point of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Arrangement {
-    /// Shift of all points upward, in spacings of the points: −0.5 puts them on cell faces.
-    pub offset: f64,
-    /// Largest shift of a row up or down, in spacings: deterministic, and different for every row.
-    pub jitter: f64,
-    /// Share of the top cell that is filled; its points share it.
-    pub filling: f64,
-    /// Whether every second cell has one point more, from the second on; in columns of one dimension.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub alternating: bool,
-    /// Point sets: 1 carries skeleton and water, 2 are one of each (double-point MPM).
-    #[serde(default = "single_set", skip_serializing_if = "is_single_set")]
-    pub sets: usize,
-    /// Points of the water a cell and direction in double-point MPM; 0 otherwise.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub water_per_cell: usize,
+/// The points of `extent` cells of a size, m, at their places.
+pub fn place_points<const D: usize>(
+    arrangement: &Arrangement,
+    cell_size: f64,
+    extent: [usize; D],
+    per_cell: usize,
+) -> Points<D> {
+    let mut points = if arrangement.alternating {
+        alternating(cell_size, extent, per_cell)
+    } else {
+        Points::lattice(cell_size, extent, per_cell)
+    };
+    arrange(arrangement, &mut points, cell_size, extent[D - 1]);
+    points
 }
 
-pub(super) fn single_set() -> usize {
-    1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-pub(super) fn is_single_set(count: &usize) -> bool {
-    *count == 1
-}
-
-impl Default for Arrangement {
-    /// The regular lattice, every cell full, in one set.
-    fn default() -> Self {
-        Self { offset: 0.0, jitter: 0.0, filling: 1.0, alternating: false, sets: 1, water_per_cell: 0 }
+/// Moves the points of a full lattice of `cells` cells to their places; what a shift would take out of the body
+/// stays on its edge.
+fn arrange<const D: usize>(arrangement: &Arrangement, points: &mut Points<D>, cell_size: f64, cells: usize) {
+    if arrangement.is_lattice() {
+        return;
     }
-}
-
-impl Arrangement {
-    /// Whether this is the regular lattice in one set.
-    pub fn is_regular(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Whether every point lies where the regular lattice has it, in however many sets.
-    pub fn is_lattice(&self) -> bool {
-        Self { sets: 1, water_per_cell: 0, ..*self }.is_regular()
-    }
-
-    /// Whether the water has points of its own: double-point MPM.
-    pub fn has_two_sets(&self) -> bool {
-        self.sets == 2
-    }
-
-    /// Names the water's points where nothing else does: as many as the skeleton's, or none in one set.
-    pub fn name_water_points(&mut self, points_per_cell: usize) {
-        if !self.has_two_sets() {
-            self.water_per_cell = 0;
-        } else if self.water_per_cell == 0 {
-            self.water_per_cell = points_per_cell;
+    let top_cell = (cells - 1) as f64 * cell_size;
+    let surface = top_cell + arrangement.filling * cell_size;
+    for point in 0..points.len() {
+        let up = D - 1;
+        let mut height = points.initial_position[point][up];
+        if height > top_cell {
+            height = top_cell + arrangement.filling * (height - top_cell);
+            points.half_length[point][up] *= arrangement.filling;
+            points.initial_volume[point] *= arrangement.filling;
         }
-    }
-
-    /// Cell size, m, with which `cells` cells hold a column of a height, the top one partly.
-    pub fn cell_size(&self, height: f64, cells: usize) -> f64 {
-        height / ((cells - 1) as f64 + self.filling)
-    }
-
-    /// Points over a height of `cells` cells that have `per_cell` of them, or one more; none where they have none.
-    pub fn points_up(&self, cells: usize, per_cell: usize) -> usize {
-        cells * per_cell + if self.alternating && per_cell > 0 { cells / 2 } else { 0 }
-    }
-
-    /// The points of `extent` cells of a size, m, at their places.
-    pub fn points<const D: usize>(&self, cell_size: f64, extent: [usize; D], per_cell: usize) -> Points<D> {
-        let mut points = if self.alternating {
-            alternating(cell_size, extent, per_cell)
-        } else {
-            Points::lattice(cell_size, extent, per_cell)
-        };
-        self.arrange(&mut points, cell_size, extent[D - 1]);
-        points
-    }
-
-    /// Moves the points of a full lattice of `cells` cells to their places; what a shift would take out of the body
-    /// stays on its edge.
-    fn arrange<const D: usize>(&self, points: &mut Points<D>, cell_size: f64, cells: usize) {
-        if self.is_lattice() {
-            return;
-        }
-        let top_cell = (cells - 1) as f64 * cell_size;
-        let surface = top_cell + self.filling * cell_size;
-        for point in 0..points.len() {
-            let up = D - 1;
-            let mut height = points.initial_position[point][up];
-            if height > top_cell {
-                height = top_cell + self.filling * (height - top_cell);
-                points.half_length[point][up] *= self.filling;
-                points.initial_volume[point] *= self.filling;
-            }
-            let spacing = 2.0 * points.half_length[point][up];
-            let row = row_of(points.initial_position[point][up], spacing);
-            height += spacing * (self.offset + self.jitter * scatter(row));
-            height = height.clamp(0.0, surface);
-            points.initial_position[point][up] = height;
-            points.position[point][up] = height;
-        }
+        let spacing = 2.0 * points.half_length[point][up];
+        let row = row_of(points.initial_position[point][up], spacing);
+        height += spacing * (arrangement.offset + arrangement.jitter * scatter(row));
+        height = height.clamp(0.0, surface);
+        points.initial_position[point][up] = height;
+        points.position[point][up] = height;
     }
 }
 
@@ -153,7 +85,7 @@ mod tests {
 
     fn arranged(arrangement: Arrangement, cells: usize, per_cell: usize) -> (f64, Points<1>) {
         let cell_size = arrangement.cell_size(1.0, cells);
-        (cell_size, arrangement.points(cell_size, [cells], per_cell))
+        (cell_size, place_points(&arrangement, cell_size, [cells], per_cell))
     }
 
     #[test]

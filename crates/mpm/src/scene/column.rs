@@ -1,8 +1,8 @@
 //! Geometry and load of the body of soil that a scene is about.
 
-use crate::scene::arrangement::{Arrangement, is_single_set, single_set};
 use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+use oedometer_problem::arrangement::{Arrangement, is_single_set, single_set};
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::{is_default, words};
 use serde::{Deserialize, Serialize};

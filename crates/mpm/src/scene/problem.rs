@@ -10,6 +10,7 @@ use crate::method::{Method, Quadrature};
 use crate::run::observed::{CriticalStep, Stopped, critical_step};
 use crate::run::{Observer, Schedule, run};
 use crate::scene::SceneKind;
+use crate::scene::arrangement::place_points;
 use crate::scene::column::{Column, Undrained, column_parameters};
 use crate::scene::definition::{ColumnStart, SceneLoad, SceneStart};
 use crate::scene::manufactured;
@@ -212,7 +213,7 @@ impl<const D: usize> PointSets<'_, D> {
     /// Points at the start, so many in each cell.
     fn with(&self, per_cell: usize) -> Result<Points<D>, ExactError> {
         let Self { column, soil, method, cell_size, extent, start } = self;
-        let mut points = column.points.points(*cell_size, *extent, per_cell);
+        let mut points = place_points(&column.points, *cell_size, *extent, per_cell);
         if method.quadrature == Quadrature::Moments {
             fit_volumes(&mut points, *cell_size, *extent, column.height);
         }

@@ -1,7 +1,6 @@
 //! Kernels against each other, what a run keeps, and runs at their limits.
 
 use crate::run;
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_mpm::kernel::body::Problem;
 use oedometer_mpm::kernel::scheme::Scheme;
 use oedometer_mpm::kernel::{Drag, ExplicitSettings};
@@ -13,6 +12,7 @@ use oedometer_mpm::scene::SceneKind;
 use oedometer_mpm::scene::column::Column;
 use oedometer_mpm::scene::problem::{SceneProblem, column_problem};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {

@@ -493,7 +493,7 @@ pub fn moduli(given: &Given<'_>) -> Vec<(f64, &'static str)> {
 
 /// The world of a skeleton that is stiffer by a factor: slower to move, and less.
 pub fn stiffer(base: &World, factor: f64) -> World {
-    let change = |layer: &mut oedometer_exact::soil_layers::SoilLayer| {
+    let change = |layer: &mut oedometer_soil::layers::SoilLayer| {
         layer.youngs_modulus = layer.youngs_modulus.map(|modulus| factor * modulus);
     };
     World { parameters: with_soils(&base.parameters, change), ..base.clone() }

@@ -5,8 +5,8 @@
 use super::given::Given;
 use crate::import::SampledState;
 use crate::measure::fields::{ExactFields, SamplePlaces};
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind, ShelfProblem};
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
 /// Time factors after which nothing changes.
 const LAST: f64 = 40.0;

@@ -3,8 +3,8 @@
 use crate::double::{Complex, Double, ONE, PI, ZERO, c, d, inverse};
 use crate::routes::{Biot, mobility, seconds};
 use crate::{Compared, Numbers, compared, solution};
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
 use oedometer_exact::{ColumnParameters, ReferenceKind, ShelfProblem};
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
 /// `W(ζ, T)` and `U(T)`.
 fn diffused(zeta: f64, time: Double) -> [Double; 2] {

@@ -1,9 +1,10 @@
 //! The critical time step: by formula, predicted from the step operator, observed by runs.
 
-pub mod formula;
 mod known;
 mod parts;
 pub(crate) mod power;
 pub mod predicted;
 pub mod skeleton;
 mod spectral_radius;
+
+pub use oedometer_problem::wave_speeds as formula;

@@ -248,7 +248,7 @@ mod tests {
     use crate::scene::arrangement::Arrangement;
     use crate::scene::column::Column;
     use crate::scene::problem::column_problem;
-    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+    use oedometer_soil::layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 
     #[test]

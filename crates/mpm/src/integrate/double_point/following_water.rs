@@ -1,6 +1,7 @@
 //! Porosities, domains and operators of the water points, taken from the soil at their new places.
 
 use crate::integrate::double_point::DoublePoint;
+use crate::operators::basis::Shapes;
 use oedometer_soil::elementary;
 
 /// Share of a domain that is too little to stand alone.

@@ -20,6 +20,7 @@ use crate::integrate::double_point::water_points::WaterPoints;
 use crate::kernel::body::Body;
 use crate::kernel::{ExplicitSettings, Motion};
 use crate::method::{PressureIntegration, Recovery};
+use crate::operators::basis::Shapes;
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
 use crate::state::cells::Cells;

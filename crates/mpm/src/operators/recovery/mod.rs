@@ -130,6 +130,7 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 pub(crate) mod tests {
     use super::*;
     use crate::method::Basis;
+    use crate::operators::basis::Shapes;
     use crate::operators::recovery::points_in_cells::points_in_cells;
     use crate::operators::stencil::PointStencils;
     use crate::state::nodes::{Nodes, Support};

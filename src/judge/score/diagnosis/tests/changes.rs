@@ -16,7 +16,7 @@ use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
 use crate::measure::fields::{ExactFields, SamplePlaces};
 use crate::study::file::StudySource;
-use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
+use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
 /// A problem with a soil of its own.

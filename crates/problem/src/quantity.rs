@@ -1,6 +1,6 @@
 //! What is measured, where, and in which norm.
 
-use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use crate::snapshot::{Samples, Snapshot};
 use oedometer_soil::wording::words;
 use std::fmt;
 

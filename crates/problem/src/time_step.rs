@@ -1,10 +1,6 @@
 //! The rule by which steps are chosen, and how large it lets them be.
 
-use crate::integrate::critical_step::formula;
-use crate::integrate::stepper::EqualSteps;
-use crate::kernel::body::Problem;
 use oedometer_soil::elementary;
-use oedometer_soil::material::Material;
 use serde::{Deserialize, Serialize};
 
 /// Rule by which the time step is chosen.
@@ -37,34 +33,26 @@ impl TimeStepRule {
         }
     }
 
-    /// Step, s, on a problem with a predicted critical step.
-    pub fn step<const D: usize>(&self, problem: &Problem<D>, critical: f64) -> f64 {
+    /// The step, s, that it asks for at first.
+    pub fn first(&self, scales: &StepScales) -> f64 {
         match self {
-            Self::Stable(share) => share * critical,
-            Self::Courant(share) => {
-                let speed = |soil: &Material| formula::fastest_wave_speed(soil, soil.porosity);
-                share * problem.grid.cell_size / problem.most_of_soils(speed)
-            }
+            Self::Stable(share) => share * scales.critical,
+            Self::Courant(share) => share * scales.cell_size / scales.wave_speed,
             Self::Seconds(seconds) => *seconds,
-            Self::Growth(growth) => growth * diffusion_time(problem),
-            Self::Tolerance(tolerance) => tolerance.sqrt().min(0.1) * diffusion_time(problem),
+            Self::Growth(growth) => growth * scales.diffusion(),
+            Self::Tolerance(tolerance) => tolerance.sqrt().min(0.1) * scales.diffusion(),
         }
     }
 
-    /// Limit of a run's steps whose rule asks for steps of `target` seconds at first:
-    /// where they grow, the first ones resolve the first output as the later ones theirs.
-    pub fn limit<const D: usize>(
-        &self,
-        problem: &Problem<D>,
-        target: f64,
-        most: f64,
-        outputs: &[f64],
-    ) -> StepLimit {
+    /// Limit of a run's steps, of at most `most` seconds: where they grow, the first ones resolve the first output as the
+    /// later ones theirs.
+    pub fn limit(&self, scales: &StepScales, most: f64, outputs: &[f64]) -> StepLimit {
+        let target = self.first(scales);
         match self {
             Self::Stable(_) | Self::Courant(_) | Self::Seconds(_) => StepLimit::Constant(target),
             Self::Growth(growth) => {
                 let first = outputs.iter().copied().find(|output| *output > 0.0);
-                let start = first.unwrap_or(f64::INFINITY).min(diffusion_time(problem));
+                let start = first.unwrap_or(f64::INFINITY).min(scales.diffusion());
                 StepLimit::Growing { first: growth * start, growth: *growth, most }
             }
             Self::Tolerance(tolerance) => StepLimit::Tolerance { first: target, tolerance: *tolerance },
@@ -72,10 +60,61 @@ impl TimeStepRule {
     }
 }
 
-/// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
-fn diffusion_time<const D: usize>(problem: &Problem<D>) -> f64 {
-    problem.grid.cell_size * problem.grid.cell_size
-        / problem.most_of_soils(Material::coefficient_of_consolidation)
+/// What a rule measures steps by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepScales {
+    /// Critical step, s.
+    pub critical: f64,
+    /// Cell size `h`, m.
+    pub cell_size: f64,
+    /// Speed `c` of the fastest wave, m/s.
+    pub wave_speed: f64,
+    /// Largest coefficient of consolidation `c_v`, m²/s.
+    pub consolidation: f64,
+}
+
+impl StepScales {
+    /// Time, s, in which pressure diffuses through a cell, `h²/c_v`: nothing earlier is resolved.
+    fn diffusion(&self) -> f64 {
+        self.cell_size * self.cell_size / self.consolidation
+    }
+}
+
+/// Some of a row of equal steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EqualSteps {
+    /// Time at which the row starts, s.
+    pub start: f64,
+    /// Size, s.
+    pub dt: f64,
+    /// Steps of the row that are behind these.
+    pub done: u64,
+    /// Number of steps.
+    pub count: u64,
+}
+
+impl EqualSteps {
+    /// The first steps of a row that starts at a time.
+    pub fn first(start: f64, dt: f64, count: u64) -> Self {
+        Self { start, dt, done: 0, count }
+    }
+
+    /// The next `count` steps after these.
+    #[must_use]
+    pub fn next(&self, count: u64) -> Self {
+        Self { done: self.done + self.count, count, ..*self }
+    }
+
+    /// Time after so many of these steps, s.
+    #[inline]
+    pub fn time_after(&self, steps: u64) -> f64 {
+        self.start + (self.done + steps) as f64 * self.dt
+    }
+
+    /// Time after all of them, s.
+    pub fn end(&self) -> f64 {
+        self.time_after(self.count)
+    }
 }
 
 /// Step sizes grow by this factor from one level to the next.
@@ -162,11 +201,6 @@ pub fn steps_for(duration: f64, step: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
-    use oedometer_exact::soil_layers::{SoilLayer, SoilLayers};
     use proptest::prelude::*;
 
     proptest! {
@@ -217,31 +251,5 @@ mod tests {
         }
         // Levels of a root of two from the first: the last below 7e-3 is 5.66e-3.
         assert!(largest <= 7e-3 && largest > 5e-3, "{largest:e}");
-    }
-
-    #[test]
-    fn courant_steps_of_layers_are_those_of_the_fastest_layer() {
-        let soil = Material { water_bulk_modulus: 1e5, ..Material::default() };
-        let method = Method::named("GIMP").expect("known");
-        let layer = |youngs_modulus: f64| SoilLayer {
-            thickness: 0.5,
-            youngs_modulus: Some(youngs_modulus),
-            ..SoilLayer::default()
-        };
-        let speed_of = |layer: SoilLayer| {
-            let soil = layer.soil(&soil);
-            formula::fastest_wave_speed(&soil, soil.porosity)
-        };
-        let (soft, stiff) = (layer(1e6), layer(4e9));
-        for layers in [[soft, stiff], [stiff, soft]] {
-            let column = Column { soils: SoilLayers::from_slice(&layers).expect("two"), ..Column::default() };
-            let problem =
-                column_problem::<1>(SceneKind::Layered, &column, &soil, method, 4, 2).expect("a column");
-            let step = TimeStepRule::Courant(0.5).step(&problem, 1.0);
-            assert!((step * speed_of(stiff) / (0.5 * 0.25) - 1.0).abs() < 1e-12, "{step:e}");
-        }
-        assert!(
-            speed_of(stiff) > 1.5 * speed_of(soft).max(formula::fastest_wave_speed(&soil, soil.porosity))
-        );
     }
 }

@@ -1,6 +1,6 @@
 //! The outcome of a run: its end by name, counters, step sizes and snapshots.
 
-use crate::integrate::results::snapshot::Snapshot;
+use crate::snapshot::Snapshot;
 use oedometer_soil::wording::words;
 use serde::{Deserialize, Serialize};
 use std::fmt;

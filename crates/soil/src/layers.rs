@@ -1,6 +1,6 @@
 //! The layers of a column, from the base up.
 
-use oedometer_soil::material::Material;
+use crate::material::Material;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 

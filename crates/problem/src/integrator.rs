@@ -2,9 +2,8 @@
 
 pub use crate::formulation::Formulation;
 
-use crate::drag::Drag;
-use crate::integrate::step_rule::TimeStepRule;
-use crate::kernel::scheme::{ExplicitSettings, Scheme};
+use crate::settings::{Drag, ExplicitSettings, Scheme};
+use crate::time_step::TimeStepRule;
 use oedometer_soil::wording::words;
 
 /// Share of the critical step where an explicit run names no rule.

@@ -1,7 +1,7 @@
 //! Four-wide registers, where the processor has them.
 //!
 //! The program is compiled for every 64-bit machine, whose registers hold two numbers. A loop that is handed to
-//! [`wide!`](wide) is compiled a second time for registers of four, and which of the two runs is asked at run time. Both do
+//! [`wide!`] is compiled a second time for registers of four, and which of the two runs is asked at run time. Both do
 //! the same operations in the same order, none of them fused, and give the same bits.
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -10,26 +10,26 @@ use fearless_simd::{Level, Simd};
 use std::sync::LazyLock;
 
 /// Numbers of a wide register: neighbouring points that are worked out side by side, by loops over them.
-pub(crate) const LANES: usize = 4;
+pub const LANES: usize = 4;
 
 /// Whether [`LANES`] neighbours from one on are there, and of one number.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn are_alike(numbers: &[u8], first: usize) -> bool {
+pub fn are_alike(numbers: &[u8], first: usize) -> bool {
     numbers.get(first..first + LANES).is_some_and(|some| *some == [some[0]; LANES])
 }
 
 /// `N` neighbours of a field from one on, all of which there are.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
+pub fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
     field[first..].first_chunk().expect("a field that holds them all")
 }
 
 /// The same, to be written.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
+pub fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
     field[first..].first_chunk_mut().expect("a field that holds them all")
 }
 
@@ -37,15 +37,15 @@ pub(crate) fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);
 
-#[cfg(test)]
+#[cfg(any(test, feature = "narrow-registers"))]
 thread_local! {
     static IS_NARROW: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
 /// Does a work of this thread in registers of two numbers, whatever the processor has: for the tests that hold both
 /// together.
-#[cfg(test)]
-pub(crate) fn in_narrow_registers<T>(work: impl FnOnce() -> T) -> T {
+#[cfg(any(test, feature = "narrow-registers"))]
+pub fn in_narrow_registers<T>(work: impl FnOnce() -> T) -> T {
     IS_NARROW.set(true);
     let result = work();
     IS_NARROW.set(false);
@@ -56,8 +56,8 @@ pub(crate) fn in_narrow_registers<T>(work: impl FnOnce() -> T) -> T {
 /// of its own stays with two.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
-pub(crate) fn in_wide_registers<T>(work: impl FnOnce() -> T) -> T {
-    #[cfg(test)]
+pub fn in_wide_registers<T>(work: impl FnOnce() -> T) -> T {
+    #[cfg(any(test, feature = "narrow-registers"))]
     if IS_NARROW.get() {
         return work();
     }
@@ -69,7 +69,9 @@ pub(crate) fn in_wide_registers<T>(work: impl FnOnce() -> T) -> T {
 }
 
 /// Evaluates an expression in registers of four numbers where there are such.
-macro_rules! wide {
+#[doc(hidden)]
+#[macro_export]
+macro_rules! evaluate_wide {
     ($work:expr) => {
         $crate::wide::in_wide_registers(
             #[inline(always)]
@@ -77,10 +79,12 @@ macro_rules! wide {
         )
     };
 }
-pub(crate) use wide;
+pub use crate::evaluate_wide as wide;
 
 #[cfg(test)]
 mod tests {
+    use super::wide;
+
     #[inline(never)]
     fn sums(numbers: &[f64], factor: f64) -> Vec<f64> {
         numbers

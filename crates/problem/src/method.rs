@@ -1,5 +1,6 @@
 //! A method is a choice of four independent operators and of the configuration they live on.
 
+use oedometer_soil::material::Material;
 use oedometer_soil::wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -25,6 +26,13 @@ pub enum Basis {
 }
 
 words!(Basis: Hat "hat", Ugimp "ugimp", Cpgimp "cpgimp", Cpdi "cpdi", Bspline2 "bspline2", Bspline3 "bspline3");
+
+impl Basis {
+    /// Whether the basis reaches beyond walls and free surfaces, with coefficients that are not nodal values.
+    pub fn is_spline(self) -> bool {
+        matches!(self, Self::Bspline2 | Self::Bspline3)
+    }
+}
 
 /// Gradient from which the effective stress takes its strain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -422,6 +430,28 @@ impl fmt::Display for Method {
             (None, None) => write!(out, "{}", self.choices()),
             (None, Some(configuration)) => write!(out, "{} ({})", self.choices(), configuration.name()),
         }
+    }
+}
+
+impl Method {
+    /// Parameter `τ` of the projection in a soil, 1/Pa: `1/(2G)` (White & Borja 2008).
+    pub fn projection_parameter(&self, soil: &Material) -> f64 {
+        let source =
+            if self.has_projection() { (1.0 + soil.poissons_ratio) / soil.youngs_modulus } else { 0.0 };
+        source * f64::from(self.projection) / f64::from(FULL_PROJECTION)
+    }
+
+    /// Speed of the longest wave of a column of so many cells, `4H`, over that without a projection: the projection adds
+    /// `τ (κh)²/12` to the storage `n/K_w` of a wave of number `κ`. One for a method without it.
+    pub fn share_of_wave_speed(&self, soil: &Material, cells: usize) -> f64 {
+        if !self.has_projection() {
+            return 1.0;
+        }
+        let per_cell = 0.5 * std::f64::consts::PI / cells as f64;
+        let storage = soil.porosity / soil.water_bulk_modulus;
+        let added = self.projection_parameter(soil) * per_cell * per_cell / 12.0;
+        let modulus = |storage: f64| soil.oedometric_modulus() + 1.0 / storage;
+        (modulus(storage + added) / modulus(storage)).sqrt()
     }
 }
 
