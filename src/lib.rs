@@ -19,16 +19,20 @@
 //!
 //! | folder | what it is |
 //! | :-- | :-- |
+//! | `render/` | tables, charts and pages as text, Markdown, HTML and SVG; knows no study |
 //! | `record/` | what is kept of a case, and its store on disk |
 //! | `measure/` | from an outcome to its record: errors, balances, oscillation, checks |
 //! | `study/` | study files: keys, sweeps, expectations, every mistake reported at its place |
 //! | `campaign/` | runs the cases of a study: parallel, resumable, in shards |
 //! | `golden/` | accepted values, their tolerances, and what changed |
-//! | `judge/` | verdicts on studies, scores of external results, comparisons of methods |
-//! | `render/` | tables, charts, pages; sees records and verdicts, never a solver |
 //! | `history/` | results over time: two states beside each other, and golden values over commits |
-//! | `cli/` | one file per subcommand |
+//! | `score/` | external results compared with exact solutions, and what seems to be wrong with them |
+//! | `judge/` | verdicts on studies |
+//! | `race/` | the race to one per cent, as numbers |
+//! | `questions/` | what readers ask of studies, answered as plain data |
+//! | `report/` | composes tables and pages of verdicts and answers |
 //! | [`api`] | the interface for other languages: names and lists in, lists out |
+//! | `cli/` | one file per subcommand |
 //!
 //! # The equations
 //!
@@ -140,8 +144,12 @@ mod golden;
 mod history;
 mod judge;
 mod measure;
+mod questions;
+mod race;
 mod record;
 mod render;
+mod report;
+mod score;
 mod study;
 
 use oedometer_case as case;
@@ -176,26 +184,26 @@ pub use golden::compare::compare;
 pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;
-pub use judge::answers::ReportFindings;
-pub use judge::blocks::checks::RecordChecks;
-pub use judge::race::RaceFindings;
-pub use judge::score::score;
 pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
-pub use judge::study_findings::{AllStudies, StudyFindings};
-pub use judge::study_results::StudyResults;
 pub use measure::record_checks::{balance_checks, start_checks};
+pub use questions::answers::ReportFindings;
+pub use questions::blocks::checks::RecordChecks;
+pub use questions::study_findings::{AllStudies, StudyFindings};
+pub use questions::study_results::StudyResults;
+pub use race::RaceFindings;
 pub use record::provenance::Origins;
 pub use record::provenance::Provenance;
 pub use record::store::RecordStore;
 pub use record::{ErrorRow, Record, Status, WallSample};
-pub use render::answers::{Answers, Making, answer_page, matrix_page};
-pub use render::checks::{junit, verdicts};
 pub use render::page::{Block, Page, figures, render_html, render_markdown};
-pub use render::report::index_page::index_page;
-pub use render::report::study_page::study_page;
 pub use render::table::Table;
-pub use render::tables::measures;
+pub use report::answers::{Answers, Making, answer_page, matrix_page};
+pub use report::blocks::index_page::index_page;
+pub use report::blocks::study_page::study_page;
+pub use report::checks::{junit, verdicts};
+pub use report::tables::measures;
+pub use score::score;
 pub use study::check::Study;
 pub use study::file::StudySource;
 

@@ -1,8 +1,8 @@
 //! Orders, classes and verdicts of a series of errors.
 
 use crate::api::error::ApiError;
-use crate::judge::paths::{ROUND_OFF, SINGLE_PRECISION};
 use crate::judge::verdict::{Beside, Verdict, judge};
+use crate::measure::round_off::{ROUND_OFF, SINGLE_PRECISION};
 use crate::study::diagnostic::one_of;
 use oedometer_convergence::{
     Class, Classification, Context, ErrorBound, ErrorSeries, OrderBand, SeriesDemand, SeriesLevel, classify,

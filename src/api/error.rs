@@ -1,7 +1,7 @@
 //! Why a call from another language has no answer.
 
 use crate::foreign::reading::MappingError;
-use crate::judge::score::results::ScoreError;
+use crate::score::results::ScoreError;
 use crate::study::diagnostic::StudyError;
 use crate::study::overrides::OverrideError;
 use oedometer_exact::ExactError;

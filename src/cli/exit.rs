@@ -2,7 +2,7 @@
 
 use crate::campaign::endless::EndlessCases;
 use crate::campaign::runner::RunError;
-use crate::judge::score::results::ScoreError;
+use crate::score::results::ScoreError;
 use crate::study::diagnostic::StudyError;
 use crate::study::overrides::OverrideError;
 use oedometer_exact::exact_error::ExactError;

@@ -1,6 +1,6 @@
 //! Judges what a study expects of single cases; hard cases are judged by this, not by series.
 
-use crate::judge::explanation::place_in_kept;
+use crate::judge::error_place::place_in_kept;
 use crate::judge::verdict::{BELOW, Check, IN, Judgement, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
 use crate::measure::statistics::{larger, largest};

@@ -2,10 +2,11 @@
 //! oscillation, and values without a reference.
 
 use crate::case::{Case, Norm, Quantity, Sample};
-use crate::judge::paths::{ITERATIONS, Path, ROUND_OFF, SINGLE_PRECISION, level_size};
+use crate::judge::paths::{Path, level_size};
 use crate::judge::verdict::Beside;
 use crate::measure::fields::{PlaneField, exact_samples, half_a_digit, relative_error, reversal};
 use crate::measure::other_measures::load_factor;
+use crate::measure::round_off::{ITERATIONS, ROUND_OFF, SINGLE_PRECISION};
 use crate::measure::theory::known_reference;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};

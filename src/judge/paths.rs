@@ -2,7 +2,7 @@
 
 pub(crate) use crate::case::grouping::grouped;
 use crate::case::{Quantity, Sample, step_label};
-use crate::judge::explanation::place_in_kept;
+use crate::judge::error_place::place_in_kept;
 use crate::measure::fields::relative_error;
 use crate::record::{Record, Status};
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
@@ -13,15 +13,6 @@ use oedometer_convergence::{
 use oedometer_mpm::run::integrator::IntegratorKind;
 use oedometer_soil::material::Material;
 use std::collections::HashMap;
-
-/// Relative errors up to this are round-off.
-pub const ROUND_OFF: f64 = 1e-12;
-
-/// Relative errors up to this may be those of numbers in single precision, and of iterations that stop early.
-pub const SINGLE_PRECISION: f64 = 1e-6;
-
-/// Relative errors up to this may be what the iterations of this program leave.
-pub const ITERATIONS: f64 = 1e-8;
 
 /// The records of one path through a study: equal in everything but the axis.
 #[derive(Clone, Debug)]

@@ -6,5 +6,6 @@ pub mod fields;
 pub mod other_measures;
 pub mod record;
 pub mod record_checks;
+pub mod round_off;
 pub mod statistics;
 pub mod theory;

@@ -1,19 +1,13 @@
 //! Tables, charts and pages made from plain data. Nothing here computes results or knows a solver, and the same
 //! description always gives the same bytes.
 
-pub mod answers;
-mod chart;
-pub mod checks;
+pub(crate) mod chart;
 pub mod escape;
-pub(crate) mod history_tables;
 pub(crate) mod marked_text;
 pub(crate) mod number;
 pub mod page;
-pub mod report;
-mod script;
+pub(crate) mod script;
 pub mod table;
-pub mod tables;
-pub(crate) mod templates;
 
 /// A description that cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]

@@ -1,8 +1,5 @@
-//! What the borders of the crates and `source_order` cannot say: what pages ask of the judge, where files are opened, and which
-//! types errors have.
+//! What the borders of the crates and `source_order` cannot say: where files are opened, and which types errors have.
 
-use regex_lite::Regex;
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,139 +13,6 @@ pub(super) fn sources_below(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let files = entries.flat_map(|path| if path.is_dir() { sources_below(&path) } else { vec![path] });
     files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
-}
-
-/// What pages may ask of values of the judge: words of an enumeration, and look-ups that return what a finding holds.
-const ACCESSORS: [&str; 12] = [
-    // Words.
-    "name",
-    "words",
-    "label",
-    "sentence",
-    // Look-ups in the findings of the race, and in a check of a study.
-    "answer",
-    "curves",
-    "error_in",
-    "families",
-    "largest_error",
-    "profiles",
-    "differences",
-    "end",
-];
-
-/// Mechanics, measures and statistics that `render` does not name either.
-const COMPUTING: [&str; 8] = [
-    "crate::measure",
-    "crate::exact",
-    "oedometer_exact",
-    "column_parameters",
-    "oedometer_soil::material",
-    "ErrorSeries",
-    ".sqrt()",
-    ".median(",
-];
-
-/// A source without its comments and without the tests inside it.
-fn code_of(source: &str) -> String {
-    let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or(source);
-    let is_code = |line: &&str| !line.trim_start().starts_with("//");
-    code.lines().filter(is_code).collect::<Vec<_>>().join("\n")
-}
-
-/// Names of the functions that a source of the judge offers, methods among them.
-fn functions_of(source: &str) -> BTreeSet<String> {
-    let offered = Regex::new(r"pub(\([a-z]+\))? (const )?fn (\w+)").expect("a pattern");
-    offered.captures_iter(&code_of(source)).map(|found| found[3].to_owned()).collect()
-}
-
-/// Every call of a function of the judge that a source of `render` makes, but for accessors: by an imported name, by the name
-/// of an imported type or module, by its whole path, or as a method.
-fn calls_of_the_judge(source: &str, functions: &BTreeSet<String>) -> Vec<String> {
-    let code = code_of(source);
-    let import = Regex::new(r"(?m)^(pub )?use (crate::judge[^;]*);").expect("a pattern");
-    let leaf = Regex::new(r"(\w+)(\s+as\s+\w+)?\s*(,|\}|$)").expect("a pattern");
-    let uses: Vec<String> = import.captures_iter(&code).map(|found| found[2].to_owned()).collect();
-    let folder = Regex::new(r"(\w+)::\{\s*self\b").expect("a pattern");
-    let body = import.replace_all(&code, "").into_owned();
-    let ends = |line: &String| {
-        let both = leaf.captures_iter(line).chain(folder.captures_iter(line));
-        both.map(|found| found[1].to_owned()).collect::<Vec<_>>()
-    };
-    let leaves: BTreeSet<String> = uses.iter().flat_map(ends).collect();
-    let is_call = |name: &str| functions.contains(name) && !ACCESSORS.contains(&name);
-    let mut calls: Vec<String> =
-        leaves.iter().filter(|leaf| is_call(leaf)).map(|leaf| format!("use {leaf}")).collect();
-    let named = Regex::new(r"(\w+)::(\w+)").expect("a pattern");
-    for found in named.captures_iter(&body) {
-        if leaves.contains(&found[1]) && is_call(&found[2]) {
-            calls.push(found[0].to_owned());
-        }
-    }
-    let whole = Regex::new(r"crate::judge(::\w+)*::(\w+)").expect("a pattern");
-    calls.extend(
-        whole.captures_iter(&body).filter(|found| is_call(&found[2])).map(|found| found[0].to_owned()),
-    );
-    // Where no value of the judge is named there is no method of one.
-    if code.contains("crate::judge") {
-        let method = Regex::new(r"\.(\w+)\(").expect("a pattern");
-        calls.extend(
-            method.captures_iter(&body).filter(|found| is_call(&found[1])).map(|found| found[0].to_owned()),
-        );
-    }
-    calls
-}
-
-/// Pages, tables and the terminal take values that the judge has made: `render` calls none of its functions, and neither
-/// measures nor solves anything. Drawing has a geometry of its own.
-#[test]
-fn render_prints_what_the_judge_has_found_and_asks_it_nothing() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let read = |path: &PathBuf| fs::read_to_string(path).expect("a source");
-    let judge = sources_below(&root.join("judge"));
-    let judge = judge.iter().filter(|path| !is_test_module(path));
-    let functions: BTreeSet<String> = judge.flat_map(|path| functions_of(&read(path))).collect();
-    assert!(functions.len() > 100, "{}", functions.len());
-    let mut wrong = Vec::new();
-    for path in sources_below(&root.join("render")) {
-        let inside = path.strip_prefix(&root).expect("below src");
-        if is_test_module(inside) {
-            continue;
-        }
-        let source = read(&path);
-        let mut found = calls_of_the_judge(&source, &functions);
-        if !inside.starts_with("render/chart") {
-            let code = code_of(&source);
-            let lines = code.lines().filter(|line| COMPUTING.iter().any(|word| line.contains(word)));
-            found.extend(lines.map(str::to_owned));
-        }
-        wrong.extend(found.iter().map(|call| format!("{}: {call}", inside.display())));
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-#[test]
-fn a_planted_call_of_the_judge_is_named_however_it_is_made() {
-    let functions =
-        functions_of("pub fn compare() {}\npub(crate) const fn of() {}\npub fn name(self) {}\nfn own() {}\n");
-    let named = |functions: &BTreeSet<String>| functions.iter().cloned().collect::<Vec<_>>().join(" ");
-    assert_eq!(named(&functions), "compare name of");
-    for (planted, call) in [
-        ("use crate::judge::peers::{self, Peer};\nfn f() { peers::compare() }\n", "peers::compare"),
-        ("use crate::judge::{\n    a::Sweep,\n    b::X,\n};\nfn f() { x.map(Sweep::of) }\n", "Sweep::of"),
-        ("use crate::judge::peers::compare;\n", "use compare"),
-        ("use crate::judge::peers::compare as with;\n", "use compare"),
-        ("fn f() { crate::judge::peers::compare() }\n", "crate::judge::peers::compare"),
-        ("use crate::judge::Peer;\nfn f(peer: &Peer) { peer.compare() }\n", ".compare("),
-    ] {
-        assert_eq!(calls_of_the_judge(planted, &functions), [call], "{planted}");
-    }
-    for sound in [
-        "use crate::judge::compare::Peer;\nfn f(peer: &Peer) { Chart::of(peer.name()) }\n",
-        "fn f() { x.compare() }\n",
-        "#[cfg(test)]\nmod tests {\n    use crate::judge::peers::compare;\n}\n",
-    ] {
-        assert!(calls_of_the_judge(sound, &functions).is_empty(), "{sound}");
-    }
 }
 
 /// The tables of equations and steps on the crate's front page name functions that are there.
@@ -173,26 +37,21 @@ fn every_equation_and_step_has_its_function() {
 #[test]
 fn no_reader_opens_files_by_itself() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut readers = vec![
-        root.join("../crates/foreign/src/reading.rs"),
-        root.join("cli/cost_files.rs"),
-        root.join("study/check/check_solver.rs"),
-    ];
+    let mut readers =
+        vec![root.join("../crates/foreign/src/reading.rs"), root.join("study/check/solvers.rs")];
     for folder in [
         "../crates/formats/src",
         "../crates/foreign/src/import",
-        "../crates/foreign/src/import/mapping",
-        "judge/score",
+        "study/check/solvers",
+        "score",
         "cli/commands/score",
         "cli/slurm",
     ] {
-        let entries = fs::read_dir(root.join(folder)).expect("a folder");
-        readers.extend(entries.map(|entry| entry.expect("an entry").path()));
+        readers.extend(sources_below(&root.join(folder)));
     }
-    for path in readers
-        .iter()
-        .filter(|path| path.is_file() && !path.ends_with("input_file.rs") && !is_test_module(path))
-    {
+    let opener = root.join("../crates/formats/src/input_file.rs");
+    assert!(readers.contains(&opener), "the one that opens files has moved");
+    for path in readers.iter().filter(|path| **path != opener && !is_test_module(path)) {
         let text = fs::read_to_string(path).expect("a file");
         let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
         for opening in ["File::open", "fs::read(", "read_to_string("] {

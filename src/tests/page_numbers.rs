@@ -3,10 +3,10 @@
 
 use crate::campaign::runner::solved;
 use crate::case::Tier;
-use crate::judge::findings::Findings;
-use crate::judge::findings::study_answers::StudyAnswers;
-use crate::judge::study_findings::StudyFindings;
-use crate::judge::study_results::StudyResults;
+use crate::questions::findings::Findings;
+use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::study_findings::StudyFindings;
+use crate::questions::study_results::StudyResults;
 use crate::render::page::{Block, all_figures};
 use crate::render::table::{Cell, Table};
 use crate::tests::assert_snapshot;

@@ -2,11 +2,11 @@
 //! and no situation says what another says.
 
 use crate::case::contender::CONTENDERS;
-use crate::judge::race::Question;
-use crate::judge::race::correlation::correlations;
-use crate::judge::race::finish::RaceQuantity;
-use crate::judge::race::profile::{CostRow, CostTable, TIE};
-use crate::judge::race::sensitivity::{Change, THRESHOLD, variants};
+use crate::race::correlation::correlations;
+use crate::race::finish::Question;
+use crate::race::finish::RaceQuantity;
+use crate::race::profile::{CostRow, CostTable, TIE};
+use crate::race::sensitivity::{Change, THRESHOLD, variants};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

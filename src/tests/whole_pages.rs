@@ -3,10 +3,10 @@
 
 use crate::campaign::runner::records_of;
 use crate::golden::{GoldenError, GoldenFile};
-use crate::judge::blocks::checks::RecordChecks;
 use crate::judge::study_check::StudyCheck;
-use crate::judge::study_findings::AllStudies;
 use crate::judge::verdict::differing_repeats;
+use crate::questions::blocks::checks::RecordChecks;
+use crate::questions::study_findings::AllStudies;
 use crate::record::{Record, WallSample};
 use crate::study::check::Study;
 use crate::study::file::StudySource;

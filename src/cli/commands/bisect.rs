@@ -10,7 +10,7 @@ use crate::history::repository::{Commit, Repository};
 use crate::history::state::{State, StudyState};
 use crate::judge::study_check::diagnoses;
 use crate::record::{Record, RecordStore};
-use crate::render::tables::golden_changes::sentence;
+use crate::report::tables::golden_changes::sentence;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::name_of;

@@ -18,7 +18,7 @@ use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::verdict::Judgement;
 use crate::record::Record;
 use crate::record::store::RecordStore;
-use crate::render::checks::{annotations_of, junit, verdicts};
+use crate::report::checks::{annotations_of, junit, verdicts};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;

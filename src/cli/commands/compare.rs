@@ -8,8 +8,8 @@ use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
 use crate::history::repository::Repository;
 use crate::history::state::{self, State, with_command};
-use crate::render::history_tables::{comparison_page, comparison_rows, comparison_tables};
 use crate::render::page::render_html;
+use crate::report::history_tables::{comparison_page, comparison_rows, comparison_tables};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

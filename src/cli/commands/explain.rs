@@ -14,7 +14,7 @@ use crate::golden::inputs::CaseInputs;
 use crate::judge::explanation::explain;
 use crate::record::Record;
 use crate::record::store::RecordStore;
-use crate::render::tables::explanation;
+use crate::report::tables::explanation;
 use crate::study::check::Study;
 use std::path::{Path, PathBuf};
 

@@ -4,8 +4,8 @@ use crate::cli::commands::compare::repository_with;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
 use crate::history::timeline::timelines;
-use crate::render::history_tables::{timeline_page, timeline_summary, timeline_table};
 use crate::render::page::render_html;
+use crate::report::history_tables::{timeline_page, timeline_summary, timeline_table};
 use std::path::PathBuf;
 
 /// Files that cannot be read, named before the rest is counted.

@@ -145,7 +145,7 @@ fn the_findings_of_a_study_keep_to_their_schema() {
          integrator = ['implicit']\ncells = [2, 4, 8]\nporosity = [0.3, 0.4]\n",
     );
     records[0].status = crate::campaign::runner::failed_at(1);
-    let results = crate::judge::study_results::StudyResults::new(&study, &records, Tier::Full);
+    let results = crate::questions::study_results::StudyResults::new(&study, &records, Tier::Full);
     let found = serde_json::to_value(results.findings().expect("sound cases").plain).expect("plain data");
     assert_eq!(breach(&schema_of(Document::StudyFindings), &found, "findings"), None);
 }

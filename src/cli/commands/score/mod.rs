@@ -8,12 +8,12 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say, write_document};
 use crate::import::mapping::Axes;
 use crate::import::mapping::preset::convention_of;
-use crate::judge::score::completeness::Lack;
-use crate::judge::score::results::{Comparison, Results, Scored};
-use crate::judge::score::score_series::ScoredSeries;
 use crate::record::ERROR_COLUMNS;
-use crate::render::checks::{Finding, junit_of_findings};
-use crate::render::tables::scores;
+use crate::report::checks::{Finding, junit_of_findings};
+use crate::report::tables::scores;
+use crate::score::completeness::Lack;
+use crate::score::results::{Comparison, Results, Scored};
+use crate::score::score_series::ScoredSeries;
 use crate::study::overrides::{Asked, Outputs, has_leading_zero};
 use crate::study::solver::Preset;
 use crate::study::units::in_si;
@@ -353,8 +353,8 @@ mod tests {
     use super::*;
     use crate::case::quantity::Sample;
     use crate::import::runs::Run;
-    use crate::judge::score::Score;
     use crate::record::ErrorRow;
+    use crate::score::Score;
 
     fn end_of(findings: &[Finding]) -> Exit {
         let passes = findings.iter().all(|finding| finding.failure.is_none());
@@ -429,7 +429,7 @@ mod tests {
 
     #[test]
     fn what_vanishes_is_judged_over_the_load_and_nothing_to_judge_is_no_pass() {
-        use crate::judge::score::Unresolved;
+        use crate::score::Unresolved;
 
         let row = |value: f64, absolute: f64| ErrorRow {
             time_factor: 0.1,

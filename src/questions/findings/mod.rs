@@ -1,0 +1,350 @@
+//! Everything that is found about a study, as one value of plain data: numbers, units, names and choices of a fixed list,
+//! each once, and no sentence that a page would not find in the judge itself.
+//!
+//! `findings.json` is written beside the page of a study, and `oedometer schema findings` describes it. Lengths are in m,
+//! pressures in Pa, times in s; errors are relative.
+
+pub mod convergence;
+mod series;
+pub mod settlement;
+pub mod study_answers;
+pub mod within;
+
+use crate::case::Tier;
+use crate::judge::proposals::proposals;
+use crate::judge::verdict::{Judgement, VerdictOutcome};
+use crate::questions::answers::locking::LockingFinding;
+use crate::questions::blocks::StudyBlocks;
+use crate::questions::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
+use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::study_results::StudyResults;
+use crate::record::{ErrorRow, Record};
+use oedometer_convergence::Class;
+use oedometer_exact::ExactError;
+use oedometer_mpm::run::results::outcome::FailureKind;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+pub use series::SeriesFinding;
+use settlement::SettlementTable;
+pub use within::QuantityWithin;
+
+/// Version of the layout; it rises when a field goes or changes its meaning.
+pub const SCHEMA: u32 = 1;
+
+/// Everything that is found about a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Findings {
+    /// Version of the layout.
+    pub schema: u32,
+    /// Name of the study.
+    pub study: String,
+    /// Name of its scene.
+    pub scene: String,
+    /// Names of its references, the scene's own first.
+    pub references: Vec<String>,
+    /// Cases of the study without a record.
+    pub left_out: usize,
+    /// Expectations, each with its verdict.
+    pub expectations: Vec<ExpectationFinding>,
+    /// Every run.
+    pub runs: Vec<RunFinding>,
+    /// Every error over every axis that the study refines, from two levels on.
+    pub series: Vec<SeriesFinding>,
+    /// The error of each method over what makes the soil hard to compress, where the study sweeps it.
+    pub stiffness: Vec<StiffnessFinding>,
+    /// For each quantity and bound the cheapest choice of method, mesh and step within it.
+    pub within: Vec<QuantityWithin>,
+    /// Settlements at the outputs, of the runs that the answer for the settlement names.
+    pub settlements: Vec<SettlementTable>,
+    /// Which methods lock, where the study sweeps Poisson's ratio in the plane.
+    #[serde(default)]
+    pub locking: Option<LockingFinding>,
+    /// Expectations that the results meet, as TOML, of a study without any.
+    #[serde(default)]
+    pub proposals: Vec<String>,
+    /// What the other blocks of the study's page print.
+    #[serde(default)]
+    pub blocks: StudyBlocks,
+}
+
+/// An expectation with its verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ExpectationFinding {
+    /// Line in the study's file.
+    pub line: usize,
+    /// What is judged: labels of runs, measure and time.
+    pub subject: String,
+    /// How the verdict came out.
+    pub outcome: VerdictOutcome,
+    /// Class of the series.
+    pub class: Class,
+    /// Order on the finest window, where the class allows one.
+    pub order: Option<f64>,
+    /// Every part that is judged.
+    pub checks: Vec<CheckFinding>,
+}
+
+/// A part of an expectation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CheckFinding {
+    /// `class`, `order`, `error`, `floor` or another part.
+    pub name: String,
+    /// Whether it is met.
+    pub pass: bool,
+    /// The number judged.
+    pub measured: Option<f64>,
+}
+
+/// A run and its errors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunFinding {
+    /// Hash of the case.
+    pub case: String,
+    /// Label of the case.
+    pub label: String,
+    /// Name of the method.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Points in a cell.
+    pub points_per_cell: usize,
+    /// Why and where it failed; no result of such a run is judged.
+    pub failure: Option<FailureFinding>,
+    /// Largest time step, s.
+    pub largest_step: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Shortest wall time over the repeats, s.
+    pub seconds: Option<f64>,
+    /// `m_vl q`, the final strain of small-strain theory, of the softest soil.
+    pub finite_strain: f64,
+    /// Every error.
+    pub errors: Vec<ErrorRow>,
+}
+
+/// How a run failed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FailureFinding {
+    /// The kind.
+    pub kind: FailureKind,
+    /// Step at which it was seen.
+    pub step: u64,
+    /// Time then, s.
+    pub time: f64,
+}
+
+/// What makes a soil hard to compress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+pub enum Swept {
+    /// `K_w/E` of the water.
+    #[serde(rename = "K_w/E")]
+    Water,
+    /// Poisson's ratio of the skeleton.
+    #[serde(rename = "nu")]
+    Skeleton,
+}
+
+/// A method over one stiffness at one time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StiffnessFinding {
+    /// What varies.
+    pub swept: Swept,
+    /// Method.
+    pub method: String,
+    /// Cells over the height.
+    pub cells: usize,
+    /// Time factor.
+    pub time_factor: f64,
+    /// Errors at each value, ascending.
+    pub values: Vec<StiffnessValue>,
+    /// The first value at which displacement or pressure is off by a tenth or more; a failed run is no such value.
+    pub lost_from: Option<f64>,
+}
+
+/// Errors at one value of a stiffness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StiffnessValue {
+    /// The value.
+    pub value: f64,
+    /// Relative L2 error of the nodal displacement.
+    pub displacement: Option<f64>,
+    /// Relative L2 error of the pressure at the points.
+    pub pressure: Option<f64>,
+    /// Total variation of the pressure over the exact one's, minus one.
+    #[serde(default)]
+    pub oscillation: Option<f64>,
+    /// How the run failed, with its step.
+    pub failed: Option<String>,
+}
+
+impl Findings {
+    /// Everything about a study, from its records and verdicts and what it answers by itself.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn new(results: &StudyResults<'_>, answers: &StudyAnswers) -> Result<Self, ExactError> {
+        let StudyResults { study, records, paths, judgements, .. } = results;
+        let mut stiffness = Vec::new();
+        for swept in SweptStiffness::ALL {
+            stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
+        }
+        // The page of a race has answers of its own in their place.
+        let within = if study.is_race { within::within(study, records) } else { answers.within.clone() };
+        let settlements = if study.is_race {
+            settlement::settlement_tables(study, records, &within)?
+        } else {
+            answers.settlements.clone()
+        };
+        Ok(Self {
+            schema: SCHEMA,
+            study: study.name.clone(),
+            scene: study.scene.name().to_owned(),
+            references: study.references.iter().map(|kind| kind.name().to_owned()).collect(),
+            left_out: study.cases(Tier::Full).len().saturating_sub(records.len()),
+            expectations: judgements.iter().map(ExpectationFinding::new).collect(),
+            runs: records.iter().map(RunFinding::new).collect(),
+            series: series::all_series(study, paths),
+            stiffness,
+            settlements,
+            within,
+            locking: answers.locking.clone(),
+            proposals: proposals(study, paths),
+            blocks: StudyBlocks::new(results)?,
+        })
+    }
+}
+
+impl ExpectationFinding {
+    fn new(judgement: &Judgement) -> Self {
+        let verdict = &judgement.verdict;
+        let check = |check: &crate::judge::verdict::Check| CheckFinding {
+            name: check.name.clone(),
+            pass: check.pass,
+            measured: check.measured,
+        };
+        Self {
+            line: judgement.line,
+            subject: judgement.subject.clone(),
+            outcome: verdict.outcome,
+            class: verdict.classification.class,
+            order: verdict.classification.order,
+            checks: verdict.checks.iter().map(check).collect(),
+        }
+    }
+}
+
+impl RunFinding {
+    fn new(record: &Record) -> Self {
+        let failure = record.status.failure();
+        let seconds = record.wall.iter().map(|sample| sample.seconds).reduce(f64::min);
+        Self {
+            case: record.hash.clone(),
+            label: record.case.label(),
+            method: record.case.method.to_string(),
+            cells: record.case.cells,
+            points_per_cell: record.case.points_per_cell,
+            failure: failure.map(|failure| FailureFinding {
+                kind: failure.kind,
+                step: failure.step,
+                time: failure.time,
+            }),
+            largest_step: record.step_sizes.largest,
+            steps: record.counters.steps,
+            seconds,
+            finite_strain: record.groups.finite_strain,
+            errors: record.errors.iter().filter(|row| row.value.is_finite()).cloned().collect(),
+        }
+    }
+}
+
+fn of_sweep(sweep: &StiffnessSweep) -> Vec<StiffnessFinding> {
+    let swept = match sweep.stiffness {
+        SweptStiffness::Water => Swept::Water,
+        SweptStiffness::Skeleton => Swept::Skeleton,
+    };
+    let of_row = |row: &crate::questions::comparison::stiffness_sweep::SweepRow| {
+        let value = |(place, value): (usize, &f64)| {
+            let [displacement, pressure, oscillation] = row.found[place];
+            StiffnessValue {
+                value: *value,
+                displacement,
+                pressure,
+                oscillation,
+                failed: row.failed[place].clone(),
+            }
+        };
+        StiffnessFinding {
+            swept,
+            method: row.method.to_string(),
+            cells: sweep.cells,
+            time_factor: row.time_factor,
+            values: sweep.values.iter().enumerate().map(value).collect(),
+            lost_from: row.lost_from().map(|place| sweep.values[place]),
+        }
+    };
+    sweep.rows.iter().map(of_row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, solved};
+    use crate::questions::comparison::stiffness_sweep::SweepRow;
+
+    /// Two meshes and one time, the least that answers anything: every error is in the findings once, a failed run is told
+    /// with its reason and is within no bound, and what is read is what was written.
+    #[test]
+    fn two_meshes_and_one_time_are_told_with_every_error_and_every_failure() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
+            method = ['MPM', 'GC-SRI-patch']\nintegrator = ['implicit']\ncells = [4, 8]\n";
+        let (study, mut records) = solved("s", text);
+        records[0].status = failed_at(3);
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let found = results.findings().expect("sound cases").plain;
+        assert_eq!((found.runs.len(), found.left_out), (4, 0));
+        let failure = found.runs[0].failure.as_ref().expect("it failed");
+        assert_eq!((failure.kind.name(), failure.step), ("unstable", 3));
+        let choices =
+            || found.within.iter().flat_map(|one| &one.bounds).filter_map(|one| one.choice.as_ref());
+        assert!(choices().all(|choice| choice.case != records[0].hash) && choices().count() > 0);
+        let two = |one: &&SeriesFinding| one.levels.len() == 2 && one.class == Class::NotEvaluable;
+        assert!(found.series.iter().filter(two).count() >= 8, "two levels have no class but errors");
+        let json = serde_json::to_string(&found).expect("plain data");
+        assert_eq!(serde_json::from_str::<Findings>(&json).expect("what was written"), found);
+    }
+
+    #[test]
+    fn every_number_of_a_stiffness_sweep_stands_under_its_name() {
+        let method =
+            crate::case::SolverName::Own(oedometer_mpm::method::Method::named("VP").expect("a method"));
+        let row = SweepRow {
+            method,
+            time_factor: 0.25,
+            found: vec![[Some(0.01), Some(0.02), Some(0.03)], [Some(0.04), Some(0.5), Some(0.06)], [None; 3]],
+            failed: vec![None, None, Some("unstable at step 7".to_owned())],
+        };
+        for (stiffness, swept) in
+            [(SweptStiffness::Water, Swept::Water), (SweptStiffness::Skeleton, Swept::Skeleton)]
+        {
+            let (values, rows) = (vec![0.1, 0.2, 0.3], vec![row.clone()]);
+            let found =
+                of_sweep(&StiffnessSweep { stiffness, cells: 8, values, time_factors: vec![0.25], rows });
+            let value = |value, displacement, pressure, oscillation, failed: Option<&str>| StiffnessValue {
+                value,
+                displacement,
+                pressure,
+                oscillation,
+                failed: failed.map(str::to_owned),
+            };
+            let values = vec![
+                value(0.1, Some(0.01), Some(0.02), Some(0.03), None),
+                value(0.2, Some(0.04), Some(0.5), Some(0.06), None),
+                value(0.3, None, None, None, Some("unstable at step 7")),
+            ];
+            let method = "VP".to_owned();
+            let right =
+                StiffnessFinding { swept, method, cells: 8, time_factor: 0.25, values, lost_from: Some(0.2) };
+            assert_eq!(found, [right]);
+        }
+    }
+}

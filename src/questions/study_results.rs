@@ -1,0 +1,149 @@
+//! A study with its records, their paths and the verdicts on them: what pages are made of.
+
+use crate::case::planned::Tier;
+use crate::judge::paths::{Path, StudyPaths};
+use crate::judge::soundness;
+use crate::judge::verdict::{Judgement, judge_paths};
+use crate::questions::study_findings::StudyFindings;
+use crate::record::{Record, Status};
+use crate::study::check::Study;
+use crate::study::expectation::Axis;
+use oedometer_convergence::WINDOW;
+use oedometer_exact::ExactError;
+
+/// A study with its records and the judgements on them.
+pub struct StudyResults<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its records.
+    pub records: &'a [Record],
+    /// Their paths along every axis.
+    pub paths: StudyPaths<'a>,
+    /// Its expectations, judged.
+    pub judgements: Vec<Judgement>,
+    /// Records that cannot be right: the case and a sentence.
+    pub unsound: Vec<(String, String)>,
+    /// The file of the study, as it was given.
+    pub file: String,
+    /// Results that were there before, as sentences.
+    pub taken_over: Vec<String>,
+}
+
+impl<'a> StudyResults<'a> {
+    /// Judges the records of a study.
+    pub fn new(study: &'a Study, records: &'a [Record], tier: Tier) -> Self {
+        let finished = records.iter().filter(|record| record.status == Status::Ok && !study.is_race);
+        let unsound = finished.flat_map(|record| {
+            soundness::complaints(record).into_iter().map(|sentence| (record.case.label(), sentence))
+        });
+        let file = format!("studies/{}.toml", study.name);
+        let paths = StudyPaths::of(records);
+        Self {
+            study,
+            records,
+            judgements: judge_paths(study, records, &paths, tier),
+            paths,
+            unsound: unsound.collect(),
+            file,
+            taken_over: Vec::new(),
+        }
+    }
+
+    /// Adds the results that were not made for this page.
+    #[must_use]
+    pub fn with_taken_over(mut self, taken_over: Vec<String>) -> Self {
+        self.taken_over = taken_over;
+        self
+    }
+
+    /// Sets the file of the study.
+    #[must_use]
+    pub fn from_file(mut self, file: String) -> Self {
+        self.file = file;
+        self
+    }
+
+    /// Cases of the study that have no record. A race leaves out what nobody needs any more.
+    pub fn left_out(&self) -> usize {
+        if self.study.is_race {
+            return 0;
+        }
+        self.study.planned.len().saturating_sub(self.records.len())
+    }
+
+    /// Whether the study has an expectation against a reference.
+    pub(crate) fn asks_for(&self, reference: &str) -> bool {
+        self.study.expectations.iter().any(|expectation| expectation.measure.reference == reference)
+    }
+
+    /// The paths of at least three levels along an axis: two levels have no order.
+    pub(crate) fn refined(&self, axis: Axis) -> Vec<Path<'a>> {
+        let mut paths = self.paths.along(axis).to_vec();
+        paths.retain(|path| path.records.len() >= WINDOW);
+        paths
+    }
+
+    /// How many of its expectations are met.
+    pub(crate) fn met(&self) -> usize {
+        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
+    }
+
+    /// The command that runs the study again.
+    pub(crate) fn run_command(&self) -> String {
+        if self.file.contains(char::is_whitespace) {
+            format!("oedometer run \"{}\"", self.file)
+        } else {
+            format!("oedometer run {}", self.file)
+        }
+    }
+
+    /// Everything that is found about the study.
+    ///
+    /// # Errors
+    /// When a reference refuses a case.
+    pub fn findings(&self) -> Result<StudyFindings, ExactError> {
+        StudyFindings::new(self)
+    }
+
+    /// Whether every expectation is met, by records that are sound.
+    pub(crate) fn passes(&self) -> bool {
+        self.unsound.is_empty() && self.met() == self.judgements.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::{failed_at, solved};
+
+    #[test]
+    fn what_ended_well_outside_of_the_race_is_checked_and_a_name_with_spaces_is_quoted() {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
+                    integrator = ['implicit']\ncells = [2, 4, 8]\n";
+        let (mut study, mut records) = solved("s", text);
+        for record in &mut records[1..] {
+            record.start.as_mut().expect("a start").volume_error = 0.5;
+        }
+        records[2].status = failed_at(1);
+        let results = StudyResults::new(&study, &records, Tier::Full);
+        let cases: Vec<&str> = results.unsound.iter().map(|(case, _)| case.as_str()).collect();
+        assert_eq!(cases, [records[1].case.label()]);
+        assert!(!results.passes() && results.met() == 0);
+        assert!(StudyResults::new(&study, &records[..1], Tier::Full).passes());
+        assert_eq!(
+            (results.left_out(), StudyResults::new(&study, &records[..1], Tier::Full).left_out()),
+            (0, 2)
+        );
+        assert_eq!(results.run_command(), "oedometer run studies/s.toml");
+        assert_eq!(
+            results.from_file("my files/s.toml".to_owned()).run_command(),
+            "oedometer run \"my files/s.toml\""
+        );
+        study.is_race = true;
+        assert_eq!(
+            StudyResults::new(&study, &records, Tier::Full).unsound,
+            [],
+            "the race tells it in its cells"
+        );
+    }
+}

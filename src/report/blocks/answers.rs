@@ -1,0 +1,160 @@
+//! What a study answers by itself: its setting and what comes within a bound at the head of its page; settlements by date and
+//! who locks as its first sections.
+
+use crate::questions::findings::QuantityWithin;
+use crate::questions::study_findings::StudyFindings;
+use crate::render::RenderError;
+use crate::render::page::Block;
+use crate::render::table::Table;
+use crate::report::answers::locking;
+use crate::report::tables::settlement;
+use crate::report::templates;
+use serde::Serialize;
+
+/// Setting and answers as paragraphs; the race answers elsewhere.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn lead(study: &StudyFindings) -> Result<String, RenderError> {
+    let mut lead = match &study.plain.blocks.setting {
+        Some(setting) => templates::sentence("setting", setting)? + "\n\n",
+        None => String::new(),
+    };
+    lead += &within(&study.answers.within)?;
+    Ok(lead + "\n\n")
+}
+
+/// What the template is filled with.
+#[derive(Serialize)]
+struct Quantities<'a> {
+    quantities: &'a [QuantityWithin],
+}
+
+/// What it takes to come within a bound: lightly marked paragraphs, one per quantity.
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn within(quantities: &[QuantityWithin]) -> Result<String, RenderError> {
+    templates::sentence("within", &Quantities { quantities })
+}
+
+/// Settlements by date, and who locks: what the answers on top of the page are read off from.
+///
+/// # Errors
+/// If a template cannot be filled.
+pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
+    let mut blocks = Vec::new();
+    if !study.answers.settlements.is_empty() {
+        blocks.push(Block::Heading("Settlement by date".to_owned()));
+    }
+    for (title, table) in settlement::tables_of(&study.answers.settlements) {
+        blocks.push(Block::Table(Table { title, ..table }));
+    }
+    if let Some(found) = &study.answers.locking {
+        blocks.push(Block::Heading("Who locks?".to_owned()));
+        blocks.push(Block::Paragraph(templates::sentence("locking", found)?));
+        blocks.push(Block::Table(locking::table(found)));
+    }
+    Ok(blocks)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::case::{Quantity, Sample};
+    use crate::questions::blocks::setting::SettingFinding;
+    use crate::questions::findings::within::{BoundWithin, WithinFinding};
+    use crate::record::Record;
+
+    #[test]
+    fn a_quantity_is_told_with_method_mesh_step_and_time_or_with_the_least_error() {
+        let choice = |error: f64, largest_step: f64| WithinFinding {
+            method: "GC-SRI-patch".to_owned(),
+            integrator: "implicit".to_owned(),
+            cells: 10,
+            points_per_cell: 2,
+            step_rule: "growth=0.02".to_owned(),
+            largest_step,
+            is_longest_tried: false,
+            error,
+            time_factor: 0.152_190_825_688_073_4,
+            seconds: 180.0 * 86400.0,
+            cost: 1e-3,
+            case: "abc".to_owned(),
+        };
+        let told = |bounds: [Option<f64>; 2], step: f64| {
+            let bounds = [0.01, 0.001].into_iter().zip(bounds);
+            let bounds = bounds.map(|(bound, error)| BoundWithin {
+                bound,
+                choice: error.map(|error| choice(error, step)),
+                others: Vec::new(),
+                integrators: Vec::new(),
+            });
+            let quantity = QuantityWithin {
+                quantity: Quantity::Settlement,
+                sample: Sample::Surface,
+                reference: "terzaghi".to_owned(),
+                problems: 1,
+                bounds: bounds.collect(),
+                best: choice(0.02, step),
+                far: Vec::new(),
+            };
+            within(&[quantity]).expect("filled").trim().to_owned()
+        };
+        let within = "**Settlement** within 1 % at every output: `GC-SRI-patch`, implicit, 10 cells";
+        let largest = "(largest 0.40 %, at T_v = 0.1522, 180 days)";
+        assert_eq!(
+            told([Some(0.004), None], 864_000.0),
+            format!("{within}, steps of `growth=0.02` up to 10 days {largest}; no run reaches 0.1 %.")
+        );
+        assert_eq!(told([Some(0.004), None], 0.0), format!("{within} {largest}; no run reaches 0.1 %."));
+        assert_eq!(
+            told([None, None], 0.0),
+            "**Settlement**: no run reaches 1 %. The smallest error is 2.00 %, of `GC-SRI-patch`, implicit, \
+             on 10 cells."
+        );
+    }
+
+    fn setting_of(records: &[Record]) -> String {
+        let setting = SettingFinding::new(records);
+        setting.map_or(String::new(), |setting| templates::sentence("setting", &setting).expect("filled"))
+    }
+
+    #[test]
+    fn a_clay_is_told_in_kilopascals_millimetres_and_days() {
+        let study = |soil: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'terzaghi'\n[column]\nheight = 5.0\nload = 50e3\n[output]\ntime_factors = [0.1]\n\
+                 [[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [4]\nhydraulic_conductivity = [1e-9]\n{soil}\n"
+            );
+            setting_of(&records_of(&text))
+        };
+        // m_v q H = 5e4/1.2e6 · 5 m; H² γ_w/(k E_oed) = 25 · 9810/(1e-9 · 1.2e6) s.
+        assert_eq!(
+            study(""),
+            "*H* = 5 m, *q* = 50 kPa, *E* = 1 MPa, *ν* = 0.25, *n* = 0.3, *k* = 1e-9 m/s, *K_w* = 2.2 GPa: the surface settles \
+             by 208.3 mm in the end; T_v = 1 is 6.5 years."
+        );
+        let several = study("youngs_modulus = [5e5, 1e6]");
+        assert!(several.contains("*E* = 500 kPa … 1 MPa"), "{several}");
+        assert!(
+            several.contains("208.3 mm … 416.7 mm") && several.contains("6.5 years … 13 years"),
+            "{several}"
+        );
+        assert_eq!(setting_of(&[]), "");
+    }
+
+    #[test]
+    fn layers_are_told_by_what_differs_among_them() {
+        let records = records_of(
+            "title = 't'\nscene = 'layered'\noutput.time_factors = [0.1]\ncolumn.height = 3.0\n[[column.soils]]\nthickness = 1.0\n\
+             youngs_modulus = 2e6\n[[column.soils]]\nthickness = 2.0\nyoungs_modulus = 5e6\n[[sweep]]\nmethod = ['GIMP']\n\
+             integrator = ['implicit']\ncells = [3]\n",
+        );
+        let told = setting_of(&records);
+        let layers =
+            "*K_w* = 2.2 GPa; layers from the base up: 1 m with *E* = 2 MPa; 2 m with *E* = 5 MPa: T_v = 1";
+        assert!(told.contains(layers) && told.matches("*E*").count() == 2, "{told}");
+    }
+}

@@ -1,0 +1,232 @@
+//! Words for quantities, samples, axes and orders, shared by all figures and tables.
+
+use crate::case::quantity::{Quantity, Sample};
+use crate::questions::blocks::drawn::DrawnSeries;
+use crate::render::table::Cell;
+use crate::render::{RenderError, number};
+use crate::report::templates;
+use crate::study::expectation::{Axis, NEXT_FINER};
+use oedometer_convergence::Class;
+
+/// The words beside an order that is not settled, or instead of one, with their meanings.
+const CLASSES: [(&str, &str); 8] = [
+    ("pre-asymptotic", "the order still changes from mesh to mesh"),
+    ("contaminated", "a term of lower order takes over on fine meshes"),
+    ("superconvergent", "higher than promised"),
+    ("oscillatory", "the error goes up and down"),
+    ("divergent", "the error grows"),
+    ("floor-limited", "something else than the mesh limits the error"),
+    ("exact", "round-off is all the error there is"),
+    ("locked", "the body hardly moves"),
+];
+
+/// The meaning of the words for classes that stand in some rows of a table.
+pub fn class_meanings(rows: &[Vec<Cell>]) -> String {
+    let is_met = |class: &str| rows.iter().flatten().any(|cell| cell.show().contains(class));
+    let met = CLASSES.iter().filter(|(class, _)| is_met(class));
+    met.map(|(class, meaning)| format!("{class}: {meaning}")).collect::<Vec<_>>().join("; ")
+}
+
+/// The words with a capital first letter.
+pub fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
+/// The order, with its class unless it is asymptotic; the class alone without an order.
+pub fn order_or_class(class: Class, order: Option<f64>) -> String {
+    match order {
+        Some(order) if class.is_settled() => number::order(order),
+        Some(order) => format!("{} ({class})", number::order(order)),
+        None => class.name().to_owned(),
+    }
+}
+
+/// The order or class of a series with its error on some mesh, for a cell of a table.
+pub fn order_and_error(class: Class, order: Option<f64>, error: Option<f64>) -> String {
+    // A hyphen that does not break the line.
+    let error = error.map(|error| format!(", {}", number::error(error).replace('-', "\u{2011}")));
+    order_or_class(class, order) + &error.unwrap_or_default()
+}
+
+/// Sorted ticks for the sizes of levels.
+pub fn ticks(sizes: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut ticks: Vec<f64> = sizes.collect();
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
+    ticks
+}
+
+/// A reference in words, for running text.
+pub fn solution(reference: &str) -> String {
+    let words = match reference {
+        NEXT_FINER => "the next finer run",
+        "terzaghi" => "Terzaghi's solution with compressible water",
+        "terzaghi-incompressible" => "Terzaghi's solution",
+        "single-mode" => "the exact slowest mode",
+        "xie-leo" => "Xie & Leo's solution",
+        "dynamic-column" => "the exact column with inertia",
+        "dynamic-single-mode" => "the exact slowest mode with inertia",
+        "standing-wave" => "the exact standing wave",
+        "large-strain" => "the exact large-strain solution of its own equations",
+        "cosine-layer" => "the exact layer with compressible water",
+        "cosine-layer-incompressible" => "the exact layer with incompressible water",
+        "mandel" => "Mandel's solution with compressible water",
+        "at-rest" => "the state of rest",
+        "layered" => "the exact column of layers",
+        "yield-front" => "the exact yield front",
+        "sealed-element" => "the exact sealed column",
+        "footing" => "Prandtl's load at collapse",
+        "manufactured-box" | "manufactured-shear" | "manufactured-vortex" => "the manufactured motion",
+        other => return format!("the exact solution `{other}`"),
+    };
+    words.to_owned()
+}
+
+/// A reference as the name of a line.
+pub fn theory(reference: &str) -> String {
+    capitalised(solution(reference).trim_start_matches("the ")).replace('`', "")
+}
+
+/// A quantity in words.
+pub fn quantity(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Pressure => "pore pressure",
+        Quantity::EffectiveStress => "effective stress",
+        Quantity::Displacement => "displacement",
+        Quantity::Settlement => "settlement",
+        Quantity::LoadFactor => "load factor",
+    }
+}
+
+/// Places in words.
+pub fn sample(sample: Sample) -> &'static str {
+    match sample {
+        Sample::Points => "at the points",
+        Sample::Centres => "at the cell centres",
+        Sample::Nodes => "at the nodes",
+        Sample::Surface => "of the surface",
+    }
+}
+
+/// Why the work of a case is not known.
+pub const NOT_COUNTED: &str = "of an attached solver";
+
+/// Work, where it is counted.
+pub fn counted(work: Option<u64>) -> Cell {
+    work.map_or(Cell::missing(NOT_COUNTED), Cell::Count)
+}
+
+/// A quantity at its places, in words.
+pub fn measured(measured: Quantity, at: Sample) -> String {
+    format!("{} {}", quantity(measured), sample(at))
+}
+
+/// What all series of a figure share, as the end of its subtitle.
+pub fn subtitle_end(shared: &str) -> String {
+    if shared.is_empty() { String::new() } else { format!("; {shared}") }
+}
+
+/// Label of an axis of refinement.
+pub fn axis(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Cells => "cell size h (m)",
+        Axis::TimeStep => "time step Δt (s)",
+        Axis::PointsPerCell => "spacing of the points in a cell, 1/m (–)",
+        Axis::WaterBulkModulus => "compressibility of the water 1/K_w (1/Pa)",
+    }
+}
+
+/// Label of an error's axis.
+pub fn error_axis(of: Quantity) -> String {
+    match of {
+        one if one.is_of_surface() => format!("relative error of {} (–)", quantity(one)),
+        other => format!("relative L_2 error, {} (–)", quantity(other)),
+    }
+}
+
+/// Which of all series the figures show.
+///
+/// # Errors
+/// If the template cannot be filled.
+pub fn drawn(series: &DrawnSeries) -> Result<String, RenderError> {
+    templates::sentence("drawn", series)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oedometer_exact::reference::ReferenceKind;
+
+    #[test]
+    fn every_size_has_one_tick_in_rising_order() {
+        let sizes = [0.2, 0.05, 0.1, 0.2, 0.05];
+        assert_eq!(ticks(sizes.into_iter()), [0.05, 0.1, 0.2]);
+    }
+
+    #[test]
+    fn quantities_places_references_axes_and_orders_have_words_of_their_own() {
+        use Quantity::{Displacement, EffectiveStress, LoadFactor, Pressure, Settlement};
+        assert_eq!(
+            ["terzaghi", "terzaghi-incompressible", "large-strain", "xie-leo", "stokes"].map(solution),
+            [
+                "Terzaghi's solution with compressible water",
+                "Terzaghi's solution",
+                "the exact large-strain solution of its own equations",
+                "Xie & Leo's solution",
+                "the exact solution `stokes`"
+            ]
+        );
+        assert_eq!(["stokes", "standing-wave"].map(theory), ["Exact solution stokes", "Exact standing wave"]);
+        // Each solution that a scene is judged by has words.
+        for kind in ReferenceKind::ALL {
+            assert!(!solution(kind.name()).contains('`'), "{}", kind.name());
+        }
+        let all = [
+            (
+                Pressure,
+                Sample::Points,
+                "pore pressure at the points",
+                "relative L_2 error, pore pressure (–)",
+            ),
+            (
+                EffectiveStress,
+                Sample::Centres,
+                "effective stress at the cell centres",
+                "relative L_2 error, effective stress (–)",
+            ),
+            (
+                Displacement,
+                Sample::Nodes,
+                "displacement at the nodes",
+                "relative L_2 error, displacement (–)",
+            ),
+            (Settlement, Sample::Surface, "settlement of the surface", "relative error of settlement (–)"),
+            (LoadFactor, Sample::Surface, "load factor of the surface", "relative error of load factor (–)"),
+        ];
+        for (quantity, sample, words, of_axis) in all {
+            assert_eq!((&*measured(quantity, sample), &*error_axis(quantity)), (words, of_axis));
+        }
+        assert_eq!(
+            Axis::ALL.map(axis),
+            [
+                "cell size h (m)",
+                "time step Δt (s)",
+                "spacing of the points in a cell, 1/m (–)",
+                "compressibility of the water 1/K_w (1/Pa)"
+            ]
+        );
+        for (class, order, words) in [
+            (Class::Asymptotic, Some(1.998), "2.00"),
+            (Class::Superconvergent, Some(3.0), "3.00"),
+            (Class::PreAsymptotic, Some(1.5), "1.50 (pre-asymptotic)"),
+            (Class::Contaminated, Some(1.0), "1.00 (contaminated)"),
+            (Class::Divergent, None, "divergent"),
+        ] {
+            assert_eq!(order_or_class(class, order), words);
+            assert_eq!(order_and_error(class, order, Some(0.0012)), format!("{words}, 1.20e\u{2011}3"));
+            assert_eq!(order_and_error(class, order, None), words);
+        }
+        assert_eq!(["", "a b", "σ c"].map(capitalised), ["", "A b", "Σ c"]);
+    }
+}

@@ -1,0 +1,202 @@
+//! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
+
+use crate::case::Quantity;
+use crate::render::{RenderError, number};
+use crate::report::blocks::labels;
+use minijinja::value::Serde;
+use minijinja::{Environment, UndefinedBehavior, Value};
+use oedometer_soil::wording::{clock_time, count_of, duration, typed};
+use serde::Serialize;
+
+/// The templates by their names.
+const TEMPLATES: [(&str, &str); 27] = [
+    ("audit", include_str!("../../templates/audit.md")),
+    ("balances", include_str!("../../templates/balances.md")),
+    ("changes", include_str!("../../templates/changes.md")),
+    ("cheapest", include_str!("../../templates/cheapest.md")),
+    ("converges", include_str!("../../templates/converges.md")),
+    ("cost", include_str!("../../templates/cost.md")),
+    ("critical-steps", include_str!("../../templates/critical-steps.md")),
+    ("double-point", include_str!("../../templates/double-point.md")),
+    ("drawn", include_str!("../../templates/drawn.md")),
+    ("locking", include_str!("../../templates/locking.md")),
+    ("mapping-back", include_str!("../../templates/mapping-back.md")),
+    ("paper", include_str!("../../templates/paper.md")),
+    ("peers", include_str!("../../templates/peers.md")),
+    ("printed-equations", include_str!("../../templates/printed-equations.md")),
+    ("proposed", include_str!("../../templates/proposed.md")),
+    ("race-answers", include_str!("../../templates/race-answers.md")),
+    ("race-limits", include_str!("../../templates/race-limits.md")),
+    ("race-situation", include_str!("../../templates/race-situation.md")),
+    ("race-table", include_str!("../../templates/race-table.md")),
+    ("sampling", include_str!("../../templates/sampling.md")),
+    ("setting", include_str!("../../templates/setting.md")),
+    ("sweep", include_str!("../../templates/sweep.md")),
+    ("time-step", include_str!("../../templates/time-step.md")),
+    ("verdict", include_str!("../../templates/verdict.md")),
+    ("wall-time", include_str!("../../templates/wall-time.md")),
+    ("within", include_str!("../../templates/within.md")),
+    ("work", include_str!("../../templates/work.md")),
+];
+
+/// An environment that knows every template and the filters that all share.
+pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
+    environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
+    environment.add_filter("capital_quantity", |quantity: Serde<Quantity>| {
+        labels::capitalised(labels::quantity(quantity.0))
+    });
+    environment.add_filter("count", |count: usize, singular: String, plural: String| {
+        count_of(count, &singular, &plural)
+    });
+    environment.add_filter("clock_time", clock_time);
+    environment.add_filter("duration", duration);
+    environment.add_filter("error", number::error);
+    environment.add_filter("error_percent", number::percent);
+    environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
+    environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
+    environment.add_filter("number", number::number);
+    environment.add_filter("order", number::order);
+    environment.add_filter("percent", number::rounded_percent);
+    environment.add_filter("ratio", |ratio: f64| number::fixed(ratio, 2));
+    environment.add_filter("seconds", number::seconds);
+    environment.add_filter("signed_percent", |share: f64| {
+        let sign = if share < 0.0 { "−" } else { "+" };
+        format!("{sign}{:.1} %", 100.0 * share.abs())
+    });
+    environment.add_filter("solution", |reference: String| labels::solution(&reference));
+    environment.add_filter("step", |label: String| {
+        let seconds = label.strip_prefix("seconds=").and_then(|text| text.parse().ok());
+        seconds.map_or(label, |seconds| format!("Δt = {} s", number::number(seconds)))
+    });
+    environment.add_filter("time_factor", number::time_factor);
+    environment.add_filter("typed", typed);
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text)?;
+    }
+    Ok(environment)
+}
+
+/// A template filled with findings: lightly marked paragraphs.
+pub(crate) fn render(
+    environment: &Environment<'_>,
+    name: &str,
+    findings: &impl Serialize,
+) -> Result<String, RenderError> {
+    Ok(environment.get_template(name)?.render(Value::from(Serde(findings)))?.trim().to_owned())
+}
+
+/// A template that needs no more than the shared filters.
+pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, RenderError> {
+    render(&environment()?, name, findings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::race::RaceFindings;
+    use crate::report::answers::race;
+    use regex_lite::Regex;
+
+    #[test]
+    fn a_template_without_its_finding_is_an_error() {
+        let environment = environment().expect("templates of this program");
+        // What needs no finding says the same on every page.
+        let fixed = ["balances", "mapping-back", "proposed", "work"];
+        let filled = TEMPLATES.map(|(name, _)| name).into_iter().filter(|name| !fixed.contains(name));
+        for name in filled.chain(["no such template"]) {
+            let told = render(&environment, name, &()).expect_err(name).to_string();
+            assert!(told.starts_with("a sentence of the page cannot be written: "), "{told}");
+        }
+    }
+
+    /// Findings with the sentence that their template makes of them.
+    #[derive(serde::Deserialize)]
+    struct Example {
+        template: String,
+        findings: serde_json::Value,
+        sentence: String,
+    }
+
+    fn examples() -> Vec<Example> {
+        serde_json::from_str(include_str!("../../templates/examples.json")).expect("examples")
+    }
+
+    /// The filters of all templates, those of the race with them.
+    fn every_filter() -> Environment<'static> {
+        race::environment(&RaceFindings::default()).expect("templates of this program")
+    }
+
+    #[test]
+    fn every_example_reads_as_its_sentence() {
+        let environment = every_filter();
+        for (place, Example { template, findings, sentence: wanted }) in examples().into_iter().enumerate() {
+            let told = render(&environment, &template, &findings).expect(&template);
+            assert_eq!(told, wanted, "example {}", place + 1);
+        }
+    }
+
+    /// A template with a mark in each of its branches, that of a condition that does not hold among them, and their number.
+    fn marked(template: &str) -> (String, usize) {
+        let tag = Regex::new(r"(?s)\{%-?\s*(\w+).*?%\}").expect("a pattern");
+        let (mut text, mut marks, mut end) = (String::new(), 0, 0);
+        // Whether each open condition has had an `else`; a loop has none.
+        let mut open: Vec<Option<bool>> = Vec::new();
+        let mut mark = || {
+            marks += 1;
+            format!("⟦{marks}⟧")
+        };
+        for found in tag.captures_iter(template) {
+            let whole = found.get(0).expect("a tag");
+            text += &template[end..whole.start()];
+            end = whole.end();
+            match &found[1] {
+                "if" => open.push(Some(false)),
+                "for" => open.push(None),
+                "else" => open.last_mut().expect("a condition").iter_mut().for_each(|had| *had = true),
+                "endif" if open.pop() == Some(Some(false)) => text += &("{% else %}".to_owned() + &mark()),
+                "endfor" => drop(open.pop()),
+                _ => {}
+            }
+            text += whole.as_str();
+            if ["if", "elif", "else", "for"].contains(&&found[1]) {
+                text += &mark();
+            }
+        }
+        (text + &template[end..], marks)
+    }
+
+    /// Branches of a template that none of its examples takes, by what stands in them.
+    fn untaken(name: &str, template: &str) -> Vec<String> {
+        let (text, marks) = marked(template);
+        let mut environment = every_filter();
+        environment.add_template_owned(name.to_owned(), text.clone()).expect("a template with marks");
+        let examples = examples().into_iter().filter(|example| example.template == name);
+        let told: String =
+            examples.map(|one| render(&environment, name, &one.findings).expect(name)).collect();
+        let is_untaken = |mark: &String| !told.contains(mark);
+        let around = |mark: String| {
+            let place = text.find(&mark).unwrap_or_default();
+            let after: String = text[place..].chars().take(60).collect();
+            format!("{name}: {after}")
+        };
+        (1..=marks).map(|mark| format!("⟦{mark}⟧")).filter(is_untaken).map(around).collect()
+    }
+
+    #[test]
+    fn an_example_takes_every_branch_of_every_template() {
+        let untaken: Vec<String> =
+            TEMPLATES.into_iter().flat_map(|(name, text)| untaken(name, text)).collect();
+        assert!(untaken.is_empty(), "{}", untaken.join("\n"));
+        let all = examples();
+        let is_lacking = |(name, _): &(&str, &str)| all.iter().all(|example| example.template != *name);
+        let lacking: Vec<_> = TEMPLATES.into_iter().filter(is_lacking).map(|(name, _)| name).collect();
+        assert!(lacking.is_empty(), "without an example: {lacking:?}");
+        let (text, marks) = marked("{% if a %}x{% elif b %}y{% endif %}{%- for c in d -%}z{% endfor %}");
+        let whole =
+            "{% if a %}⟦1⟧x{% elif b %}⟦2⟧y{% else %}⟦3⟧{% endif %}{%- for c in d -%}⟦4⟧z{% endfor %}";
+        assert_eq!((text.as_str(), marks), (whole, 4));
+    }
+}
