@@ -22,9 +22,9 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Verifies coupled material point solvers for saturated soil against exact solutions.
+/// The command line.
 #[derive(Debug, Parser)]
-#[command(name = "oedometer", version, about, after_help = exit::HELP, max_term_width = 80)]
+#[command(name = "oedometer", version, about = env!("CARGO_PKG_DESCRIPTION"), after_help = exit::HELP, max_term_width = 80)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -17,6 +17,7 @@ mod paper;
 mod race_page;
 mod record_tables;
 mod records_of_programs;
+mod release_metadata;
 mod runs_cosine_layer;
 mod runs_large_strain;
 mod runs_manufactured;

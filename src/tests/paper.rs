@@ -59,10 +59,12 @@ fn every_number_of_the_paper_s_example_is_one_of_the_committed_findings() {
     assert_eq!(numbers_outside_citations(before) + &numbers_outside_citations(after), "");
 }
 
-/// The digits of a text outside `[@…]`.
+/// The digits of a text outside `[@…]` and outside names, as in `Anura3D`.
 fn numbers_outside_citations(text: &str) -> String {
     let outside = text.split('[').map(|part| part.rsplit(']').next().unwrap_or(part));
-    outside.flat_map(str::chars).filter(char::is_ascii_digit).collect()
+    let numbers =
+        outside.flat_map(str::split_whitespace).filter(|word| !word.starts_with(char::is_alphabetic));
+    numbers.flat_map(str::chars).filter(char::is_ascii_digit).collect()
 }
 
 #[test]

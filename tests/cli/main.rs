@@ -34,6 +34,7 @@ mod problems;
 mod program;
 mod proposed;
 mod readme;
+mod release;
 mod report_rules;
 mod report_tables;
 mod run;

@@ -13,6 +13,8 @@ use tempfile::TempDir;
 
 /// Cells over the height from which on a run of the table takes too long for a test.
 const COARSE: usize = 20;
+/// Where the project is.
+const ADDRESS: &str = env!("CARGO_PKG_REPOSITORY");
 /// Units of a wall time.
 const UNITS: [&str; 6] = ["ns", "µs", "ms", "s", "min", "h"];
 
@@ -238,8 +240,12 @@ fn every_link_leads_to_a_file_and_a_heading() {
         for target in
             text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target)
         {
-            // Of the forge, beside the repository.
-            if target.contains("://") || target == "../../releases" {
+            // In the repository at its address, or elsewhere.
+            if let Some(path) = target.strip_prefix(ADDRESS).and_then(|rest| rest.strip_prefix("/blob/main/"))
+            {
+                assert!(root().join(path).exists(), "{document} leads to {target}");
+            }
+            if target.contains("://") {
                 continue;
             }
             let (file, heading) = target.split_once('#').unwrap_or((target, ""));
