@@ -10,9 +10,9 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use oedometer::exact::consolidation;
 use oedometer::{
-    AssembledStep, Body, Column, Configuration, EqualSteps, ExplicitSettings, IntegratorKind,
-    Kernel as StepKernel, LinearStepper, Material, Method, Plan, Problem, SceneKind, Schedule, Stepper,
-    TimeLimit, TimeStepRule, column_problem, predicted_critical_step,
+    AssembledStep, Body, Column, Configuration, Discrete, EqualSteps, ExplicitSettings, IntegratorKind,
+    Kernel as StepKernel, LinearStepper, Material, Method, Plan, SceneKind, Schedule, Stepper, TimeLimit,
+    TimeStepRule, column_problem, predicted_critical_step,
 };
 use std::time::Instant;
 
@@ -105,7 +105,7 @@ fn exact_degree_of_consolidation(bencher: Bencher, time_factor: f64) {
 }
 
 /// The seed column, from its undrained start.
-fn problem(method: &str, cells: usize, configuration: Configuration) -> Problem<1> {
+fn problem(method: &str, cells: usize, configuration: Configuration) -> Discrete<1> {
     crowded_problem(method, cells, POINTS_PER_CELL, configuration)
 }
 
@@ -115,7 +115,7 @@ fn crowded_problem(
     cells: usize,
     points_per_cell: usize,
     configuration: Configuration,
-) -> Problem<1> {
+) -> Discrete<1> {
     let method =
         Method { configuration: Some(configuration), ..Method::named(method).expect("a known method") };
     let (column, soil) = (Column::default(), Material::default());
@@ -273,7 +273,7 @@ fn print_moving_table() {
     }
 }
 
-fn print_moving_costs<const D: usize>(problem: Problem<D>, points_per_cell: usize, cells: usize) {
+fn print_moving_costs<const D: usize>(problem: Discrete<D>, points_per_cell: usize, cells: usize) {
     let ([step, passes @ ..], cycle) = moving_cost(problem);
     let shown =
         |numbers: &[f64]| numbers.iter().map(|cost| format!("{cost:>14.1}")).collect::<Vec<_>>().concat();
@@ -284,7 +284,7 @@ fn print_moving_costs<const D: usize>(problem: Problem<D>, points_per_cell: usiz
 }
 
 /// Nanoseconds per point of the step and of each of the seven, the least of rounds, and of a cycle of the clock.
-fn moving_cost<const D: usize>(problem: Problem<D>) -> ([f64; 8], f64) {
+fn moving_cost<const D: usize>(problem: Discrete<D>) -> ([f64; 8], f64) {
     let settings = ExplicitSettings::default();
     let dt = 0.5 * predicted_critical_step(&problem, &settings);
     let mut body = Body::new(problem);

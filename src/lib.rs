@@ -8,7 +8,9 @@
 //! | :-- | :-- |
 //! | `oedometer-soil` | material, stress–strain laws, continuity; elementary functions with the same bits on every machine |
 //! | `oedometer-exact` | exact solutions with bounds on their own errors ([`exact`]) |
-//! | `oedometer-mpm` | the material point method: state, operators, steps, runs; in `scene/` the physical problems |
+//! | `oedometer-problem` | plain data between scenes and solvers: a problem, methods, integrators, steps, and what a run leaves |
+//! | `oedometer-mpm` | the material point method: state, operators, steps, runs; knows no scene and no exact solution |
+//! | `oedometer-scenes` | the physical problems by name, which solver they have unknown |
 //! | `oedometer-convergence` | numbers only: series, orders, fits, classes, uncertainty |
 //! | `oedometer-formats` | files of other programs, each format read into one form |
 //! | `oedometer-case` | the waist: a case as plain data with its inputs, hash and label; what solves it ([`Solver`]), and what that leaves ([`Outcome`]) |
@@ -45,7 +47,7 @@
 //! | 4, 4' (Zheng et al. Eq. 6) | rate of the pressure | `crates/mpm/src/kernel/body.rs:volume_rate` |
 //! | 6, 7 (Zheng et al. Eqs 7, 8) | stress–strain laws and conductivity | `crates/soil/src/law.rs:uniaxial_stress_ratio`, `crates/soil/src/conductivity.rs:conductivity` |
 //! | 8 | selective reduced integration | `crates/mpm/src/kernel/step.rs:update_pressure` |
-//! | 9, 10, 11 | time-step limits by formula | `crates/mpm/src/integrate/critical_step/formula.rs:fastest_wave_speed`, `crates/mpm/src/drag/mod.rs:step_limit`, `crates/mpm/src/integrate/critical_step/formula.rs:combined_limit` |
+//! | 9, 10, 11 | time-step limits by formula | `crates/problem/src/wave_speeds.rs:fastest_wave_speed`, `crates/problem/src/wave_speeds.rs:drag_limit`, `crates/problem/src/wave_speeds.rs:combined_limit` |
 //! | 12 | consolidation | `crates/exact/src/consolidation/mod.rs:isochrone` |
 //! | 13 | Xie & Leo's column | `crates/exact/src/xie_leo.rs:fields` |
 //! | 14 | modes of the dynamic column | `crates/exact/src/dynamic_column/modes.rs:amplitude` |
@@ -171,7 +173,7 @@ use oedometer_foreign::import;
 pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.
-pub use campaign::case_run::run_case;
+pub use campaign::case_run::{column_problem, run_case};
 pub use campaign::case_runner::run_study_with;
 pub use campaign::runner::{RunOptions, Selected, run_studies, run_study};
 pub use case::outcome::{Course, Outcome, Solver};
@@ -208,16 +210,16 @@ pub use study::check::Study;
 pub use study::file::StudySource;
 
 // What a problem is, and how it is solved.
-pub use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-pub use oedometer_mpm::method::{Basis, Configuration, Method};
-pub use oedometer_mpm::run::integrator::IntegratorKind;
-pub use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, StepSizes};
-pub use oedometer_mpm::run::results::snapshot::Snapshot;
-pub use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-pub use oedometer_mpm::scene::SceneKind;
-pub use oedometer_mpm::scene::column::{Column, Shape};
-pub use oedometer_mpm::scene::problem::column_problem;
+pub use oedometer_mpm::run::{Kernel, Schedule};
 pub use oedometer_mpm::time_limit::TimeLimit;
+pub use oedometer_problem::integrator::IntegratorKind;
+pub use oedometer_problem::method::{Basis, Configuration, Method};
+pub use oedometer_problem::outcome::{Counters, Failure, FailureKind, StepSizes};
+pub use oedometer_problem::settings::{Drag, ExplicitSettings};
+pub use oedometer_problem::snapshot::Snapshot;
+pub use oedometer_problem::time_step::TimeStepRule;
+pub use oedometer_scenes::SceneKind;
+pub use oedometer_scenes::column::{Column, Shape};
 pub use oedometer_soil::continuity::Continuity;
 pub use oedometer_soil::law::Law;
 pub use oedometer_soil::material::Material;
@@ -232,7 +234,7 @@ pub use oedometer_mpm::integrate::critical_step::predicted::predicted_critical_s
 #[doc(hidden)]
 pub use oedometer_mpm::integrate::implicit::linear::LinearStepper;
 #[doc(hidden)]
-pub use oedometer_mpm::kernel::body::{Body, Problem};
+pub use oedometer_mpm::kernel::body::{Body, Discrete};
 #[doc(hidden)]
 pub use oedometer_mpm::run::{
     run_plan::Plan,

@@ -1,8 +1,8 @@
 //! A step allocates nothing, whatever the method, the configuration and the kernel.
 
 use oedometer::{
-    AssembledStep, Body, Column, Configuration, Continuity, Drag, ExplicitSettings, Material, Method,
-    Problem, SceneKind, column_problem, predicted_critical_step,
+    AssembledStep, Body, Column, Configuration, Continuity, Discrete, Drag, ExplicitSettings, Material,
+    Method, SceneKind, column_problem, predicted_critical_step,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -26,7 +26,7 @@ fn allocations(mut work: impl FnMut()) -> usize {
     (0..TRIES).map(count).min().unwrap_or(usize::MAX)
 }
 
-fn column(name: &str, configuration: Configuration, continuity: Continuity) -> Problem<1> {
+fn column(name: &str, configuration: Configuration, continuity: Continuity) -> Discrete<1> {
     let method =
         Method { configuration: Some(configuration), ..Method::named(name).expect("a known method") };
     let soil = Material { continuity, ..Material::default() };
@@ -35,7 +35,7 @@ fn column(name: &str, configuration: Configuration, continuity: Continuity) -> P
 
 /// Whether it steps by assembled operators too. A point-wise step that factors a matrix may allocate.
 fn assert_no_allocation(
-    problem: Problem<1>,
+    problem: Discrete<1>,
     settings: &ExplicitSettings,
     what: &str,
     factors_every_step: bool,

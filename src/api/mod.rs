@@ -21,7 +21,7 @@ use clap::ValueEnum;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::{AddedKey, ShelfProblem};
 use oedometer_formats::input_file;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use std::path::PathBuf;
 
 /// A solution by its name, and the scene of its column.

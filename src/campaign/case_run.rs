@@ -8,15 +8,22 @@ use crate::measure::record::record_of;
 use crate::record::Record;
 use oedometer_exact::exact_error::{ExactError, normal};
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::integrate::critical_step::formula;
-use oedometer_mpm::integrate::integrator::StepBound;
-use oedometer_mpm::run::observed::{CriticalStep, Stopped};
-use oedometer_mpm::run::results::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::column::column_parameters;
-use oedometer_mpm::scene::problem::SceneProblem;
+use oedometer_mpm::discretise::{Discretised, discretise};
+use oedometer_mpm::kernel::body::Discrete;
+use oedometer_mpm::run::observed::Stopped;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::critical_step::CriticalStep;
+use oedometer_problem::integrator::StepBound;
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::{self, Counters, Failure, FailureKind, RunStatus, StepSizes};
+use oedometer_problem::problem::StartError;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::wave_speeds;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::elementary;
+use oedometer_soil::material::Material;
 use std::time::Instant;
 
 /// Points of the settlement curve of a run.
@@ -131,10 +138,31 @@ fn outcome_of(run: outcome::Outcome) -> Outcome {
     outcome.with_steps(step_sizes).with_inside(inside)
 }
 
-fn problem_of(case: &Case) -> Result<SceneProblem, ExactError> {
+/// The scene's problem on `cells` cells over the height with `points_per_cell` points each, in the dimension that is asked for.
+///
+/// # Errors
+/// When the parameters are impossible.
+pub fn column_problem<const D: usize>(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Discrete<D>, ExactError> {
+    discretise(&scene.problem(column, soil, method, cells, points_per_cell)?).map_err(of_start)
+}
+
+fn problem_of(case: &Case) -> Result<Discretised, ExactError> {
     let Case { scene, column, material, method, cells, points_per_cell, .. } = case;
     let SolverName::Own(method) = *method else { unreachable!("other programs solve their own cases") };
-    SceneProblem::new(*scene, column, material, method, *cells, *points_per_cell)
+    let problem = scene.problem(column, material, method, *cells, *points_per_cell)?;
+    Discretised::new(&problem).map_err(of_start)
+}
+
+/// The refusal of an exact solution, from which the start of a scene is taken.
+fn of_start(error: StartError) -> ExactError {
+    *error.downcast().expect("the starts of scenes are those of exact solutions")
 }
 
 /// Refuses numbers that no run can go on from, before anything is computed and whoever computes it.
@@ -143,7 +171,7 @@ fn plausible(case: &Case) -> Result<(), ExactError> {
     parameters.validate()?;
     normal(
         "critical time step",
-        formula::combined_limit(&case.material, case.cell_size(), case.settings.drag),
+        wave_speeds::combined_limit(&case.material, case.cell_size(), case.settings.drag),
     )?;
     for factor in case.time_factors.iter().filter(|factor| **factor > 0.0) {
         normal("time of an output", parameters.time(*factor))?;
@@ -306,7 +334,7 @@ mod tests {
 
     #[test]
     fn a_search_that_is_stopped_is_a_failed_record_without_steps() {
-        let scene = oedometer_mpm::scene::SceneKind::Terzaghi;
+        let scene = oedometer_scenes::SceneKind::Terzaghi;
         let case = Case { cells: 4, ..Case::seed(crate::case::Task::Stability, scene) };
         let stopped = record_of(&case, &[], outcome_of_stopped_search(&case)).expect("a record");
         let failure = stopped.status.failure().expect("it was stopped");

@@ -13,7 +13,7 @@ use crate::record::{Record, RecordStore, Status, WallSample};
 use crate::study::check::Study;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_mpm::run::Kernel;
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_problem::outcome::{Failure, FailureKind};
 use std::collections::BTreeSet;
 
 /// Repeats of a case that takes long end here: their spread is small, and they would make the study
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn a_run_is_stopped_by_its_time_or_from_outside_and_by_nothing_else() {
-        use oedometer_mpm::run::results::outcome::FailureKind as Kind;
+        use oedometer_problem::outcome::FailureKind as Kind;
 
         let mut one = record("solve");
         assert!(!is_stopped(&one));

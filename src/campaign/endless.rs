@@ -4,7 +4,7 @@ use crate::case::keys::{Key, Value};
 use crate::case::work_estimate::estimated_seconds;
 use crate::case::{Case, Task, Tier};
 use crate::study::check::Study;
-use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_problem::integrator::IntegratorKind;
 use oedometer_soil::wording::{count_of, duration};
 
 /// Longest estimated time of a case, s, unless the study's `case_seconds` allows more: a week.

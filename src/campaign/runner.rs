@@ -421,7 +421,7 @@ pub(crate) fn solved(name: &str, text: &str) -> (Study, Vec<Record>) {
 /// The end of a run that failed at a step.
 #[cfg(test)]
 pub(crate) fn failed_at(step: u64) -> crate::record::Status {
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     let (kind, reason) = (FailureKind::Unstable, "a test".to_owned());
     crate::record::Status::Failed(Failure { kind, step, time: 1.0, growth: None, reason })

@@ -15,8 +15,8 @@ use crate::study::check::Study;
 use crate::study::file::StudySource;
 use oedometer_exact::ExactError;
 use oedometer_mpm::run::Kernel;
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::{Failure, FailureKind};
+use oedometer_scenes::SceneKind;
 use std::path::Path;
 use std::sync::Mutex;
 

@@ -117,8 +117,8 @@ mod tests {
     use super::*;
     use crate::case::Case;
     use crate::case::keys::{Key, Value};
-    use oedometer_mpm::run::integrator::IntegratorKind;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::integrator::IntegratorKind;
+    use oedometer_scenes::SceneKind;
 
     fn longest(scene: SceneKind, integrator: IntegratorKind, conductivity: f64) -> LongestCase {
         let mut case = Case::seed(Task::Solve, scene);

@@ -4,7 +4,7 @@
 use crate::case::keys::{KEYS, Kind};
 use crate::case::{Case, Task, Value};
 use crate::study::units::in_si;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use std::collections::BTreeMap;
 
 /// Largest relative difference of two times that are the same: round-off of inputs that were written and read.

@@ -12,8 +12,8 @@ use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, NO_REFERENCE};
 use oedometer_convergence::{Context, Limiter, LimiterKind, SeriesDemand, ValueSeries};
 use oedometer_exact::{Reference, ReferenceKind};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::column::column_parameters;
 
 /// Order of the values where neither the method nor the study promises one.
 const USUAL_ORDER: f64 = 2.0;
@@ -258,7 +258,7 @@ mod tests {
     use crate::case::quantity::Sample;
     use crate::judge::paths::{first_measure, paths};
     use oedometer_convergence::{Class, Classification, ErrorBound, OrderBand};
-    use oedometer_mpm::run::integrator::IntegratorKind;
+    use oedometer_problem::integrator::IntegratorKind;
 
     fn records(rule: &str, cells: &str) -> Vec<Record> {
         let text = format!(
@@ -327,8 +327,8 @@ mod tests {
              method = ['VP', 'MPM']\nintegrator = ['implicit']\ncells = [4]\n",
         );
         let method = runs[0].case.method.built_in().expect("a method of this program");
-        let configuration = Some(oedometer_mpm::method::Configuration::Updated);
-        runs[0].case.method = SolverName::Own(oedometer_mpm::method::Method { configuration, ..method });
+        let configuration = Some(oedometer_problem::method::Configuration::Updated);
+        runs[0].case.method = SolverName::Own(oedometer_problem::method::Method { configuration, ..method });
         let measure = first_measure(Quantity::Settlement, Sample::Surface, "terzaghi-incompressible", 0.2);
         let strain: f64 = 3.6e4 / 1.2e6;
         let difference = 1.0 + (-strain).exp_m1() / strain;
@@ -359,7 +359,7 @@ mod tests {
     fn the_formal_order_follows_the_operator_of_each_field() {
         let mut case = records("{ growth = 0.02 }", "[4, 8]").remove(0).case;
         let mut orders = |method: &str| {
-            let method = oedometer_mpm::method::Method::named(method).expect("a known method");
+            let method = oedometer_problem::method::Method::named(method).expect("a known method");
             case.method = crate::case::solver::SolverName::Own(method);
             [
                 (Quantity::Pressure, Sample::Points),

@@ -10,7 +10,7 @@ use oedometer_convergence::{
     Classification, ErrorSeries, SeriesDemand, SeriesLevel, SlopeFit, Undefined, classify, finest_order,
     pair_orders, slope,
 };
-use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_problem::integrator::IntegratorKind;
 use oedometer_soil::material::Material;
 use std::collections::HashMap;
 
@@ -263,8 +263,8 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{failed_at, records_of};
     use crate::case::Case;
-    use oedometer_mpm::run::TimeStepRule;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::time_step::TimeStepRule;
+    use oedometer_scenes::SceneKind;
 
     /// Whether two cases differ along an axis at most, compared input by input.
     fn alike(a: &Case, b: &Case, axis: Axis) -> bool {

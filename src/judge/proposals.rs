@@ -10,8 +10,8 @@ use crate::study::check::Study;
 use crate::study::check::outputs::output_at;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
 use oedometer_convergence::{Class, ErrorBound, OrderBand, SeriesDemand};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::TimeStepRule;
+use oedometer_problem::method::Method;
+use oedometer_problem::time_step::TimeStepRule;
 
 /// Room about an order: less than the half order that it is to catch.
 const ROOM_OF_ORDER: f64 = 0.25;

@@ -22,8 +22,8 @@ use crate::record::{Record, Status};
 use crate::score::diagnosis::diagnosis;
 use crate::study::check::Study;
 use oedometer_exact::ReferenceKind;
-use oedometer_mpm::run::results::snapshot::Snapshot;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_scenes::column::column_parameters;
 use std::collections::BTreeMap;
 
 /// Wall time over the golden one from which on a warning is given.

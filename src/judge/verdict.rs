@@ -425,7 +425,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::Status;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     fn records() -> Vec<Record> {
         let mut records = records_of(

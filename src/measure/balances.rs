@@ -4,8 +4,8 @@ use crate::case::Case;
 use crate::measure::statistics::largest;
 use crate::record::{Balance, HistoryRow, LayerBalance, StartChecks};
 use oedometer_exact::{ExactError, Reference};
-use oedometer_mpm::run::results::snapshot::Snapshot;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary;
 
 /// The start against what the scene expects of it.
@@ -110,8 +110,8 @@ pub fn curve_gap(curve: &[HistoryRow], time_factor: f64, degree: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use oedometer_mpm::run::results::snapshot::{Samples, Totals, WaterSamples, WaterTotals};
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::snapshot::{Samples, Totals, WaterSamples, WaterTotals};
+    use oedometer_scenes::SceneKind;
 
     /// `U = a √T_v` at seven rows from 0.01 to 0.64.
     fn curve() -> Vec<HistoryRow> {

@@ -3,9 +3,9 @@
 use crate::case::Case;
 use crate::record::Groups;
 use oedometer_exact::ReferenceKind;
-use oedometer_mpm::integrate::critical_step::formula;
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::wave_speeds;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
@@ -18,7 +18,8 @@ pub fn groups(case: &Case, step_over_limit: f64) -> Groups {
         storage: largest(&|soil| soil.oedometric_modulus() / soil.coupling_modulus()),
         finite_strain: largest(&|soil| case.column.pressure_scale() / soil.oedometric_modulus()),
         inertia: largest(&|soil| {
-            soil.coefficient_of_consolidation() / (case.column.height * formula::undrained_wave_speed(soil))
+            soil.coefficient_of_consolidation()
+                / (case.column.height * wave_speeds::undrained_wave_speed(soil))
         }),
         step_over_limit,
     }
@@ -93,7 +94,7 @@ impl SlowestWave {
     fn of(case: &Case) -> Self {
         let soil = &case.material;
         let wave_number = std::f64::consts::FRAC_PI_2 / case.column.height;
-        let speed = formula::undrained_wave_speed(soil);
+        let speed = wave_speeds::undrained_wave_speed(soil);
         let frequency = wave_number * speed;
         let undrained = soil.oedometric_modulus() + soil.coupling_modulus();
         let driving = soil.coupling_modulus() - soil.water_density * speed * speed;
@@ -113,12 +114,13 @@ impl SlowestWave {
             return 0.0;
         }
         let limit =
-            formula::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions());
+            wave_speeds::semi_implicit_limit(&case.material, case.cell_size(), case.has_undamped_motions());
         let step = match case.time_step {
             TimeStepRule::Stable(share) => share * limit,
             TimeStepRule::Seconds(seconds) => seconds,
             TimeStepRule::Courant(share) => {
-                share * case.cell_size() / formula::fastest_wave_speed(&case.material, case.material.porosity)
+                share * case.cell_size()
+                    / wave_speeds::fastest_wave_speed(&case.material, case.material.porosity)
             }
             TimeStepRule::Growth(_) | TimeStepRule::Tolerance(_) => return 0.0,
         };
@@ -228,7 +230,7 @@ mod tests {
 
     #[test]
     fn what_steps_damp_of_a_wave_is_the_most_of_all_outputs() {
-        let mut case = Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::DynamicColumn);
+        let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::DynamicColumn);
         (case.integrator, case.time_step) = (IntegratorKind::SemiImplicit, TimeStepRule::Seconds(1e-4));
         let wave = SlowestWave::of(&case);
         let unit = 1.0 / case.seconds_per_time_factor();
@@ -248,8 +250,8 @@ mod tests {
         // Every rule has the steps that it means.
         case.cells = 50;
         let soil = case.material.clone();
-        let limit = formula::semi_implicit_limit(&soil, case.cell_size(), case.has_undamped_motions());
-        let crossing = case.cell_size() / formula::fastest_wave_speed(&soil, soil.porosity);
+        let limit = wave_speeds::semi_implicit_limit(&soil, case.cell_size(), case.has_undamped_motions());
+        let crossing = case.cell_size() / wave_speeds::fastest_wave_speed(&soil, soil.porosity);
         let mut by = |rule: TimeStepRule| {
             case.time_step = rule;
             damped(&mut case, &times)
@@ -271,8 +273,7 @@ mod tests {
         for (porosity, height, stiffness) in
             [(0.3, 1.0, 1e6), (0.5, 1.0, 1e6), (0.2, 1.0, 1e6), (0.3, 3.0, 1e6), (0.3, 1.0, 1e8)]
         {
-            let mut case =
-                Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::DynamicColumn);
+            let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::DynamicColumn);
             case.column.height = height;
             case.column.loading_time = 0.0;
             case.material.porosity = porosity;

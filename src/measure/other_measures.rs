@@ -5,8 +5,8 @@ use crate::case::{Case, Norm, Quantity, Sample};
 use crate::record::{Balance, ErrorRow, MeasureRow};
 use oedometer_exact::Reference;
 use oedometer_exact::footing::LOAD_FACTOR;
-use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::snapshot::{Samples, Snapshot};
+use oedometer_scenes::SceneKind;
 use oedometer_soil::elementary;
 
 /// Name of the largest nodal velocity over the hydraulic conductivity, of a column at rest.
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
     use crate::case::Task;
     use oedometer_exact::reference::ReferenceKind;
-    use oedometer_mpm::scene::column::column_parameters;
+    use oedometer_scenes::column::column_parameters;
 
     #[test]
     fn a_pressure_that_alternates_oscillates_by_four_amplitudes_and_a_slope_by_nothing() {

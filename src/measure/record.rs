@@ -12,9 +12,9 @@ use crate::record::{
     AttachedRun, Balance, ErrorRow, HistoryRow, Provenance, Record, ReferenceUse, SCHEMA, Status,
 };
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_mpm::run::results::outcome::{Counters, HistoryPoint, StepSizes};
-use oedometer_mpm::run::results::snapshot::Snapshot;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::outcome::{Counters, HistoryPoint, StepSizes};
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_scenes::column::column_parameters;
 use std::sync::Arc;
 
 /// A record without results.
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_reference_is_as_accurate_as_at_its_worst_output_wherever_that_stands() {
-        let mut case = Case::seed(crate::case::Task::Solve, oedometer_mpm::scene::SceneKind::Terzaghi);
+        let mut case = Case::seed(crate::case::Task::Solve, oedometer_scenes::SceneKind::Terzaghi);
         let mut times = [1e-4, 0.1, 1.0];
         let bounds = |case: &Case| -> (Vec<f64>, ReferenceUse) {
             let parameters = column_parameters(&case.column, &case.material);

@@ -1,10 +1,10 @@
 //! Start checks and balances of a record, each with its bound; tables mark what fails here.
 
 use crate::record::{Balance, Record, Status};
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::run::results::outcome::FailureKind;
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::arrangement::Arrangement;
+use oedometer_problem::arrangement::Arrangement;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::outcome::FailureKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::wording::{short, typed};
 
@@ -376,8 +376,8 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::LayerBalance;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::run::results::outcome::Failure;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::outcome::Failure;
 
     #[test]
     fn a_pressure_may_reach_what_fronts_or_waves_make_of_the_load_and_is_not_judged_where_methods_lock() {

@@ -4,7 +4,7 @@
 use crate::case::Case;
 use crate::record::Record;
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -152,7 +152,7 @@ pub fn constant_recovery_error(case: &Case) -> f64 {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
     use std::cell::Cell;
 
     #[test]

@@ -5,7 +5,7 @@ use crate::judge::paths::{Path, grouped, level_size};
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::ErrorSeries;
-use oedometer_mpm::run::TimeStepRule;
+use oedometer_problem::time_step::TimeStepRule;
 
 /// What makes two runs of different paths runs of one level.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

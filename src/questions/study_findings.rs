@@ -11,7 +11,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::provenance::{Origins, Provenance};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -16,9 +16,9 @@ use crate::record::{Record, Status};
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::{Class, Classification};
-use oedometer_mpm::integrate::critical_step::formula;
-use oedometer_mpm::method::Configuration;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::method::Configuration;
+use oedometer_problem::wave_speeds;
+use oedometer_scenes::SceneKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -343,7 +343,7 @@ fn step_ratio_of(record: &Record) -> Option<f64> {
         return Some(stability.observed? / stability.combined_limit);
     }
     let case = &record.case;
-    let limit = formula::combined_limit(&case.material, case.cell_size(), case.settings.drag);
+    let limit = wave_speeds::combined_limit(&case.material, case.cell_size(), case.settings.drag);
     let ratio = record.step_sizes.predicted_critical / limit;
     // The formula itself stands where no limit is known.
     (case.is_explicit() && ratio.is_finite() && ratio > 0.0 && ratio != 1.0).then_some(ratio)
@@ -353,7 +353,7 @@ fn step_ratio_of(record: &Record) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::campaign::runner::{solved, study_of};
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     const TEXT: &str = "title = 'Race: a front'\nscene = 'terzaghi'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\n\
         method = ['race']\nintegrator = ['implicit']\ncells = [8, 2, 4]\ntime_step = [{ growth = 0.1 }]\n[[sweep]]\n\

@@ -14,9 +14,9 @@ pub mod whole_file;
 
 pub use crate::case::outcome::{AttachedRun, Status, WallSample};
 use crate::case::{Case, Norm, Quantity, Sample};
-pub use oedometer_mpm::run::observed::{CriticalStep, Probe};
-use oedometer_mpm::run::results::outcome::{Counters, StepSizes};
-use oedometer_mpm::run::results::snapshot::Snapshot;
+pub use oedometer_problem::critical_step::{CriticalStep, Probe};
+use oedometer_problem::outcome::{Counters, StepSizes};
+use oedometer_problem::snapshot::Snapshot;
 pub use provenance::{Origins, Provenance};
 use serde::{Deserialize, Serialize};
 pub use store::{Found, RecordStore};

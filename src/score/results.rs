@@ -321,7 +321,7 @@ mod tests {
     use crate::import::mapping::preset::CONVENTION;
     use crate::score::tests::state;
     use crate::study::file::StudySource;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
 
     #[test]
     fn a_result_is_named_by_its_files_and_by_their_ends_where_they_are_many() {

@@ -5,7 +5,7 @@ use crate::case::{Case, Key, Norm, Quantity, Sample, SolverName, Tier, Value};
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_problem::outcome::FailureKind;
 use oedometer_soil::wording::{typed, words};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -227,8 +227,8 @@ impl CaseExpectation {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
 
     #[test]
     fn a_measure_is_told_by_what_it_is_held_against() {

@@ -9,7 +9,7 @@ use crate::study::solver::PRESETS;
 use oedometer_convergence::Class;
 use oedometer_exact::reference::ReferenceKind;
 pub use oedometer_foreign::source::StudySource;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::layers::SoilLayer;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;

@@ -4,7 +4,7 @@
 
 use crate::case::keys::{KEYS, Key, Kind};
 use crate::study::reading::{Placed, Typed};
-use oedometer_mpm::method::{
+use oedometer_problem::method::{
     Basis, Configuration, Memory, Method, PressureIntegration, Quadrature, Recovery, StrainGradient,
 };
 use schemars::generate::SchemaSettings;

@@ -6,8 +6,8 @@ use crate::study::diagnostic::StudyError;
 use crate::study::units::{has_unit, in_si};
 use crate::study::{Purpose, Study, StudySource};
 use oedometer_exact::{AddedKey, ColumnParameters, ReferenceKind, ShelfParameters, ShelfProblem};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 

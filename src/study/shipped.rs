@@ -107,7 +107,7 @@ mod tests {
     use super::*;
     use crate::case::method_words::parts;
     use crate::study::check::Study;
-    use oedometer_mpm::method::Method;
+    use oedometer_problem::method::Method;
     use std::collections::BTreeSet;
 
     #[test]

@@ -7,7 +7,7 @@ use crate::case::work_estimate::{
 };
 use crate::study::check::Study;
 use crate::study::file::StudySource;
-use oedometer_mpm::run::observed::OBSERVED_STEPS;
+use oedometer_problem::critical_step::OBSERVED_STEPS;
 
 fn cases(head: &str, sweep: &str) -> Vec<Case> {
     let text =

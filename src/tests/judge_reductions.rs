@@ -22,8 +22,8 @@ use crate::study::check::Study;
 use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, Selection};
 use crate::study::file::StudySource;
 use oedometer_convergence::{ErrorBound, ErrorSeries, SeriesDemand};
-use oedometer_mpm::run::observed::CriticalStep;
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_problem::critical_step::CriticalStep;
+use oedometer_problem::outcome::{Failure, FailureKind};
 
 fn table_of_checks(record: &Record) -> Vec<Vec<Cell>> {
     checks_table(record, &RecordChecks::new(record)).rows

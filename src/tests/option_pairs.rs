@@ -11,12 +11,12 @@ use crate::study::check::Study;
 use crate::study::file::StudySource;
 use crate::study::shipped::shipped_studies;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::method::{
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::{
     Basis, Configuration, Memory, PressureIntegration, Quadrature, Recovery, StrainGradient,
 };
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::material::Material;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;

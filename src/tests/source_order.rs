@@ -33,13 +33,19 @@ const EXACT: Order = Order {
 };
 const PROBLEM: Order = Order {
     root: "crates/problem/src",
-    floors: "formulation method settings arrangement time_step integrator wave_speeds forcing snapshot outcome critical_step quantity",
+    floors: "formulation method settings arrangement time_step integrator wave_speeds forcing snapshot outcome critical_step quantity problem",
+    circles: &[],
+    licensed: &[],
+};
+const SCENES: Order = Order {
+    root: "crates/scenes/src",
+    floors: "column definition columns plane manufactured scene problem",
     circles: &[],
     licensed: &[],
 };
 const MPM: Order = Order {
     root: "crates/mpm/src",
-    floors: "time_limit direct_solver state operators drag actions kernel integrate run scene",
+    floors: "time_limit direct_solver state operators drag actions kernel integrate run discretise",
     circles: &[],
     licensed: &[],
 };
@@ -173,6 +179,7 @@ fn no_source_uses_one_above_it_or_in_a_circle() {
             ],
         ),
         (PROBLEM, &[("integrator", "time_step")]),
+        (SCENES, &[("scene", "columns")]),
         (
             MPM,
             &[

@@ -2,7 +2,7 @@
 
 use crate::options::Options;
 use oedometer::Column;
-use oedometer_mpm::method::Method;
+use oedometer_problem::method::Method;
 use oedometer_soil::material::Material;
 use std::collections::BTreeMap;
 use std::io::Write as _;

@@ -2,8 +2,8 @@
 
 use crate::Case;
 use crate::outcome::{Outcome, Status};
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
-use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use oedometer_problem::outcome::{Failure, FailureKind};
+use oedometer_problem::snapshot::{Samples, Snapshot};
 use oedometer_soil::wording::{count_of, short, typed};
 
 /// How far, relative, a state may lie from the output that it stands for.
@@ -89,7 +89,7 @@ fn lack_of_samples(samples: &Samples) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{Sample, Task};
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
 
     /// What is wrong with states.
     type Change<'a> = &'a dyn Fn(&mut Vec<Snapshot>);

@@ -1,7 +1,7 @@
 //! The contenders of the race, one line each: what `method = ["race"]` runs, by the names that `solve` takes.
 
 use crate::{Case, SolverName};
-use oedometer_mpm::method::{Configuration, Method};
+use oedometer_problem::method::{Configuration, Method};
 use std::sync::LazyLock;
 
 /// The word that stands for all contenders among the methods of a sweep.
@@ -70,7 +70,7 @@ impl Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
 
     #[test]
     fn every_contender_has_a_method_and_a_name_of_its_own_and_races_as_itself_in_every_scene() {

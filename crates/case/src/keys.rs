@@ -5,11 +5,11 @@
 
 use crate::{Case, SolverName, step_label};
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::kernel::Drag;
-use oedometer_mpm::kernel::scheme::Scheme;
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::scene::column::{Shape, Undrained};
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::settings::Drag;
+use oedometer_problem::settings::Scheme;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::column::{Shape, Undrained};
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -353,8 +353,8 @@ impl fmt::Display for Value {
 mod tests {
     use super::*;
     use crate::Task;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
 
     /// A value that the seed does not have.
     fn another(key: &Key, seed: &Case) -> Value {

@@ -1,8 +1,8 @@
 //! Labels of cases: the method, the meshes and what differs from the defaults.
 
 use crate::{Case, Key, Task, USUAL_POINTS, Value, step_label};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::scene::arrangement::Arrangement;
+use oedometer_problem::arrangement::Arrangement;
+use oedometer_problem::time_step::TimeStepRule;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::material::Material;
@@ -131,8 +131,8 @@ impl Case {
 mod tests {
     use super::*;
     use crate::{Attached, SolverName};
-    use oedometer_mpm::kernel::Drag;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::settings::Drag;
+    use oedometer_scenes::SceneKind;
 
     #[test]
     fn a_label_names_unusual_inputs_and_the_step_unless_the_step_is_the_question() {

@@ -1,12 +1,12 @@
 //! Combinations of inputs that are invalid although each input alone is valid, with the reason.
 
 use crate::{Case, Task};
-use oedometer_mpm::kernel::Drag;
-use oedometer_mpm::method::{Basis, Configuration, Memory, Method};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Undrained;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::{Basis, Configuration, Memory, Method};
+use oedometer_problem::settings::Drag;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Undrained;
 use oedometer_soil::conductivity::ConductivityMean;
 
 /// Why a case cannot be.

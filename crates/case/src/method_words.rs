@@ -1,6 +1,6 @@
 //! A method in words: what each of its parts does, and who published it.
 
-use oedometer_mpm::method::{
+use oedometer_problem::method::{
     Basis, Configuration, FULL_PROJECTION, Memory, Method, PressureIntegration, Quadrature, Recovery,
     StrainGradient,
 };

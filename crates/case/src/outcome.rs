@@ -4,9 +4,9 @@
 use crate::machine::Machine;
 use crate::{Case, Sample};
 use oedometer_exact::exact_error::ExactError;
-use oedometer_mpm::run::observed::CriticalStep;
-use oedometer_mpm::run::results::outcome::{Counters, Failure, FailureKind, HistoryPoint, StepSizes};
-use oedometer_mpm::run::results::snapshot::Snapshot;
+use oedometer_problem::critical_step::CriticalStep;
+use oedometer_problem::outcome::{Counters, Failure, FailureKind, HistoryPoint, StepSizes};
+use oedometer_problem::snapshot::Snapshot;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -134,7 +134,7 @@ words!(Tier: Smoke "smoke", Ci "ci", Full "full");
 mod tests {
     use super::*;
     use crate::Task;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
     use oedometer_soil::material::Material;
 
     #[test]

@@ -1,6 +1,6 @@
 //! The solver of a case: a method of this program, or an attached solver with its name and digest.
 
-use oedometer_mpm::method::Method;
+use oedometer_problem::method::Method;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -4,12 +4,12 @@
 //! work, fitted there to the cases of the shipped studies.
 
 use crate::{Case, Task};
-use oedometer_mpm::integrate::critical_step::formula;
-use oedometer_mpm::method::{Configuration, Memory, Method, StrainGradient};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::run::observed::OBSERVED_STEPS;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::critical_step::OBSERVED_STEPS;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::{Configuration, Memory, Method, StrainGradient};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::wave_speeds;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 
@@ -62,13 +62,14 @@ pub fn estimated_steps(case: &Case) -> f64 {
     let step = match case.time_step {
         TimeStepRule::Stable(share) if case.integrator == IntegratorKind::SemiImplicit => {
             let are_undamped = case.has_undamped_motions();
-            share * least_of_soils(&|soil| formula::semi_implicit_limit(soil, cell_size, are_undamped))
+            share * least_of_soils(&|soil| wave_speeds::semi_implicit_limit(soil, cell_size, are_undamped))
         }
         TimeStepRule::Stable(share) => {
-            1.5 * share * least_of_soils(&|soil| formula::combined_limit(soil, cell_size, case.settings.drag))
+            1.5 * share
+                * least_of_soils(&|soil| wave_speeds::combined_limit(soil, cell_size, case.settings.drag))
         }
         TimeStepRule::Courant(share) => {
-            share * least_of_soils(&|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity))
+            share * least_of_soils(&|soil| cell_size / wave_speeds::fastest_wave_speed(soil, soil.porosity))
         }
         TimeStepRule::Seconds(seconds) => seconds,
         TimeStepRule::Tolerance(tolerance) => end * tolerance.sqrt() / 20.0,
@@ -196,9 +197,9 @@ pub fn seconds_per_step(case: &Case) -> f64 {
 mod tests {
     use super::*;
     use crate::Task;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::scene::SceneKind;
-    use oedometer_mpm::scene::column::Column;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
 
     fn case(scene: SceneKind, method: &str, integrator: IntegratorKind, cells: usize) -> Case {
         let method = Method::named(method).expect("a method").into();

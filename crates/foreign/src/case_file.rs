@@ -1,9 +1,9 @@
 //! Writes `case.json`, which describes the problem to an attached solver.
 
 use oedometer_case::{Case, Key};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary::powi;
 use oedometer_soil::layers::SoilLayer;
 use oedometer_soil::material::Material;

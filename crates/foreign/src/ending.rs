@@ -20,7 +20,7 @@ use crate::solver::ExternalSolver;
 use crate::started_processes::named;
 use oedometer_case::complete_states::SAME_TIME;
 use oedometer_case::{Case, Sample};
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_problem::outcome::{Failure, FailureKind};
 use oedometer_soil::wording::{short, typed};
 use std::process::ExitStatus;
 

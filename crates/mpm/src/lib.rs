@@ -13,29 +13,48 @@
 //! - `integrate`: ways through time: the kernel's step, the same as sparse maps where nothing moves, the water in points of
 //!   its own, implicit steps of any size; with critical steps, schedules and results;
 //! - `run`: chooses an integrator and drives it from output to output under watch;
-//! - `scene`: the physical problems, with the names of the exact solutions that hold for each.
+//! - `discretise`: grid and points of a problem.
 //!
-//! Nothing here knows of studies, records or reports.
+//! Nothing here knows of scenes, exact solutions, studies, records or reports.
 
 // Tests may call the platform's functions: a second opinion there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod actions;
 mod direct_solver;
+pub mod discretise;
 mod drag;
 pub mod integrate;
 pub mod kernel;
 pub mod operators;
 pub mod run;
-pub mod scene;
 pub mod state;
 pub mod time_limit;
 
-pub use oedometer_problem::{formulation, method};
 pub(crate) use oedometer_soil::wide;
 
 #[cfg(test)]
 mod tests {
     pub(crate) mod double_point_columns;
     mod registers;
+
+    use crate::discretise::discretise;
+    use crate::kernel::body::Discrete;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::problem::StartError;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
+    use oedometer_soil::material::Material;
+
+    /// A scene's problem, discretised.
+    pub(crate) fn column_problem<const D: usize>(
+        scene: SceneKind,
+        column: &Column,
+        soil: &Material,
+        method: Method,
+        cells: usize,
+        points_per_cell: usize,
+    ) -> Result<Discrete<D>, StartError> {
+        discretise(&scene.problem(column, soil, method, cells, points_per_cell)?)
+    }
 }

@@ -6,9 +6,9 @@ use crate::study::shipped::shipped_names;
 use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;
 use oedometer_exact::{ReferenceKind, ShelfProblem};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::Method;
+use oedometer_scenes::SceneKind;
 
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]

@@ -14,7 +14,7 @@ use oedometer_exact::mandel::Mandel;
 use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::{ShelfProblem, consolidation};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::wording::typed;
 
 /// Distances from the middle of a slab if none are given.

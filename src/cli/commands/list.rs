@@ -7,9 +7,9 @@ use crate::cli::output::print_data;
 use crate::study::diagnostic::nearest;
 use crate::study::shipped::{shipped_names, shipped_study, shipped_titles};
 use oedometer_exact::{ReferenceKind, ShelfProblem};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::Method;
+use oedometer_scenes::SceneKind;
 use std::fmt::Write;
 
 /// Arguments of `list`.

@@ -23,8 +23,8 @@ use crate::study::check::{Purpose, Study};
 use crate::study::overrides::{Outputs, StudyLines, TIMING, step_rule, toml_of};
 use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
-use oedometer_mpm::run::results::outcome::{Counters, Failure, StepSizes};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::{Counters, Failure, StepSizes};
+use oedometer_scenes::SceneKind;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -11,7 +11,7 @@ use crate::record::{Probe, Record};
 use crate::report::tables::runs;
 use crate::study::check::Purpose;
 use crate::study::overrides::{Assignments, StudyLines, TIMING, toml_of};
-use oedometer_mpm::run::observed::CriticalStep;
+use oedometer_problem::critical_step::CriticalStep;
 
 /// Largest relative difference of observed and predicted step at which they agree.
 const AGREEMENT: f64 = 0.02;
@@ -164,7 +164,7 @@ fn rows_of(record: &Record) -> Vec<Vec<String>> {
 mod tests {
     use super::*;
     use crate::record::Status;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     fn failure() -> Failure {
         Failure { kind: FailureKind::Unstable, step: 7, time: 1.0, growth: None, reason: "why".to_owned() }

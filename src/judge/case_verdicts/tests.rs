@@ -4,7 +4,7 @@ use crate::case::{Norm, Quantity, Sample};
 use crate::measure::record_checks;
 use crate::record::{CriticalStep, ErrorRow, Probe};
 use crate::study::expectation::Measure;
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+use oedometer_problem::outcome::{Failure, FailureKind};
 
 const STUDY: &str = r#"title = "One case"
 scene = "terzaghi"

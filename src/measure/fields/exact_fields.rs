@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Quantity};
 use oedometer_exact::{ExactError, Reference};
-use oedometer_mpm::run::results::snapshot::{PlaneSamples, Samples, WaterSamples};
+use oedometer_problem::snapshot::{PlaneSamples, Samples, WaterSamples};
 use rayon::prelude::*;
 
 /// Number of different heights from which on they are evaluated in parallel.
@@ -166,8 +166,8 @@ mod tests {
     use crate::case::Task;
     use oedometer_exact::parameters::ColumnParameters;
     use oedometer_exact::reference::ReferenceKind;
-    use oedometer_mpm::scene::SceneKind;
-    use oedometer_mpm::scene::column::column_parameters;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::column_parameters;
 
     #[test]
     fn many_samples_in_any_order_have_the_values_of_single_ones_to_the_bit() {

@@ -5,7 +5,7 @@ use crate::measure::fields::{FieldDifference, exact_samples};
 use crate::measure::other_measures::load_error;
 use crate::record::ErrorRow;
 use oedometer_exact::{ExactError, Reference, ReferenceKind};
-use oedometer_mpm::run::results::snapshot::{Samples, Snapshot};
+use oedometer_problem::snapshot::{Samples, Snapshot};
 use std::cell::LazyCell;
 
 /// Norms of a field's error.

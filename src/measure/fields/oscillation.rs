@@ -7,7 +7,7 @@ use crate::measure::fields::exact_samples;
 use crate::measure::theory::{Known, key_of, known_or, known_reference};
 use crate::record::Record;
 use oedometer_exact::ExactError;
-use oedometer_mpm::run::results::snapshot::Samples;
+use oedometer_problem::snapshot::Samples;
 use std::sync::{Arc, LazyLock, Mutex};
 
 /// Reversals of the exact profile smaller than this share of its range are round-off, not turns.

@@ -152,8 +152,8 @@ mod tests {
     use crate::case::SolverName;
     use crate::measure::statistics::spread;
     use crate::record::Record;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::run::integrator::IntegratorKind;
+    use oedometer_problem::integrator::IntegratorKind;
+    use oedometer_problem::method::Method;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.05, 0.2, 1.0]\n[[sweep]]\n\
         method = ['GC-SRI-patch']\nintegrator = ['implicit']\ncells = [10]\n";

@@ -10,8 +10,8 @@ use crate::questions::published_equations::{LARGE_STRAIN_LOAD, PublishedEquation
 use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::material::Material;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

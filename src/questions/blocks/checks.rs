@@ -9,7 +9,7 @@ use crate::measure::record_checks::RecordCheck;
 use crate::questions::blocks::number::Number;
 use crate::questions::study_results::StudyResults;
 use crate::record::{MeasureRow, Record, Status};
-use oedometer_mpm::run::results::outcome::Failure;
+use oedometer_problem::outcome::Failure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

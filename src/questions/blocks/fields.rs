@@ -7,7 +7,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
 use oedometer_exact::footing::LOAD_FACTOR;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

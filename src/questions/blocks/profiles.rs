@@ -13,7 +13,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::{Record, Status};
 use oedometer_exact::ExactError;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

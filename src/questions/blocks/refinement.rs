@@ -12,8 +12,8 @@ use crate::questions::study_results::StudyResults;
 use crate::record::Record;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER};
 use oedometer_convergence::{Class, Undefined};
-use oedometer_mpm::run::TimeStepRule;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

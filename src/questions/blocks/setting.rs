@@ -2,8 +2,8 @@
 
 use crate::case::Case;
 use crate::record::Record;
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::column_parameters;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::column_parameters;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use schemars::JsonSchema;

@@ -136,8 +136,8 @@ fn settings_of(case: &Case) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
-    use oedometer_mpm::kernel::Drag;
-    use oedometer_mpm::kernel::scheme::Scheme;
+    use oedometer_problem::settings::Drag;
+    use oedometer_problem::settings::Scheme;
 
     #[test]
     fn a_map_is_drawn_over_what_takes_most_values_wherever_its_axis_stands() {

@@ -6,8 +6,8 @@ use crate::measure::fields::PlaneField;
 use crate::record::{Record, Status};
 use crate::study::check::Study;
 use oedometer_exact::ExactError;
-use oedometer_mpm::run::results::outcome::Failure;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::Failure;
+use oedometer_scenes::SceneKind;
 use std::collections::BTreeSet;
 
 /// The methods of records, each once, in their order.
@@ -239,7 +239,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::study::file::StudySource;
-    use oedometer_mpm::run::results::outcome::FailureKind;
+    use oedometer_problem::outcome::FailureKind;
 
     #[test]
     fn a_sweep_is_of_the_mesh_on_which_most_ran_and_of_equals_the_finest() {
@@ -301,7 +301,7 @@ mod tests {
             // A failed run is told with its reason, and is no lost result.
             let mut among = records.clone();
             among[1].case.method =
-                SolverName::Own(oedometer_mpm::method::Method::named("MPM").expect("a method"));
+                SolverName::Own(oedometer_problem::method::Method::named("MPM").expect("a method"));
             among[1].case.cells = 16;
             among[1].status =
                 failed.iter().find(|one| one.status != Status::Ok).expect("it failed").status.clone();

@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
 
     #[test]
     fn twins_differ_in_one_input_alone() {
@@ -393,8 +393,8 @@ mod tests {
         assert_eq!((found.ratios, found.failed, found.cost), (Some([2.0, 3.0, 4.0]), [0, 0], Some(2.0)));
         other.wall = vec![sample(0.0, None)];
         assert_eq!(of(&one, &other).cost, None, "no time at all");
-        let failure = oedometer_mpm::run::results::outcome::Failure::of_attached(
-            oedometer_mpm::run::results::outcome::FailureKind::Unstable,
+        let failure = oedometer_problem::outcome::Failure::of_attached(
+            oedometer_problem::outcome::FailureKind::Unstable,
             String::new(),
         );
         other.status = Status::Failed(failure);

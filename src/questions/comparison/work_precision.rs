@@ -225,7 +225,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     const STUDY: &str = r#"title = "Costs"
 scene = "terzaghi"

@@ -21,7 +21,7 @@ use crate::questions::study_results::StudyResults;
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::Class;
 use oedometer_exact::ExactError;
-use oedometer_mpm::run::results::outcome::FailureKind;
+use oedometer_problem::outcome::FailureKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use series::SeriesFinding;
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn every_number_of_a_stiffness_sweep_stands_under_its_name() {
         let method =
-            crate::case::SolverName::Own(oedometer_mpm::method::Method::named("VP").expect("a method"));
+            crate::case::SolverName::Own(oedometer_problem::method::Method::named("VP").expect("a method"));
         let row = SweepRow {
             method,
             time_factor: 0.25,

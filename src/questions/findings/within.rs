@@ -7,7 +7,7 @@ use crate::judge::paths::grouped;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
 use crate::study::check::Study;
-use oedometer_mpm::run::TimeStepRule;
+use oedometer_problem::time_step::TimeStepRule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

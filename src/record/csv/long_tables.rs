@@ -3,7 +3,7 @@
 use crate::case::keys::KEYS;
 use crate::record::Record;
 use crate::record::csv::{lines_of, tidy};
-use oedometer_mpm::run::results::snapshot::Samples;
+use oedometer_problem::snapshot::Samples;
 
 /// Columns of the profiles.
 const PROFILE_COLUMNS: [(&str, &str, &str); 10] = [

@@ -6,8 +6,8 @@ use crate::case::outcome::Outcome;
 use crate::measure::record::record_of;
 use crate::record::pack::{Damage, HEADER};
 use crate::record::{AttachedRun, Status};
-use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::{Failure, FailureKind};
+use oedometer_scenes::SceneKind;
 use std::collections::BTreeMap;
 use std::fs;
 

@@ -5,8 +5,8 @@ use crate::questions::blocks::checks::{RecordChecks, WorstCheck};
 use crate::record::Record;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use oedometer_mpm::run::results::outcome::Failure;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::Failure;
+use oedometer_scenes::SceneKind;
 use std::fmt::Write;
 
 /// Errors of a record, start checks and balances, as text.

@@ -139,7 +139,7 @@ mod tests {
     use crate::judge::outside_runs::outside_runs;
     use crate::questions::blocks::stability::critical_steps;
     use crate::record::{AttachedRun, CriticalStep, Status, WallSample};
-    use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+    use oedometer_problem::outcome::{Failure, FailureKind};
 
     fn notes_of(record: &Record) -> Vec<String> {
         attached_notes(record, OutsideRunFinding::new(record).as_ref())

@@ -13,8 +13,8 @@ use crate::study::inputs::Inputs;
 use crate::study::reading::{Placed, Typed};
 use oedometer_convergence::{Class, ErrorBound, FloorBand, KnownFailure, OrderBand, SeriesDemand as Demand};
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::run::results::outcome::FailureKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_problem::outcome::FailureKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::wording::count_of;
 use std::ops::Range;
 

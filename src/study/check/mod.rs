@@ -21,9 +21,9 @@ use crate::study::file::{OutputTable, StudyFile, StudySource};
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::run::integrator::Formulation;
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
+use oedometer_problem::integrator::Formulation;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use std::ops::Range;
 
 /// What a study is read for.

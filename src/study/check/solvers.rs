@@ -11,7 +11,7 @@ use crate::study::solver::{
     ExternalSolver, PLACEHOLDERS, PRESETS, Preset, SOLVE_UNITS, file_beside, placeholders_of,
 };
 use oedometer_formats::input_file;
-use oedometer_mpm::method::Method;
+use oedometer_problem::method::Method;
 use std::path::{Path, PathBuf};
 
 /// Most timed runs of a case.

@@ -10,7 +10,7 @@ use crate::study::diagnostic::Diagnostic;
 use crate::study::file::{StudyFile, SweepTable};
 use crate::study::inputs::{One, TypedInput};
 use crate::study::reading::Placed;
-use oedometer_mpm::run::integrator::IntegratorKind;
+use oedometer_problem::integrator::IntegratorKind;
 use oedometer_soil::wording::duration;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hasher};
@@ -371,9 +371,9 @@ impl Sweep {
 mod tests {
     use super::*;
     use crate::case::Task;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::run::TimeStepRule;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::time_step::TimeStepRule;
+    use oedometer_scenes::SceneKind;
 
     const STEPS: [f64; 3] = [4e-6, 2e-6, 1e-6];
 

@@ -393,7 +393,7 @@ mod defaults {
     fn a_failure_is_foreseen_for_the_cases_that_are_selected_and_no_other() {
         use crate::case::planned::Tier;
         use crate::record::Status;
-        use oedometer_mpm::run::results::outcome::{Failure, FailureKind};
+        use oedometer_problem::outcome::{Failure, FailureKind};
 
         let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
                     integrator = ['implicit']\ncells = [2, 4, 8]\n[[expect_case]]\ncells = 4\nstatus = 'unstable'\n";

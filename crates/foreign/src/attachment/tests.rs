@@ -40,7 +40,7 @@ fn state(places: &[[f64; 2]], displacement: &[f64], curve: Option<f64>) -> Sampl
 #[test]
 fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_crest() {
     use oedometer_case::Task;
-    use oedometer_mpm::scene::SceneKind::{CosineLayer, Mandel, Terzaghi};
+    use oedometer_scenes::SceneKind::{CosineLayer, Mandel, Terzaghi};
     let settled = |scene, state: SampledState| {
         let settlement = snapshot_of(&Case::seed(Task::Solve, scene), Sample::Points, &state).settlement;
         (!settlement.is_nan()).then_some(settlement)
@@ -72,7 +72,7 @@ fn a_settlement_is_that_of_the_curve_or_of_the_sample_at_the_surface_under_the_c
 #[test]
 fn samples_go_where_their_kind_is_looked_for_with_every_field_of_their_own() {
     use oedometer_case::Task;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_scenes::SceneKind;
     let given = SampledState {
         time: 8.0,
         volume: vec![2.0],
@@ -107,8 +107,8 @@ mod runs {
     use super::*;
     use oedometer_case::Task;
     use oedometer_case::outcome::Status;
-    use oedometer_mpm::run::results::outcome::FailureKind;
-    use oedometer_mpm::scene::SceneKind;
+    use oedometer_problem::outcome::FailureKind;
+    use oedometer_scenes::SceneKind;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A case on two cells with one output.

@@ -2,7 +2,7 @@
 
 use super::*;
 use oedometer_case::Task;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 
 fn case() -> Case {
     Case { cells: 10, time_factors: vec![0.05, 0.1].into(), ..Case::seed(Task::Solve, SceneKind::Terzaghi) }

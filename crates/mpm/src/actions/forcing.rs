@@ -3,10 +3,10 @@
 //! A problem whose motion was chosen has one ([`Forcing`]); [`Forced`] is what a body keeps of it during a run. It is
 //! asked for all points of a time at once: what is of the time alone is then made once.
 
-use crate::formulation::Formulation;
 use crate::state::grid::Grid;
 use crate::state::points::Points;
 pub use oedometer_problem::forcing::{BodyForces, Forcing};
+use oedometer_problem::formulation::Formulation;
 use oedometer_soil::tensor::{Tensor, Vector};
 use std::sync::Arc;
 

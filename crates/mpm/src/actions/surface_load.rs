@@ -1,10 +1,10 @@
 //! The load on the body's moving surface.
 
-use crate::method::Basis;
 use crate::operators::basis::Shapes;
 use crate::state::grid::Grid;
 use crate::state::nodes::{Nodes, Support};
 use crate::state::points::Points;
+use oedometer_problem::method::Basis;
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
 

@@ -12,8 +12,7 @@
 //! component. The point-wise step, the assembled one and implicit stages all get their accelerations here.
 //! The conductivity `k(J)` itself is in `oedometer_soil::conductivity`.
 
-pub use oedometer_problem::settings::Drag;
-pub use oedometer_problem::wave_speeds::{drag_limit, drag_of_point};
+use oedometer_problem::settings::Drag;
 
 /// Drag on one component of the water at a node, for one kick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

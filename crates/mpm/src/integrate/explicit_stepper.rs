@@ -1,21 +1,21 @@
 //! Explicit time stepping: point by point with one or two point sets, or assembled where nothing moves.
 
 use crate::integrate::assembled::step::AssembledStep;
-use crate::integrate::critical_step::formula;
 use crate::integrate::double_point::DoublePoint;
 use crate::integrate::lost_point::lost_point;
-use crate::integrate::results::snapshot::Snapshot;
 use crate::integrate::run_plan::Plan;
 use crate::integrate::schedule::Kernel;
-use crate::integrate::step_rule::TimeStepRule;
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
-use crate::kernel::ExplicitSettings;
 use crate::kernel::body::Body;
 use crate::kernel::energy::Energy;
 use crate::kernel::loaded_body::GrowingLoad;
 use crate::kernel::rhythm::Rhythm;
-use crate::method::Configuration;
 use crate::state::points::Points;
+use oedometer_problem::method::Configuration;
+use oedometer_problem::settings::ExplicitSettings;
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::wave_speeds;
 
 /// Steps between two looks.
 const WATCH_INTERVAL: u64 = 64;
@@ -77,8 +77,8 @@ fn step_reduction<const D: usize>(body: &Body<D>, follows: bool) -> Option<f64> 
     let porosity = soil.porosity_at(least_ratio).max(1e-3);
     let shrunk = if body.configuration.moves_points() { 1.0 } else { least_ratio };
     Some(
-        shrunk * formula::fastest_wave_speed(soil, soil.porosity)
-            / formula::fastest_wave_speed(soil, porosity),
+        shrunk * wave_speeds::fastest_wave_speed(soil, soil.porosity)
+            / wave_speeds::fastest_wave_speed(soil, porosity),
     )
 }
 

@@ -1,8 +1,8 @@
 //! Points that are lost: their pores closed, or they left the grid.
 
-use crate::integrate::results::outcome::FailureKind;
 use crate::integrate::stepper::StepFailure;
 use crate::kernel::body::Body;
+use oedometer_problem::outcome::FailureKind;
 
 impl<const D: usize> Body<D> {
     /// A point whose pores closed, where there is one.

@@ -2,8 +2,8 @@
 //!
 //! `explicit_stepper` takes the kernel's step, `assembled` the same as sparse maps where nothing moves, `double_point` with
 //! the water in points of its own; `implicit` takes steps of any size on the same operators. `critical_step` says how large a
-//! step may be, `undrained_start` where a run begins. `schedule`, `step_rule` and `run_plan` say when to step and how far, `stepper` is
-//! what each integrator is to a driver, `results` are what is left of a run.
+//! step may be, `undrained_start` where a run begins. `schedule` and `run_plan` say when to step and how far, `stepper` is
+//! what each integrator is to a driver, `sampling` takes a snapshot.
 
 pub mod assembled;
 pub mod critical_step;
@@ -17,10 +17,3 @@ pub mod sampling;
 pub mod schedule;
 pub mod stepper;
 mod undrained_start;
-
-pub use oedometer_problem::{integrator, time_step as step_rule};
-
-/// What is left of a run.
-pub mod results {
-    pub use oedometer_problem::{outcome, snapshot};
-}

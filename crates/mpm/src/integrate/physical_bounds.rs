@@ -2,9 +2,8 @@
 
 use crate::actions::rigid_plate::NORMAL;
 use crate::actions::surface_load::{LoadShape, LoadedSurface};
-use crate::drag;
-use crate::integrate::critical_step::formula;
-use crate::kernel::body::Problem;
+use crate::kernel::body::Discrete;
+use oedometer_problem::wave_speeds;
 use oedometer_soil::material::Material;
 
 /// Settlements over their scale that no scene reaches.
@@ -51,7 +50,7 @@ pub struct PhysicalBounds {
 
 impl PhysicalBounds {
     /// The bounds of a problem.
-    pub fn new<const D: usize>(problem: &Problem<D>) -> Self {
+    pub fn new<const D: usize>(problem: &Discrete<D>) -> Self {
         let scale = settlement_scale(problem);
         let without = f64::INFINITY;
         let cell_size = problem.grid.cell_size;
@@ -77,8 +76,8 @@ impl PhysicalBounds {
         } else {
             MOST_FORCE * of_load / cells
         };
-        let joining = 0.5 * problem.most_of_soils(drag::drag_limit);
-        let passing = cells * cell_size / problem.least_of_soils(formula::undrained_wave_speed);
+        let joining = 0.5 * problem.most_of_soils(wave_speeds::drag_limit);
+        let passing = cells * cell_size / problem.least_of_soils(wave_speeds::undrained_wave_speed);
         Self {
             settlement_scale: scale,
             energy_scale: of_load * scale,
@@ -140,7 +139,7 @@ impl PhysicalBounds {
 /// Settlement, m, that a problem's pressure makes in a column, `m_v q H`; of a plate across it,
 /// `(1 − ν²) q b/E`; under a cosine at most that
 /// and the one of a half-space, `2 (1 − ν²) q/(E k)`, which is left where shear is all that gives.
-fn settlement_scale<const D: usize>(problem: &Problem<D>) -> f64 {
+fn settlement_scale<const D: usize>(problem: &Discrete<D>) -> f64 {
     let soil = &problem.material;
     if problem.plate_load.is_some() {
         let distance = problem.grid.cells[NORMAL] as f64 * problem.grid.cell_size;
@@ -164,10 +163,10 @@ fn settlement_scale<const D: usize>(problem: &Problem<D>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     fn bounds_of(scene: SceneKind, column: &Column, soil: &Material) -> PhysicalBounds {

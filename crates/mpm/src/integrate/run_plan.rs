@@ -2,14 +2,15 @@
 
 use crate::actions::surface_load::LoadedSurface;
 use crate::integrate::critical_step::predicted::{GrowingMode, predict_for_run};
-use crate::integrate::critical_step::{formula, skeleton};
-use crate::integrate::integrator::StepBound;
+use crate::integrate::critical_step::skeleton;
 use crate::integrate::physical_bounds::PhysicalBounds;
-use crate::integrate::results::outcome::StepSizes;
 use crate::integrate::schedule::Schedule;
-use crate::integrate::step_rule::{StepLimit, StepScales, TimeStepRule};
-use crate::kernel::body::{DrivenPlate, Problem};
+use crate::kernel::body::{Discrete, DrivenPlate};
 use crate::state::points::Points;
+use oedometer_problem::integrator::StepBound;
+use oedometer_problem::outcome::StepSizes;
+use oedometer_problem::time_step::{StepLimit, StepScales, TimeStepRule};
+use oedometer_problem::wave_speeds;
 use oedometer_soil::material::Material;
 
 /// Share of a semi-implicit run's critical step that growing steps end at.
@@ -49,7 +50,7 @@ impl<'a> Plan<'a> {
     ///
     /// Where the skeleton is explicit the critical step is that of the skeleton's waves. A fully implicit step has no limit: the
     /// formula for the explicit integrator stands in its place, as a scale.
-    pub fn new<const D: usize>(problem: &Problem<D>, schedule: &'a Schedule) -> Self {
+    pub fn new<const D: usize>(problem: &Discrete<D>, schedule: &'a Schedule) -> Self {
         let (cell_size, settings) = (problem.grid.cell_size, &schedule.settings);
         let end = schedule.outputs.last().copied().unwrap_or(0.0);
         let (critical, prediction) = match (schedule.integrator.step_bound(), schedule.critical_step) {
@@ -60,19 +61,19 @@ impl<'a> Plan<'a> {
             (StepBound::AllWaves, Some(known)) => (known, None),
             (StepBound::SkeletonWaves, _) if problem.points.began_as_full_lattice() => {
                 let are_undamped = D > 1 || problem.method.has_projection();
-                let limit = |soil: &Material| formula::semi_implicit_limit(soil, cell_size, are_undamped);
+                let limit = |soil: &Material| wave_speeds::semi_implicit_limit(soil, cell_size, are_undamped);
                 (problem.least_of_soils(limit), None)
             }
             (StepBound::SkeletonWaves, _) => (skeleton::semi_implicit_limit(problem), None),
             (StepBound::Accuracy, _) => {
-                let limit = |soil: &Material| formula::combined_limit(soil, cell_size, settings.drag);
+                let limit = |soil: &Material| wave_speeds::combined_limit(soil, cell_size, settings.drag);
                 (problem.least_of_soils(limit), None)
             }
         };
         let scales = StepScales {
             critical,
             cell_size,
-            wave_speed: problem.most_of_soils(|soil| formula::fastest_wave_speed(soil, soil.porosity)),
+            wave_speed: problem.most_of_soils(|soil| wave_speeds::fastest_wave_speed(soil, soil.porosity)),
             consolidation: problem.most_of_soils(Material::coefficient_of_consolidation),
         };
         let target = schedule.rule.first(&scales);
@@ -108,9 +109,9 @@ impl<'a> Plan<'a> {
 
 /// Velocity, m/s, of an undrained wave or of Darcy's flow through one cell under the problem's
 /// pressure, the larger: what a sound run does not leave a thousandfold.
-fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
+fn velocity_scale<const D: usize>(problem: &Discrete<D>) -> f64 {
     problem.most_of_soils(|soil| {
-        let wave = formula::undrained_wave_speed(soil);
+        let wave = wave_speeds::undrained_wave_speed(soil);
         let density = soil.mixture_density();
         let flow = soil.hydraulic_conductivity / soil.unit_weight_of_water() / problem.grid.cell_size;
         problem.pressure_scale * (1.0 / (density * wave)).max(flow / soil.porosity)
@@ -120,15 +121,15 @@ fn velocity_scale<const D: usize>(problem: &Problem<D>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formulation::Formulation;
-    use crate::integrate::integrator::IntegratorKind;
     use crate::integrate::schedule::Kernel;
-    use crate::kernel::ExplicitSettings;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
     use crate::time_limit::TimeLimit;
+    use oedometer_problem::formulation::Formulation;
+    use oedometer_problem::integrator::IntegratorKind;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::ExplicitSettings;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
     #[test]
@@ -142,7 +143,7 @@ mod tests {
         };
         let speed_of = |layer: SoilLayer| {
             let soil = layer.soil(&soil);
-            formula::fastest_wave_speed(&soil, soil.porosity)
+            wave_speeds::fastest_wave_speed(&soil, soil.porosity)
         };
         let (soft, stiff) = (layer(1e6), layer(4e9));
         for layers in [[soft, stiff], [stiff, soft]] {
@@ -165,7 +166,7 @@ mod tests {
             assert!((step * speed_of(stiff) / (0.5 * 0.25) - 1.0).abs() < 1e-12, "{step:e}");
         }
         assert!(
-            speed_of(stiff) > 1.5 * speed_of(soft).max(formula::fastest_wave_speed(&soil, soil.porosity))
+            speed_of(stiff) > 1.5 * speed_of(soft).max(wave_speeds::fastest_wave_speed(&soil, soil.porosity))
         );
     }
 }

@@ -1,10 +1,10 @@
 //! The schedule of a run: step rule, outputs, and what to keep.
 
-pub use crate::integrate::step_rule::TimeStepRule;
+use oedometer_problem::time_step::TimeStepRule;
 
-use crate::integrate::integrator::{Formulation, IntegratorKind};
-use crate::kernel::ExplicitSettings;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::settings::ExplicitSettings;
 
 /// Kernel of the explicit step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

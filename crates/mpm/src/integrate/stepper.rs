@@ -1,8 +1,8 @@
 //! The interface between the driver and the integrators.
 
-use crate::integrate::results::outcome::FailureKind;
-use crate::integrate::results::snapshot::Snapshot;
 use crate::kernel::energy::Energy;
+use oedometer_problem::outcome::FailureKind;
+use oedometer_problem::snapshot::Snapshot;
 pub use oedometer_problem::time_step::EqualSteps;
 
 /// Why a step could not be taken, or what is wrong with the state that it led to.

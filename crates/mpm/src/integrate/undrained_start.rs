@@ -11,8 +11,8 @@ use crate::integrate::implicit::unknowns::Unknowns;
 use crate::kernel::body::Body;
 use crate::kernel::projection::ProjectedStorage;
 use crate::kernel::volumetric::VolumetricRows;
-use crate::method::Configuration;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::method::Configuration;
 use oedometer_soil::tensor::{Tensor, Vector};
 
 impl<const D: usize> Body<D> {

@@ -8,7 +8,6 @@ use crate::actions::rigid_plate::RigidPlate;
 use crate::actions::self_weight::SelfWeight;
 use crate::actions::stress_slopes::StressPlanes;
 use crate::actions::surface_load::{LoadShape, LoadedSurface};
-use crate::method::{Configuration, Memory, Method, Recovery};
 use crate::operators::Operators;
 use crate::operators::basis::Shapes;
 use crate::operators::corners::build_corners;
@@ -17,6 +16,7 @@ use crate::state::cells::Cells;
 use crate::state::grid::Grid;
 use crate::state::nodes::{Nodes, Support};
 use crate::state::points::Points;
+use oedometer_problem::method::{Configuration, Memory, Method, Recovery};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::StressLaw;
 use oedometer_soil::material::Material;
@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// A problem to solve: geometry, material, load, initial state and operators.
 #[derive(Clone, Debug)]
-pub struct Problem<const D: usize> {
+pub struct Discrete<const D: usize> {
     /// Background grid.
     pub grid: Grid<D>,
     /// Faces that are held.
@@ -71,7 +71,7 @@ pub struct Problem<const D: usize> {
     pub is_bounded: bool,
 }
 
-impl<const D: usize> Problem<D> {
+impl<const D: usize> Discrete<D> {
     /// Scales all loads, stresses and motions of the start by a factor.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
@@ -166,8 +166,8 @@ fn site_places<const D: usize>(method: Method, grid: &Grid<D>, points: usize) ->
 impl<const D: usize> Body<D> {
     /// Discretises a problem: builds operators and nodal masses on the initial configuration and
     /// maps the points' velocities to the nodes.
-    pub fn new(problem: Problem<D>) -> Self {
-        let Problem {
+    pub fn new(problem: Discrete<D>) -> Self {
+        let Discrete {
             grid,
             support,
             mut points,

@@ -71,11 +71,11 @@ impl<const D: usize> Body<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
     use crate::state::grid::integer_part;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::conductivity::ConductivityMean;
     use oedometer_soil::law::Law;
     use oedometer_soil::material::Material;

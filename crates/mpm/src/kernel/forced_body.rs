@@ -10,7 +10,7 @@
 use crate::kernel::body::Body;
 use crate::kernel::stresses::to_middle;
 use crate::kernel::volumetric::Place;
-use crate::method::PressureIntegration;
+use oedometer_problem::method::PressureIntegration;
 use oedometer_soil::tensor::{Tensor, Vector, identity, product};
 
 impl<const D: usize> Body<D> {

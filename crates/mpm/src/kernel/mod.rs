@@ -19,11 +19,4 @@ pub(crate) mod stresses;
 pub mod volumetric;
 pub(crate) mod weighing_body;
 
-pub use crate::drag::Drag;
 pub(crate) use crate::kernel::nodes_to_points::Motion;
-pub use oedometer_problem::settings::ExplicitSettings;
-
-/// Its scheme in time.
-pub mod scheme {
-    pub use oedometer_problem::settings::{ExplicitSettings, Scheme};
-}

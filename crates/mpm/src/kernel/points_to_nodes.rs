@@ -2,7 +2,6 @@
 
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
-use crate::drag::drag_of_point;
 use crate::kernel::body::Body;
 use crate::operators::basis::{ShapeFunction, build_blocks, with_shape};
 use crate::operators::corners::build_corners;
@@ -12,6 +11,7 @@ use crate::state::grid::Grid;
 use crate::state::nodes::{NodalSums, Support};
 use crate::state::points::Points;
 use crate::wide::{LANES, are_alike, some_mut, some_of, wide};
+use oedometer_problem::wave_speeds::drag_of_point;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::{Tensor, Vector, product_with_transpose};
@@ -500,11 +500,11 @@ impl<'a, const D: usize, const W: usize, const MASSES: bool, const MOMENTA: bool
 #[cfg(test)]
 mod tests {
     use crate::kernel::body::Body;
-    use crate::method::{Configuration, Method};
     use crate::operators::basis::Shapes;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::{Configuration, Method};
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     fn assert_same_side_by_side<const D: usize>(name: &str) {

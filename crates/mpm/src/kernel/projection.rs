@@ -124,10 +124,10 @@ impl ProjectedStorage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 

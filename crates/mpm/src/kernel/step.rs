@@ -3,10 +3,11 @@
 //! [`kick_and_drift`](Body::kick_and_drift) reads as the paper's list. Steps share passes over the points where they can:
 //! the pass of step 1 sums the forces of step 2 as well, that of step 4 the momenta of step 5. Drag is part of step 2.
 
-use crate::drag::{Drag, NodalBalance, NodalDrag};
+use crate::drag::{NodalBalance, NodalDrag};
 use crate::kernel::body::Body;
 use crate::kernel::nodes_to_points::Motion;
-use crate::kernel::scheme::ExplicitSettings;
+use oedometer_problem::settings::Drag;
+use oedometer_problem::settings::ExplicitSettings;
 
 /// The steps of Zheng et al., section 4, in order; the eighth is the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

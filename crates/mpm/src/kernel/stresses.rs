@@ -3,12 +3,12 @@
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
 use crate::kernel::body::Body;
-use crate::method::Configuration;
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::{CompositeRows, StrainOperator};
 use crate::state::grid::SIXTH;
 use crate::state::points::Points;
 use crate::wide::{LANES, are_alike, some_mut, wide};
+use oedometer_problem::method::Configuration;
 use oedometer_soil::elementary;
 use oedometer_soil::law::{History, StrainIncrement, StressLaw};
 use oedometer_soil::tensor::{Tensor, Vector, identity, inverse, product};

@@ -6,8 +6,8 @@
 
 use crate::kernel::body::Body;
 use crate::kernel::projection::SiteRows;
-use crate::method::PressureIntegration;
 use crate::operators::recovery::points_in_cells::points_in_cells;
+use oedometer_problem::method::PressureIntegration;
 use oedometer_soil::tensor::Vector;
 
 /// A linear functional of a nodal vector field: one vector of coefficients a node.

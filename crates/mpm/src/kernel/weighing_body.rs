@@ -8,7 +8,7 @@
 
 use crate::actions::self_weight::SelfWeight;
 use crate::kernel::body::Body;
-use crate::method::Configuration;
+use oedometer_problem::method::Configuration;
 use oedometer_soil::tensor::{Tensor, Vector};
 
 impl<const D: usize> Body<D> {

@@ -4,12 +4,12 @@
 
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
-use crate::method::Basis;
 use crate::operators::row::Row;
 use crate::operators::stencil::{Line, PointStencils, Stencils};
 use crate::state::grid::{GHOST_LAYERS, Grid, integer_part, power};
 use crate::state::nodes::Support;
 use crate::wide::wide;
+use oedometer_problem::method::Basis;
 use oedometer_soil::tensor::Vector;
 use std::hint::black_box;
 
@@ -33,7 +33,7 @@ pub trait ShapeFunction<const W: usize> {
 /// Evaluates an expression with the shape function of a [`Basis`] and with [`Stencils`] of its width, under names.
 macro_rules! with_shape {
     ($basis:expr, $point_stencils:expr, $shape:ident, $name:ident => $result:expr) => {{
-        use $crate::method::Basis;
+        use oedometer_problem::method::Basis;
         use $crate::operators::basis as shapes;
         use $crate::operators::stencil::PointStencils;
         match ($basis, $point_stencils) {

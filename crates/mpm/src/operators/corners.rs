@@ -8,12 +8,12 @@
 //! The gradient is the mean over the parallelogram of the gradient of what its corners interpolate, from its
 //! boundary: exact for linear fields whatever its shape. Each corner is a block of hats, so a point has four blocks.
 
-use crate::method::{Basis, Configuration, Method};
 use crate::operators::basis::{Hat, ShapeFunction};
 use crate::operators::row::Row;
 use crate::operators::stencil::{PointStencils, Stencils};
 use crate::state::grid::{GHOST_LAYERS, Grid, integer_part};
 use crate::state::points::Points;
+use oedometer_problem::method::{Basis, Configuration, Method};
 use oedometer_soil::tensor::{Tensor, Vector, inverse};
 
 /// Corners of a parallelogram by the signs of its half-edges, one after the other around it.

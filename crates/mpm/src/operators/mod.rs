@@ -9,7 +9,6 @@ pub mod stacked_points;
 pub mod stencil;
 pub mod strain_gradient;
 
-use crate::method::{Configuration, Method};
 use crate::operators::basis::Shapes;
 use crate::operators::corners::{Domains, corner_stencils};
 use crate::operators::recovery::RecoveryOperator;
@@ -17,6 +16,7 @@ use crate::operators::stencil::PointStencils;
 use crate::operators::strain_gradient::StrainOperator;
 use crate::state::grid::Grid;
 use crate::state::points::Points;
+use oedometer_problem::method::{Configuration, Method};
 
 /// The operators of a method on a body's points.
 #[derive(Clone, Debug)]

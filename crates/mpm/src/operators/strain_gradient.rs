@@ -6,12 +6,12 @@
 
 #![expect(clippy::inline_always, reason = "the innermost loops of the step")]
 
-use crate::method::StrainGradient;
 use crate::operators::row::Row;
 use crate::operators::stencil::{Block, PointStencils, Stencils};
 use crate::state::cells::Cells;
 use crate::state::grid::{Grid, SIXTH, cell_below, power};
 use crate::wide::{LANES, wide};
+use oedometer_problem::method::StrainGradient;
 use oedometer_soil::tensor::{Tensor, Vector};
 use std::hint::black_box;
 

@@ -1,14 +1,14 @@
 //! The driver of every run: steps from output to output, with snapshots, history and checks.
 
-use crate::integrate::results::outcome::{
-    Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
-};
-use crate::integrate::results::snapshot::Snapshot;
 use crate::integrate::run_plan::Plan;
 use crate::integrate::schedule::Observer;
-use crate::integrate::step_rule::{StepLimit, steps_for};
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::run::watch::Watch;
+use oedometer_problem::outcome::{
+    Counters, Failure, FailureKind, HistoryPoint, Outcome, RunStatus, StepSizes,
+};
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_problem::time_step::{StepLimit, steps_for};
 
 /// Steps after which deforming points are given a new step size: the pores at the drained end
 /// close within a hundred.

@@ -7,8 +7,8 @@ pub(crate) mod driver;
 pub mod observed;
 pub(crate) mod watch;
 
-pub use crate::integrate::schedule::{Kernel, Observer, Schedule, TimeStepRule};
-pub use crate::integrate::{integrator, results, run_plan, schedule, stepper};
+pub use crate::integrate::schedule::{Kernel, Observer, Schedule};
+pub use crate::integrate::{run_plan, schedule, stepper};
 
 use crate::direct_solver::Singular;
 use crate::integrate::critical_step::predicted::GrowingMode;
@@ -17,18 +17,18 @@ use crate::integrate::explicit_stepper::{ExplicitStepper, PointSets};
 use crate::integrate::implicit::driven::DrivenStepper;
 use crate::integrate::implicit::linear::LinearStepper;
 use crate::integrate::implicit::newton::NewtonStepper;
-use crate::integrate::integrator::{Formulation, IntegratorKind};
-use crate::integrate::results::outcome::{Failure, FailureKind, Outcome};
 use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::{StepFailure, Stepper};
-use crate::kernel::body::{Body, Problem};
-use crate::method::Configuration;
+use crate::kernel::body::{Body, Discrete};
 use crate::run::driver::Driver;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::Configuration;
+use oedometer_problem::outcome::{Failure, FailureKind, Outcome};
 
 /// Solves a problem. Never panics and never loops for ever: what goes wrong ends the run with a
 /// named status, and what was finished before stays.
-pub fn run<const D: usize>(problem: Problem<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
+pub fn run<const D: usize>(problem: Discrete<D>, schedule: &Schedule, observer: Observer<'_>) -> Outcome {
     let plan = Plan::new(&problem, schedule);
     if let Some(growing) = &plan.growing {
         return Driver::new(stepper_of(Body::new(problem), &plan).as_mut(), &plan, observer)

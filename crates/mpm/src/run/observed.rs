@@ -3,16 +3,17 @@
 //! Predicted from the spectral radius of the step operator on the problem's own grid; observed in runs of the solver
 //! itself, independent of the prediction, by bisection between a step that runs and one that fails.
 
-use crate::drag;
+use crate::integrate::critical_step::power;
 use crate::integrate::critical_step::predicted::{one_point_set, predict, whole_growth};
-use crate::integrate::critical_step::{formula, power};
-use crate::integrate::integrator::{Formulation, IntegratorKind};
-use crate::integrate::results::outcome::{Failure, FailureKind, RunStatus};
-use crate::kernel::ExplicitSettings;
-use crate::kernel::body::{Body, Problem};
-use crate::run::{Kernel, Observer, Schedule, TimeStepRule, run};
+use crate::kernel::body::{Body, Discrete};
+use crate::run::{Kernel, Observer, Schedule, run};
 use crate::time_limit::TimeLimit;
-pub use oedometer_problem::critical_step::{CriticalStep, OBSERVED_STEPS, Probe, SHARES};
+use oedometer_problem::critical_step::{CriticalStep, OBSERVED_STEPS, Probe, SHARES};
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::outcome::{Failure, FailureKind, RunStatus};
+use oedometer_problem::settings::ExplicitSettings;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_problem::wave_speeds;
 
 /// Cells up to which the prediction is for the whole column; longer ones are shortened in their middle.
 const WHOLE_COLUMN: usize = 24;
@@ -36,7 +37,7 @@ pub struct Stopped;
 /// # Errors
 /// [`Stopped`] where the observer ends it.
 pub fn critical_step<const D: usize>(
-    problem: &Problem<D>,
+    problem: &Discrete<D>,
     settings: &ExplicitSettings,
     end: f64,
     most_steps: u64,
@@ -79,10 +80,10 @@ pub fn critical_step<const D: usize>(
         unknown: prediction.growing.map(|growing| growing.to_string()),
         observed,
         wave_limit: problem
-            .least_of_soils(|soil| cell_size / formula::fastest_wave_speed(soil, soil.porosity)),
-        drag_limit: problem.least_of_soils(drag::drag_limit),
+            .least_of_soils(|soil| cell_size / wave_speeds::fastest_wave_speed(soil, soil.porosity)),
+        drag_limit: problem.least_of_soils(wave_speeds::drag_limit),
         combined_limit: problem
-            .least_of_soils(|soil| formula::combined_limit(soil, cell_size, settings.drag)),
+            .least_of_soils(|soil| wave_speeds::combined_limit(soil, cell_size, settings.drag)),
         probes,
         asymmetry: Some(power::asymmetry(&Body::new(one_point_set(&problem)))),
     })
@@ -91,7 +92,7 @@ pub fn critical_step<const D: usize>(
 /// Largest step that runs, by bisection; none where no step near the prediction fails. The search begins between the probes
 /// and goes outwards where they contradict the prediction.
 fn observed_step<const D: usize>(
-    problem: &Problem<D>,
+    problem: &Discrete<D>,
     settings: &ExplicitSettings,
     probes: &[Probe],
     observer: Observer<'_>,
@@ -148,7 +149,7 @@ fn observed_step<const D: usize>(
 
 /// Runs a number of steps of a size; the steps taken, and how the run failed.
 fn leaves<const D: usize>(
-    problem: &Problem<D>,
+    problem: &Discrete<D>,
     settings: &ExplicitSettings,
     step: f64,
     steps: u64,
@@ -184,10 +185,10 @@ fn steps_to(end: f64, step: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     #[test]

@@ -1,12 +1,12 @@
 //! Checks every few steps that a run is still sound, for every integrator.
 
-use crate::integrate::integrator::StepBound;
 use crate::integrate::physical_bounds::PhysicalBounds;
-use crate::integrate::results::outcome::{FailureKind, StepSizes};
-use crate::integrate::results::snapshot::Snapshot;
 use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper};
 use crate::kernel::energy::EnergyAccount;
+use oedometer_problem::integrator::StepBound;
+use oedometer_problem::outcome::{FailureKind, StepSizes};
+use oedometer_problem::snapshot::Snapshot;
 use oedometer_soil::elementary;
 
 /// Velocities beyond this multiple of their scale have left.

@@ -2,11 +2,11 @@
 
 use crate::integrate::double_point::DoublePoint;
 use crate::kernel::body::Body;
-use crate::method::Method;
-use crate::scene::SceneKind;
-use crate::scene::arrangement::Arrangement;
-use crate::scene::column::Column;
-use crate::scene::problem::column_problem;
+use crate::tests::column_problem;
+use oedometer_problem::arrangement::Arrangement;
+use oedometer_problem::method::Method;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 

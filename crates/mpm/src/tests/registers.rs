@@ -3,19 +3,19 @@
 //! The two steps are compiled from one source (`crates/mpm/src/wide.rs`); without optimisation, and on a processor
 //! without registers of four, both are the same code and agree by themselves.
 
-use crate::integrate::critical_step::formula;
-use crate::kernel::body::{Body, Problem};
-use crate::kernel::{Drag, ExplicitSettings};
-use crate::method::{Configuration, Method};
-use crate::scene::SceneKind;
-use crate::scene::column::Column;
-use crate::scene::problem::column_problem;
+use crate::kernel::body::{Body, Discrete};
+use crate::tests::column_problem;
 use crate::wide::in_narrow_registers;
+use oedometer_problem::method::{Configuration, Method};
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::wave_speeds;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
 /// Bits of everything that points and nodes know after some steps.
-fn bits_after<const D: usize>(problem: &Problem<D>, dt: f64, steps: usize) -> Vec<u64> {
+fn bits_after<const D: usize>(problem: &Discrete<D>, dt: f64, steps: usize) -> Vec<u64> {
     let settings = ExplicitSettings { drag: Drag::Implicit, flip: 0.99, ..ExplicitSettings::default() };
     let mut body = Body::new(problem.clone());
     for _ in 0..steps {
@@ -32,7 +32,7 @@ fn bits_after<const D: usize>(problem: &Problem<D>, dt: f64, steps: usize) -> Ve
 }
 
 /// A column under a load, whose points move apart and together.
-fn squeezed<const D: usize>(name: &str, points_per_cell: usize, law: Law) -> Problem<D> {
+fn squeezed<const D: usize>(name: &str, points_per_cell: usize, law: Law) -> Discrete<D> {
     let method = Method::named(name).expect("a known method");
     let method = Method { configuration: Some(Configuration::Updated), ..method };
     let soil = Material { law, porosity: 0.6, ..Material::default() };
@@ -51,7 +51,7 @@ fn assert_same_bits<const D: usize>(names: &[&str], per_cell: &[usize], law: Law
         for points_per_cell in per_cell {
             let problem = squeezed::<D>(name, *points_per_cell, law);
             let (soil, cell_size) = (&problem.material, problem.grid.cell_size);
-            let dt = 0.5 * formula::combined_limit(soil, cell_size, Drag::Implicit);
+            let dt = 0.5 * wave_speeds::combined_limit(soil, cell_size, Drag::Implicit);
             let wide = bits_after(&problem, dt, steps);
             let narrow = in_narrow_registers(|| bits_after(&problem, dt, steps));
             assert!(wide.iter().all(|bits| f64::from_bits(*bits).is_finite()), "{name} {D} runs");

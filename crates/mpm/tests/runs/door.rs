@@ -1,28 +1,30 @@
 //! Kernels against each other, what a run keeps, and runs at their limits.
 
+use crate::column_problem;
 use crate::run;
-use oedometer_mpm::kernel::body::Problem;
-use oedometer_mpm::kernel::scheme::Scheme;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::run::results::outcome::{FailureKind, RunStatus};
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
-use oedometer_mpm::scene::problem::{SceneProblem, column_problem};
+use oedometer_mpm::discretise::Discretised;
+use oedometer_mpm::kernel::body::Discrete;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::{FailureKind, RunStatus};
+use oedometer_problem::settings::Scheme;
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
 
-fn problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+fn problem(method: &str, cells: usize, per_cell: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let (column, soil) = (Column::default(), Material::default());
     column_problem(SceneKind::SingleMode, &column, &soil, method, cells, per_cell).expect("the seed column")
 }
 
 /// A column of two soils of two porosities, whose interface cuts a cell.
-fn layered_problem(method: &str, cells: usize, per_cell: usize) -> Problem<1> {
+fn layered_problem(method: &str, cells: usize, per_cell: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let lower = SoilLayer { thickness: 0.45, porosity: Some(0.6), ..SoilLayer::default() };
     let upper = SoilLayer { thickness: 0.55, hydraulic_conductivity: Some(1e-3), ..SoilLayer::default() };
@@ -117,7 +119,7 @@ fn outputs_are_reached_and_the_history_is_recorded() {
 #[test]
 fn an_observer_can_stop_a_run() {
     let schedule = schedule(Kernel::Fastest, ExplicitSettings::default(), 0.1);
-    let outcome = SceneProblem::from(problem("GIMP", 5, 2)).run(&schedule, &|done, _| done < 100);
+    let outcome = Discretised::from(problem("GIMP", 5, 2)).run(&schedule, &|done, _| done < 100);
     let RunStatus::Failed(failure) = outcome.status else { panic!("not stopped") };
     assert_eq!((failure.kind, failure.step), (FailureKind::Stopped, 128));
     assert_eq!(outcome.snapshots.len(), 1, "what was finished stays");

@@ -1,20 +1,22 @@
 //! The implicit integrator against the explicit one, against itself and across dimensions.
 
 use crate::run;
-use oedometer_mpm::kernel::body::Problem;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::{Configuration, Method};
-use oedometer_mpm::run::integrator::{Formulation, IntegratorKind};
-use oedometer_mpm::run::results::outcome::{FailureKind, Outcome, RunStatus};
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::arrangement::Arrangement;
-use oedometer_mpm::scene::column::Column;
-use oedometer_mpm::scene::problem::{SceneProblem, column_problem};
+use crate::{column_problem, discretised};
+use oedometer_mpm::discretise::Discretised;
+use oedometer_mpm::kernel::body::Discrete;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::state::grid::Grid;
 use oedometer_mpm::state::nodes::Support;
 use oedometer_mpm::state::points::Points;
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::arrangement::Arrangement;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::{Configuration, Method};
+use oedometer_problem::outcome::{FailureKind, Outcome, RunStatus};
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::conductivity::ConductivityMean;
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
@@ -22,13 +24,13 @@ use oedometer_soil::material::Material;
 
 const METHODS: [&str; 5] = ["MPM", "GIMP", "GIMP-SRI", "GIMP-SRI-patch", "GC-SRI-patch"];
 
-fn seed(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+fn seed(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
         .expect("a possible column")
 }
 
-fn large_strain(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+fn large_strain(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let column = Column { load: 2e5, ..Column::default() };
     column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")
@@ -57,22 +59,22 @@ fn schedule(
 
 /// A run to time factors of a column of one metre.
 fn solve(
-    problem: impl Into<SceneProblem>,
+    problem: impl Into<Discretised>,
     integrator: IntegratorKind,
     rule: TimeStepRule,
     time_factors: &[f64],
 ) -> Outcome {
     let problem = problem.into();
     let soil = match &problem {
-        SceneProblem::Column(problem) => problem.material,
-        SceneProblem::Plane(problem) => problem.material,
+        Discretised::Column(problem) => problem.material,
+        Discretised::Plane(problem) => problem.material,
     };
     let outcome = run(problem, &schedule(&soil, integrator, rule, time_factors));
     assert_eq!(outcome.status, RunStatus::Ok);
     outcome
 }
 
-fn implicit(problem: Problem<1>, growth: f64, time_factors: &[f64]) -> Outcome {
+fn implicit(problem: Discrete<1>, growth: f64, time_factors: &[f64]) -> Outcome {
     solve(problem, IntegratorKind::Implicit, TimeStepRule::Growth(growth), time_factors)
 }
 
@@ -285,14 +287,14 @@ fn named(method: &str) -> Method {
 }
 
 /// The seed column `across` cells wide in two dimensions, between rollers.
-fn plane_column(method: &str, across: usize, cells: usize) -> Problem<2> {
+fn plane_column(method: &str, across: usize, cells: usize) -> Discrete<2> {
     let line = seed(method, &Material::default(), cells);
     let h = line.grid.cell_size;
     let mut points = Points::<2>::lattice(h, [across, cells], 2);
     let strain = line.initial_gradient[0][0];
     points.pressure.fill(line.points.pressure[0]);
     points.effective_stress.fill(line.material.stiffness().stress(&[[0.0, 0.0], [0.0, strain]]));
-    Problem {
+    Discrete {
         water: None,
         grid: Grid::new(h, [across, cells + 1]),
         support: Support::oedometer(),
@@ -551,10 +553,10 @@ fn the_two_surfaces_differ_by_what_the_composite_gradient_gives_the_last_half_le
 fn a_run_whose_time_is_over_ends_within_its_first_step() {
     let layer = || {
         let method = Method::named("GC-SRI-patch").expect("known");
-        SceneProblem::new(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
+        discretised(SceneKind::CosineLayer, &Column::layer(), &Material::default(), method, 4, 2)
             .expect("a layer")
     };
-    let column = |method: &str| SceneProblem::from(seed(method, &Material::default(), 6));
+    let column = |method: &str| Discretised::from(seed(method, &Material::default(), 6));
     for problem in [layer(), column("GC-SRI-patch"), column("TL-GC-SRI-patch")] {
         let rule = TimeStepRule::Growth(0.05);
         let mut plan = schedule(&Material::default(), IntegratorKind::Implicit, rule, &[0.1]);

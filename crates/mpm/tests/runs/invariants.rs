@@ -1,16 +1,17 @@
 //! What holds of the solver whatever the numbers: scaling of units, linearity, balances, and the
 //! equalities between methods that theory demands on the regular lattice.
 
+use crate::column_problem;
 use crate::run;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::{Configuration, Method};
-use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};
-use oedometer_mpm::run::results::snapshot::Snapshot;
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
-use oedometer_mpm::scene::problem::column_problem;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::method::{Configuration, Method};
+use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::material::Material;
 use proptest::prelude::*;
 
@@ -63,9 +64,9 @@ impl Setup {
         .expect("a possible column");
         let seconds = self.column.height * self.column.height / self.soil.coefficient_of_consolidation();
         let schedule = Schedule {
-            integrator: oedometer_mpm::run::integrator::IntegratorKind::Explicit,
+            integrator: oedometer_problem::integrator::IntegratorKind::Explicit,
             critical_step: None,
-            formulation: oedometer_mpm::run::integrator::Formulation::VW,
+            formulation: oedometer_problem::integrator::Formulation::VW,
             threads: 1,
             time_limit: TimeLimit::default(),
             outputs: self.time_factors.iter().map(|factor| factor * seconds).collect(),

@@ -1,9 +1,13 @@
 //! Whole runs of the solver.
 
+use oedometer_mpm::discretise::{Discretised, discretise};
+use oedometer_mpm::kernel::body::Discrete;
 use oedometer_mpm::run::Schedule;
-use oedometer_mpm::run::results::outcome::Outcome;
-use oedometer_mpm::scene::column::Column;
-use oedometer_mpm::scene::problem::SceneProblem;
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::Outcome;
+use oedometer_problem::problem::StartError;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::material::Material;
 
 mod door;
@@ -14,8 +18,32 @@ mod step_by_hand;
 mod step_growth;
 mod two_dimensions;
 
+/// A scene's problem in the dimension that is asked for.
+fn column_problem<const D: usize>(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Discrete<D>, StartError> {
+    discretise(&scene.problem(column, soil, method, cells, points_per_cell)?)
+}
+
+/// A scene's problem in the dimensions of its column.
+fn discretised(
+    scene: SceneKind,
+    column: &Column,
+    soil: &Material,
+    method: Method,
+    cells: usize,
+    points_per_cell: usize,
+) -> Result<Discretised, StartError> {
+    Discretised::new(&scene.problem(column, soil, method, cells, points_per_cell)?)
+}
+
 /// Solves a problem from start to end, whatever its dimension.
-fn run(problem: impl Into<SceneProblem>, schedule: &Schedule) -> Outcome {
+fn run(problem: impl Into<Discretised>, schedule: &Schedule) -> Outcome {
     problem.into().run(schedule, &|_, _| true)
 }
 

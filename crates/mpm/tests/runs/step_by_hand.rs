@@ -5,17 +5,18 @@
 //! stress that has lost a share of its history, the initial volume in place of the present one. Here each of them is an
 //! error many orders of magnitude above rounding.
 
+use crate::column_problem;
 use crate::{odd_column, odd_soil, run};
-use oedometer_mpm::kernel::body::Problem;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings, scheme::Scheme};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::run::results::outcome::RunStatus;
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::Column;
-use oedometer_mpm::scene::problem::column_problem;
+use oedometer_mpm::kernel::body::Discrete;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::RunStatus;
+use oedometer_problem::settings::{Drag, ExplicitSettings, Scheme};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
@@ -62,7 +63,7 @@ struct ByHand {
 }
 
 impl ByHand {
-    fn new(problem: &Problem<1>, is_gimp: bool) -> Self {
+    fn new(problem: &Discrete<1>, is_gimp: bool) -> Self {
         let given = &problem.points;
         let gradient = problem.initial_gradient[0][0];
         let point = |p: usize| {

@@ -4,17 +4,19 @@
 //! A run of thirty thousand steps cannot show what these show in seconds: what doubles in ten thousand of them. For the
 //! combinations named here something grows under any step, and the program must say so.
 
+use crate::discretised;
 use crate::run;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::Method;
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::run::observed::Probe;
-use oedometer_mpm::run::results::outcome::RunStatus;
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::{Column, Shape};
-use oedometer_mpm::scene::problem::SceneProblem;
+use oedometer_mpm::discretise::Discretised;
+use oedometer_mpm::run::{Kernel, Schedule};
+use oedometer_problem::critical_step::Probe;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::RunStatus;
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::{Column, Shape};
 use oedometer_soil::material::Material;
 
 /// A doubling in seventy thousand steps.
@@ -23,7 +25,7 @@ const NO_GROWTH: f64 = 1e-5;
 const SHARE: f64 = 0.8;
 
 /// A small plane of a method.
-fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> SceneProblem {
+fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> Discretised {
     let (scene, column) = match boundary {
         "rough" => (SceneKind::CosineLayer, Column::layer()),
         "smooth" => (
@@ -34,11 +36,11 @@ fn plane(method: &str, boundary: &str, cells: usize, conductivity: f64) -> Scene
     };
     let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
     let method = Method::named(method).expect("a known method");
-    SceneProblem::new(scene, &column, &soil, method, cells, 2).expect("a plane")
+    discretised(scene, &column, &soil, method, cells, 2).expect("a plane")
 }
 
 /// Growth a step at a share of the predicted one; none where no limit is known.
-fn growth_of(problem: &SceneProblem, settings: &ExplicitSettings) -> Option<f64> {
+fn growth_of(problem: &Discretised, settings: &ExplicitSettings) -> Option<f64> {
     let predicted = problem.known_critical_step(settings)?;
     Some(problem.growth_under(settings, SHARE * predicted).expect("a small plane") - 1.0)
 }
@@ -165,7 +167,7 @@ fn the_predicted_step_of_f_bar_is_the_observed_one_at_large_strain() {
     let column = Column { load: 1e5, dimensions: 2, ..Column::default() }.with_extent(0.5);
     for name in ["GIMP-Bbar", "GC-Bbar-patch", "VP-Bbar", "TL-GC-Bbar-patch"] {
         let method = Method::named(name).expect("a known method");
-        let problem = SceneProblem::new(SceneKind::XieLeo, &column, &Material::default(), method, 6, 2);
+        let problem = discretised(SceneKind::XieLeo, &column, &Material::default(), method, 6, 2);
         let limit = problem.expect("a column").critical_step(&settings, 0.0, 0, &|_, _| true);
         let limit = limit.expect("nobody stops it");
         let deviation = limit.deviation().expect("a step that fails");

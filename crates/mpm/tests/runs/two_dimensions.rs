@@ -1,19 +1,20 @@
 //! The paper's grid, 0.1 m × 1.0 m and one cell wide, against its column: one problem, two
 //! dimensions, one result.
 
+use crate::column_problem;
 use crate::run;
 use oedometer_exact::parameters::Base;
-use oedometer_mpm::kernel::body::Problem;
-use oedometer_mpm::kernel::{Drag, ExplicitSettings};
-use oedometer_mpm::method::{Basis, Memory, Method};
-use oedometer_mpm::run::integrator::IntegratorKind;
-use oedometer_mpm::run::results::outcome::{Outcome, RunStatus};
-use oedometer_mpm::run::results::snapshot::Snapshot;
-use oedometer_mpm::run::{Kernel, Schedule, TimeStepRule};
-use oedometer_mpm::scene::SceneKind;
-use oedometer_mpm::scene::column::{Column, Shape};
-use oedometer_mpm::scene::problem::column_problem;
+use oedometer_mpm::kernel::body::Discrete;
+use oedometer_mpm::run::{Kernel, Schedule};
 use oedometer_mpm::time_limit::TimeLimit;
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::{Basis, Memory, Method};
+use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::snapshot::Snapshot;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::{Column, Shape};
 use oedometer_soil::material::Material;
 
 const CELLS: usize = 10;
@@ -118,7 +119,7 @@ fn the_paper_s_grid_is_its_column_at_200_kpa_whatever_the_method() {
 }
 
 /// The seed layer on 6 × 6 cells.
-fn layer(method: &str, base: Base) -> Problem<2> {
+fn layer(method: &str, base: Base) -> Discrete<2> {
     let (column, soil) =
         (Column { shape: Shape::Layer { length: 1.0, base }, ..Column::layer() }, Material::default());
     let method = Method::named(method).expect("a known method");

@@ -6,7 +6,7 @@ use crate::cli::output::say;
 use crate::study::file::StudySource;
 use crate::study::shipped::{name_of, refused_name, shipped_studies};
 use clap::ValueEnum;
-use oedometer_mpm::method::Method;
+use oedometer_problem::method::Method;
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};

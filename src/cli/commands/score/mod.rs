@@ -18,7 +18,7 @@ use crate::study::overrides::{Asked, Outputs, has_leading_zero};
 use crate::study::solver::Preset;
 use crate::study::units::in_si;
 use oedometer_exact::reference::ReferenceKind;
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::wording::typed;
 use std::path::PathBuf;
 

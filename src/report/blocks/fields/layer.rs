@@ -223,8 +223,8 @@ mod tests {
     use crate::questions::study_results::StudyResults;
     use crate::record::HistoryRow;
     use crate::record::Record;
-    use oedometer_mpm::method::Method;
-    use oedometer_mpm::scene::column::Undrained;
+    use oedometer_problem::method::Method;
+    use oedometer_scenes::column::Undrained;
 
     fn curves_of(study: &crate::study::check::Study, records: &[Record]) -> Vec<Block> {
         let results = StudyResults::new(study, records, Tier::Full);

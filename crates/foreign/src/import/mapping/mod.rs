@@ -12,7 +12,7 @@ use crate::import::mapping::units::{
 };
 use crate::source::StudySource;
 use oedometer_case::quantity::{Quantity, Sample};
-use oedometer_mpm::scene::SceneKind;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::wording::words;
 use serde::Deserialize;
 

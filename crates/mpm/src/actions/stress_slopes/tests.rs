@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::kernel::body::Body;
-use crate::method::Method;
-use crate::scene::SceneKind;
-use crate::scene::problem::column_problem;
+use crate::tests::column_problem;
+use oedometer_problem::method::Method;
+use oedometer_scenes::SceneKind;
 use oedometer_soil::tensor::Tensor;
 
 /// The unit square in four by four cells, its points' domains tiling it in rows and columns that are nowhere alike.

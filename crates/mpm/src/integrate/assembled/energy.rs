@@ -111,13 +111,13 @@ fn sum_of<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::critical_step::formula::combined_limit;
     use crate::kernel::body::Body;
-    use crate::kernel::{Drag, ExplicitSettings};
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::{Drag, ExplicitSettings};
+    use oedometer_problem::wave_speeds::combined_limit;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     /// Checks that what is stored after a step is the product of the displacements before and after it, which `energy`

@@ -9,12 +9,12 @@ use crate::integrate::assembled::rows::{BandsWithin, REACH, RowStorage, Rows};
 use crate::integrate::assembled::state::{
     Displacements, FIELDS, FrozenState, LANES, Lanes, MARGIN, SOLID, WATER, lanes, set_lanes,
 };
-use crate::kernel::ExplicitSettings;
 use crate::kernel::body::Body;
 use crate::kernel::volumetric::VolumetricRows;
 use crate::state::grid::{GHOST_LAYERS, Grid};
 use crate::wide::wide;
 use nalgebra::DMatrix;
+use oedometer_problem::settings::ExplicitSettings;
 use oedometer_soil::tensor::{Vector, dot};
 
 /// The unknown that is the mirror image of another, and the sign that its value turns with.

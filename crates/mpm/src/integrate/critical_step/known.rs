@@ -2,7 +2,7 @@
 //! one operator, and the search for a plane's limit can take longer than the run.
 
 use crate::integrate::assembled::step::AssembledStep;
-use crate::kernel::ExplicitSettings;
+use oedometer_problem::settings::ExplicitSettings;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -67,12 +67,12 @@ pub(super) fn known_or(key: Key, search: impl FnOnce() -> Limit) -> Limit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Drag;
     use crate::kernel::body::Body;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::Drag;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     #[test]

@@ -6,5 +6,3 @@ pub(crate) mod power;
 pub mod predicted;
 pub mod skeleton;
 mod spectral_radius;
-
-pub use oedometer_problem::wave_speeds as formula;

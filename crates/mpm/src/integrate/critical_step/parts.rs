@@ -46,12 +46,12 @@ fn part(operator: &DMatrix<f64>, images: &[Image], parity: f64) -> DMatrix<f64> 
 mod tests {
     use super::*;
     use crate::integrate::assembled::step::AssembledStep;
-    use crate::kernel::ExplicitSettings;
     use crate::kernel::body::Body;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::ExplicitSettings;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     /// Five unknowns: two pairs, and one in the middle that turns its sign.

@@ -2,12 +2,13 @@
 
 use crate::integrate::assembled::step::AssembledStep;
 use crate::integrate::critical_step::known::{Limit, key_of, known_or};
+use crate::integrate::critical_step::spectral_radius;
 use crate::integrate::critical_step::spectral_radius::{GROWTH_TOLERANCE, SLOW_GROWTH};
-use crate::integrate::critical_step::{formula, spectral_radius};
-use crate::kernel::ExplicitSettings;
-use crate::kernel::body::{Body, Problem};
-use crate::method::{PressureIntegration, Recovery};
+use crate::kernel::body::{Body, Discrete};
 use crate::state::grid::Grid;
+use oedometer_problem::method::{PressureIntegration, Recovery};
+use oedometer_problem::settings::ExplicitSettings;
+use oedometer_problem::wave_speeds;
 use oedometer_soil::elementary;
 use oedometer_soil::material::Material;
 use std::fmt;
@@ -103,19 +104,19 @@ impl<const D: usize> Prediction<D> {
 ///
 /// Computed from the problem's own operators. A long column is shortened in its middle, which changes the limit by less
 /// than a percent; a wide layer is cut to six by six cells.
-pub fn predicted_critical_step<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> f64 {
+pub fn predicted_critical_step<const D: usize>(problem: &Discrete<D>, settings: &ExplicitSettings) -> f64 {
     predict_for_run(problem, settings).critical_step
 }
 
 /// The prediction of [`predicted_critical_step`].
-pub fn predict_for_run<const D: usize>(problem: &Problem<D>, settings: &ExplicitSettings) -> Prediction<D> {
+pub fn predict_for_run<const D: usize>(problem: &Discrete<D>, settings: &ExplicitSettings) -> Prediction<D> {
     predict(problem, settings, FEW_CELLS)
 }
 
 /// Largest growth per step of any mode of a whole problem in a plane under steps of a size, s; none in one dimension and
 /// where the problem is too large.
 pub fn whole_growth<const D: usize>(
-    problem: &Problem<D>,
+    problem: &Discrete<D>,
     settings: &ExplicitSettings,
     step: f64,
 ) -> Option<f64> {
@@ -127,11 +128,11 @@ pub fn whole_growth<const D: usize>(
 
 /// The prediction from at most so many cells.
 pub fn predict<const D: usize>(
-    problem: &Problem<D>,
+    problem: &Discrete<D>,
     settings: &ExplicitSettings,
     most_cells: usize,
 ) -> Prediction<D> {
-    let limit = |soil: &Material| formula::combined_limit(soil, problem.grid.cell_size, settings.drag);
+    let limit = |soil: &Material| wave_speeds::combined_limit(soil, problem.grid.cell_size, settings.drag);
     let safe = problem.least_of_soils(limit);
     let problem = &one_point_set(problem);
     let is_narrow = problem.grid.cells[..D - 1].iter().all(|cells| *cells == 1);
@@ -180,7 +181,7 @@ pub fn predict<const D: usize>(
 /// The problem with one point set, that of the phase with more points: equal point sets have the limit of one, and unequal
 /// ones a limit between those of one point set with the points of either. Where points move, the cells press with their
 /// constant pressure, and have the limit of that.
-pub(crate) fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> {
+pub(crate) fn one_point_set<const D: usize>(problem: &Discrete<D>) -> Discrete<D> {
     let mut single = problem.clone();
     // Forces from outside do not change the limit.
     single.forcing = None;
@@ -196,7 +197,7 @@ pub(crate) fn one_point_set<const D: usize>(problem: &Problem<D>) -> Problem<D> 
 
 /// The problem on so many cells of its lower corner, with the load on their top: the sides stay fixed, the top stays
 /// free.
-fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
+fn corner<const D: usize>(problem: &Discrete<D>, most: usize) -> Discrete<D> {
     let mut cut = problem.clone();
     let extent = most as f64 * problem.grid.cell_size;
     let is_kept = |point: &usize| problem.points.position[*point].iter().all(|place| *place < extent);
@@ -213,7 +214,7 @@ fn corner<const D: usize>(problem: &Problem<D>, most: usize) -> Problem<D> {
 }
 
 /// The problem without the surplus cells of its middle: base and surface, where it is special, stay as they are.
-fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Problem<D> {
+fn without_middle<const D: usize>(problem: &Discrete<D>, most_cells: usize) -> Discrete<D> {
     let up = D - 1;
     let cell_size = problem.grid.cell_size;
     let mut cut = problem.clone();
@@ -242,12 +243,12 @@ fn without_middle<const D: usize>(problem: &Problem<D>, most_cells: usize) -> Pr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Drag;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::arrangement::Arrangement;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::Drag;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::layers::{SoilLayer, SoilLayers};
     use oedometer_soil::material::Material;
 
@@ -293,7 +294,7 @@ mod tests {
             column_problem::<1>(SceneKind::Terzaghi, &column, &soil, method, 4, per_cell).expect("a column")
         };
         for [solid, water] in [[2, 3], [3, 2]] {
-            let problem = Problem { water: Some(of(water).points), ..of(solid) };
+            let problem = Discrete { water: Some(of(water).points), ..of(solid) };
             assert_eq!(one_point_set(&problem).points.len(), 12, "{solid} {water}");
         }
     }
@@ -340,7 +341,7 @@ mod tests {
             let prediction = predict(&problem, &settings, FEW_CELLS);
             let mode = prediction.growing.expect("patch rates grow with little drag");
             let rate = |step: f64| (prediction.growth(step).expect("a small plane")).ln() / step;
-            let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+            let safe = wave_speeds::combined_limit(&soil, problem.grid.cell_size, settings.drag);
             let most = 2.0 * rate(0.1 * safe);
             assert!(most > 0.0 && rate(mode.step) <= most * (1.0 + 1e-6), "{conductivity}");
             assert_eq!(

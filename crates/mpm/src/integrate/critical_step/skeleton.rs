@@ -1,9 +1,9 @@
 //! The limit of semi-implicit steps from the stiffness and the masses of a body's own nodes, wherever its points lie.
 
 use crate::integrate::assembled::stiffness::NodeBlocks;
-use crate::integrate::critical_step::formula::skeleton_limit;
-use crate::kernel::body::{Body, Problem};
+use crate::kernel::body::{Body, Discrete};
 use crate::kernel::volumetric::VolumetricRows;
+use oedometer_problem::wave_speeds::skeleton_limit;
 
 /// Iterations that sharpen the bound: a mode of one node beside a smooth one is found in a few.
 const SHARPENINGS: usize = 64;
@@ -33,8 +33,8 @@ impl Component {
 /// The formula (docs/theory.md, Eq. 45) with the masses, the drag and the stiffness of each node in place of those of a cell.
 /// For any positive `x` the stiffness `Σ_j |K_ij| x_j/x_i` that gives the smallest step bounds all modes (Collatz 1942); an
 /// iteration of `x` sharpens the bound.
-pub fn semi_implicit_limit<const D: usize>(problem: &Problem<D>) -> f64 {
-    let body = Body::new(Problem { forcing: None, ..problem.clone() });
+pub fn semi_implicit_limit<const D: usize>(problem: &Discrete<D>) -> f64 {
+    let body = Body::new(Discrete { forcing: None, ..problem.clone() });
     let rows = body.volumetric_rows();
     let stiffness = body.skeleton_stiffness(&rows);
     let components = components(&body, &rows);
@@ -99,15 +99,15 @@ fn stiffness_felt<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::critical_step::formula;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::arrangement::Arrangement;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::wave_speeds;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
-    fn problem<const D: usize>(name: &str, soil: &Material, points: Arrangement) -> Problem<D> {
+    fn problem<const D: usize>(name: &str, soil: &Material, points: Arrangement) -> Discrete<D> {
         let method = Method::named(name).expect("a known method");
         let (scene, column) = match D {
             1 => (SceneKind::Terzaghi, Column::default()),
@@ -122,12 +122,12 @@ mod tests {
             let soil = Material { hydraulic_conductivity: conductivity, ..Material::default() };
             for name in ["MPM", "GIMP", "GC-SRI-patch", "PPP"] {
                 let line = problem::<1>(name, &soil, Arrangement::default());
-                let formula = formula::semi_implicit_limit(&soil, line.grid.cell_size, name == "PPP");
+                let formula = wave_speeds::semi_implicit_limit(&soil, line.grid.cell_size, name == "PPP");
                 let ratio = semi_implicit_limit(&line) / formula;
                 assert!((ratio - 1.0).abs() < 0.01, "{name} {conductivity}: {ratio}");
             }
             let plane = problem::<2>("GIMP", &soil, Arrangement::default());
-            let formula = formula::semi_implicit_limit(&soil, plane.grid.cell_size, true);
+            let formula = wave_speeds::semi_implicit_limit(&soil, plane.grid.cell_size, true);
             let ratio = semi_implicit_limit(&plane) / formula;
             assert!((0.5..1.01).contains(&ratio), "{conductivity}: {ratio}");
         }

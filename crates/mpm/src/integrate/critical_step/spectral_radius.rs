@@ -3,8 +3,8 @@
 use crate::direct_solver::dense::subtract_product;
 use crate::integrate::assembled::step::AssembledStep;
 use crate::integrate::critical_step::parts::parts;
-use crate::kernel::ExplicitSettings;
 use nalgebra::DMatrix;
+use oedometer_problem::settings::ExplicitSettings;
 use oedometer_soil::elementary;
 
 /// Growth per step that counts as none: eigenvalues of exactly one scatter by round-off, and the null modes of FLIP grow
@@ -290,13 +290,13 @@ fn stays_bounded<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::critical_step::formula;
-    use crate::kernel::Drag;
     use crate::kernel::body::Body;
-    use crate::method::Method;
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::Method;
+    use oedometer_problem::settings::Drag;
+    use oedometer_problem::wave_speeds;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
 
     #[test]
@@ -307,7 +307,7 @@ mod tests {
         let method = Method::named("GIMP").expect("a known method");
         let problem = column_problem::<2>(SceneKind::CosineLayer, &Column::layer(), &soil, method, 9, 2)
             .expect("a layer");
-        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+        let safe = wave_speeds::combined_limit(&soil, problem.grid.cell_size, settings.drag);
         let mut step = AssembledStep::new(&Body::new(problem));
         assert!(step.unknowns() > MOST_SQUARED);
         let limit = critical_step(&step, &settings, safe, GROWTH_TOLERANCE, false).expect("a limit");
@@ -321,7 +321,7 @@ mod tests {
         let method = Method::named("GC-SRI-patch").expect("a known method");
         let problem =
             column_problem::<2>(SceneKind::XieLeo, &column, &soil, method, 10, 4).expect("a column");
-        let safe = formula::combined_limit(&soil, problem.grid.cell_size, settings.drag);
+        let safe = wave_speeds::combined_limit(&soil, problem.grid.cell_size, settings.drag);
         let mut step = AssembledStep::new(&Body::new(problem));
         let limit = critical_step(&step, &settings, safe, GROWTH_TOLERANCE, false);
         let mut limit_by = |steps: usize| {

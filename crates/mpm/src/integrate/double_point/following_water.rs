@@ -89,8 +89,8 @@ impl<const D: usize> DoublePoint<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::kernel::{Drag, ExplicitSettings};
     use crate::tests::double_point_columns::moving_column;
+    use oedometer_problem::settings::{Drag, ExplicitSettings};
     use oedometer_soil::material::Material;
 
     #[test]

@@ -14,17 +14,18 @@ mod sliver_nodes;
 mod water_points;
 mod water_pressure;
 
-use crate::drag::drag_of_point;
 use crate::integrate::double_point::sliver_nodes::SliverNodes;
 use crate::integrate::double_point::water_points::WaterPoints;
+use crate::kernel::Motion;
 use crate::kernel::body::Body;
-use crate::kernel::{ExplicitSettings, Motion};
-use crate::method::{PressureIntegration, Recovery};
 use crate::operators::basis::Shapes;
 use crate::operators::recovery::RecoveryOperator;
 use crate::operators::stencil::PointStencils;
 use crate::state::cells::Cells;
 use crate::state::points::Points;
+use oedometer_problem::method::{PressureIntegration, Recovery};
+use oedometer_problem::settings::ExplicitSettings;
+use oedometer_problem::wave_speeds::drag_of_point;
 use oedometer_soil::tensor::{Tensor, Vector};
 
 /// A skeleton with the water of its pores in a second set of points.
@@ -239,24 +240,25 @@ impl<const D: usize> DoublePoint<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::integrate::integrator::{Formulation, IntegratorKind};
-    use crate::integrate::results::outcome::{Outcome, RunStatus};
-    use crate::integrate::results::snapshot::{Snapshot, Totals};
-    use crate::kernel::body::Problem;
-    use crate::kernel::scheme::Scheme;
-    use crate::kernel::{Drag, ExplicitSettings};
-    use crate::method::Method;
-    use crate::run::{Kernel, Schedule, TimeStepRule, run};
-    use crate::scene::SceneKind;
-    use crate::scene::arrangement::Arrangement;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::kernel::body::Discrete;
+    use crate::run::{Kernel, Schedule, run};
+    use crate::tests::column_problem;
     use crate::time_limit::TimeLimit;
+    use oedometer_problem::arrangement::Arrangement;
+    use oedometer_problem::integrator::{Formulation, IntegratorKind};
+    use oedometer_problem::method::Method;
+    use oedometer_problem::outcome::{Outcome, RunStatus};
+    use oedometer_problem::settings::Scheme;
+    use oedometer_problem::settings::{Drag, ExplicitSettings};
+    use oedometer_problem::snapshot::{Snapshot, Totals};
+    use oedometer_problem::time_step::TimeStepRule;
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::law::Law;
     use oedometer_soil::material::Material;
 
     /// A column, or a plane, under a load, with points of the water or without.
-    fn problem<const D: usize>(scene: SceneKind, method: &str, points: [usize; 2], load: f64) -> Problem<D> {
+    fn problem<const D: usize>(scene: SceneKind, method: &str, points: [usize; 2], load: f64) -> Discrete<D> {
         let [of_skeleton, of_water] = points;
         let sets = if of_water == 0 { 1 } else { 2 };
         let arrangement = Arrangement { sets, water_per_cell: of_water, ..Arrangement::default() };
@@ -269,7 +271,7 @@ mod tests {
         column_problem(scene, &column, &soil, method, 5, of_skeleton).expect("a column")
     }
 
-    fn solved<const D: usize>(problem: Problem<D>, settings: ExplicitSettings, end: f64) -> Outcome {
+    fn solved<const D: usize>(problem: Discrete<D>, settings: ExplicitSettings, end: f64) -> Outcome {
         let schedule = Schedule {
             outputs: vec![0.0, end],
             history: Vec::new(),

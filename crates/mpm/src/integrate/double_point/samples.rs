@@ -1,10 +1,10 @@
 //! Snapshots of double-point MPM: the skeleton at its own points, the pressure at those of the water.
 
 use crate::integrate::double_point::DoublePoint;
-use crate::integrate::results::snapshot::{Snapshot, Totals, WaterSamples, WaterTotals};
 use crate::integrate::sampling::{InternalForces, Means};
 use crate::kernel::loaded_body::largest_free_force;
 use crate::state::points::Points;
+use oedometer_problem::snapshot::{Snapshot, Totals, WaterSamples, WaterTotals};
 use oedometer_soil::elementary;
 use oedometer_soil::tensor::Vector;
 

@@ -21,8 +21,8 @@
 
 use crate::integrate::double_point::DoublePoint;
 use crate::kernel::volumetric::Place;
-use crate::method::PressureIntegration;
 use crate::operators::recovery::points_in_cells::PointsInCells;
+use oedometer_problem::method::PressureIntegration;
 use oedometer_soil::tensor::Vector;
 
 impl<const D: usize> DoublePoint<D> {

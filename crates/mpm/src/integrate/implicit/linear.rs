@@ -7,11 +7,11 @@
 use crate::direct_solver::system::{Factors, SystemMatrix};
 use crate::integrate::implicit::linear_system::LinearSystem;
 use crate::integrate::implicit::{ERROR_SHARE, ErrorScales, SDIRK_GAMMA, SECOND_STAGE, no_pivot};
-use crate::integrate::results::snapshot::Snapshot;
 use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::{EqualSteps, StepFailure, Stepper, Work};
 use crate::kernel::body::Body;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::snapshot::Snapshot;
 use oedometer_soil::tensor::Vector;
 
 /// Stepper of a frozen body.

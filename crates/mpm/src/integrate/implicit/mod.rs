@@ -26,10 +26,10 @@ pub(crate) mod unknowns;
 
 use crate::direct_solver::Singular;
 use crate::integrate::implicit::unknowns::{Scales, Unknowns};
-use crate::integrate::results::outcome::FailureKind;
 use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::StepFailure;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::outcome::FailureKind;
 
 /// `γ = 1 − 1/√2`: both stages have the same matrix and the method is L-stable.
 pub const SDIRK_GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

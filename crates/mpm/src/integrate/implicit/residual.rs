@@ -3,8 +3,8 @@
 
 use crate::drag::{NodalBalance, NodalDrag};
 use crate::integrate::implicit::trial::{Skeleton, Trial};
-use crate::integrate::integrator::Formulation;
 use crate::integrate::stepper::StepFailure;
+use oedometer_problem::integrator::Formulation;
 use oedometer_soil::tensor::Vector;
 
 /// Start of a stage: the terms known before it is solved.

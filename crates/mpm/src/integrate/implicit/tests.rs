@@ -4,27 +4,28 @@ use crate::integrate::implicit::linear::LinearStepper;
 use crate::integrate::implicit::newton::NewtonStepper;
 use crate::integrate::implicit::trial::{Skeleton, Trial};
 use crate::integrate::implicit::unknowns::Unknowns;
-use crate::integrate::integrator::{Formulation, IntegratorKind};
 use crate::integrate::run_plan::Plan;
 use crate::integrate::stepper::{EqualSteps, Stepper};
-use crate::kernel::body::{Body, Problem};
-use crate::kernel::{Drag, ExplicitSettings};
-use crate::method::Method;
-use crate::run::{Kernel, Schedule, TimeStepRule};
-use crate::scene::SceneKind;
-use crate::scene::column::Column;
-use crate::scene::problem::column_problem;
+use crate::kernel::body::{Body, Discrete};
+use crate::run::{Kernel, Schedule};
+use crate::tests::column_problem;
 use crate::time_limit::TimeLimit;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::Method;
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
-fn seed(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+fn seed(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     column_problem(SceneKind::Terzaghi, &Column::default(), soil, method, cells, 2)
         .expect("a possible column")
 }
 
-fn large_strain(method: &str, soil: &Material, cells: usize) -> Problem<1> {
+fn large_strain(method: &str, soil: &Material, cells: usize) -> Discrete<1> {
     let method = Method::named(method).expect("a known method");
     let column = Column { load: 2e5, ..Column::default() };
     column_problem(SceneKind::XieLeo, &column, soil, method, cells, 4).expect("a possible column")

@@ -5,11 +5,11 @@
 
 use crate::integrate::implicit::point_strain::{KnownStretch, PointStrain};
 use crate::integrate::implicit::unknowns::Unknowns;
-use crate::integrate::integrator::Formulation;
 use crate::kernel::body::Body;
-use crate::method::Memory;
 use crate::operators::recovery::points_in_cells::points_in_cells;
 use crate::state::points::Points;
+use oedometer_problem::integrator::Formulation;
+use oedometer_problem::method::Memory;
 use oedometer_soil::tensor::{Tensor, Vector, dot, identity, inverse, product};
 
 /// Time level at which the effective stress acts in a step.

@@ -5,7 +5,7 @@ use crate::actions::rigid_plate::NORMAL;
 use crate::integrate::assembled::stiffness::NodeBlocks;
 use crate::kernel::body::Body;
 use crate::kernel::volumetric::VolumetricRows;
-use crate::method::PressureIntegration;
+use oedometer_problem::method::PressureIntegration;
 use oedometer_soil::material::Material;
 use oedometer_soil::tensor::Vector;
 

@@ -3,10 +3,10 @@
 
 use super::*;
 use crate::actions::forcing::{BodyForces, Forcing};
-use crate::integrate::integrator::Formulation;
-use crate::method::Method;
-use crate::scene::SceneKind;
-use crate::scene::problem::column_problem;
+use crate::tests::column_problem;
+use oedometer_problem::integrator::Formulation;
+use oedometer_problem::method::Method;
+use oedometer_scenes::SceneKind;
 use std::sync::Arc;
 
 /// Constant forces, and a source that is the place along x, so that it says where it was asked for.

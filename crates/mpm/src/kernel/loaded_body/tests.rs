@@ -1,18 +1,19 @@
 //! The plate as an operator: what it keeps, and that its kernels agree.
 
 use super::*;
-use crate::integrate::integrator::{Formulation, IntegratorKind};
-use crate::integrate::results::outcome::{Outcome, RunStatus};
-use crate::kernel::body::Problem;
-use crate::kernel::{Drag, ExplicitSettings};
-use crate::method::Method;
-use crate::run::{Kernel, Schedule, TimeStepRule, run};
-use crate::scene::SceneKind;
-use crate::scene::column::{Column, column_parameters};
-use crate::scene::problem::column_problem;
+use crate::kernel::body::Discrete;
+use crate::run::{Kernel, Schedule, run};
+use crate::tests::column_problem;
 use crate::time_limit::TimeLimit;
 use oedometer_exact::mandel::Mandel;
 use oedometer_exact::solution::Solution;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::{Column, column_parameters};
 use oedometer_soil::material::Material;
 
 /// Soft water: waves are slow, and the water gives way.
@@ -21,14 +22,14 @@ fn soft() -> Material {
 }
 
 /// A slab of half width 1 m and of so many rows of cells between plates.
-fn slab(method: &str, soil: &Material, cells: usize, rows: usize) -> Problem<2> {
+fn slab(method: &str, soil: &Material, cells: usize, rows: usize) -> Discrete<2> {
     let width = rows as f64 / cells as f64;
     let column = Column::slab().with_extent(width);
     let method = Method::named(method).expect("a known method");
     column_problem::<2>(SceneKind::Mandel, &column, soil, method, cells, 2).expect("a possible slab")
 }
 
-fn solved(problem: Problem<2>, integrator: IntegratorKind, kernel: Kernel, rule: TimeStepRule) -> Outcome {
+fn solved(problem: Discrete<2>, integrator: IntegratorKind, kernel: Kernel, rule: TimeStepRule) -> Outcome {
     let formulation = match integrator {
         IntegratorKind::Explicit => Formulation::VW,
         _ => Formulation::QuasiStatic,
@@ -37,7 +38,7 @@ fn solved(problem: Problem<2>, integrator: IntegratorKind, kernel: Kernel, rule:
 }
 
 fn solved_with(
-    problem: Problem<2>,
+    problem: Discrete<2>,
     (integrator, formulation): (IntegratorKind, Formulation),
     kernel: Kernel,
     rule: TimeStepRule,
@@ -61,7 +62,7 @@ fn solved_with(
     outcome
 }
 
-fn implicit(problem: Problem<2>) -> Outcome {
+fn implicit(problem: Discrete<2>) -> Outcome {
     solved(problem, IntegratorKind::Implicit, Kernel::Fastest, TimeStepRule::Growth(0.01))
 }
 

@@ -1,16 +1,16 @@
 //! Weight in the balances: a column at rest stays at rest under every method, and results give the excess.
 
 use super::*;
-use crate::kernel::body::Problem;
-use crate::kernel::{Drag, ExplicitSettings};
-use crate::method::Method;
-use crate::scene::SceneKind;
-use crate::scene::column::Column;
-use crate::scene::problem::column_problem;
+use crate::kernel::body::Discrete;
+use crate::tests::column_problem;
+use oedometer_problem::method::Method;
+use oedometer_problem::settings::{Drag, ExplicitSettings};
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::Column;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 
-fn resting(method: &str, configuration: Configuration) -> Problem<1> {
+fn resting(method: &str, configuration: Configuration) -> Discrete<1> {
     let column = SceneKind::AtRest.default_column();
     assert!(column.self_weight);
     let method =
@@ -103,8 +103,10 @@ fn a_point_that_has_sunk_lies_under_more_water() {
 
 #[test]
 fn a_weight_that_points_integrate_inexactly_is_balanced_at_the_start() {
-    let spline =
-        Method { basis: crate::method::Basis::Bspline2, ..Method::named("GIMP-SRI").expect("known") };
+    let spline = Method {
+        basis: oedometer_problem::method::Basis::Bspline2,
+        ..Method::named("GIMP-SRI").expect("known")
+    };
     for (method, jitter) in [(Method::named("GIMP-SRI").expect("known"), 0.2), (spline, 0.0), (spline, 0.2)] {
         for configuration in [Configuration::Frozen, Configuration::Updated, Configuration::Total] {
             let method = Method { configuration: Some(configuration), ..method };

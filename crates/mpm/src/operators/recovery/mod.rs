@@ -9,7 +9,6 @@ mod null_space;
 mod patch;
 pub mod points_in_cells;
 
-use crate::method::{Method, Recovery};
 use crate::operators::recovery::nodal::{NodalMeans, Sites};
 use crate::operators::recovery::null_space::CellPlanes;
 use crate::operators::recovery::patch::PatchRows;
@@ -17,6 +16,7 @@ use crate::operators::recovery::points_in_cells::PointsInCells;
 use crate::state::cells::Cells;
 use crate::state::grid::Grid;
 use crate::wide::wide;
+use oedometer_problem::method::{Method, Recovery};
 
 /// `R` of a method, with what it keeps from step to step.
 #[derive(Clone, Debug)]
@@ -129,12 +129,12 @@ fn each(out: &mut [f64], put: impl Fn(&mut f64, f64), value: impl Fn(usize) -> f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::method::Basis;
     use crate::operators::basis::Shapes;
     use crate::operators::recovery::points_in_cells::points_in_cells;
     use crate::operators::stencil::PointStencils;
     use crate::state::nodes::{Nodes, Support};
     use crate::state::points::Points;
+    use oedometer_problem::method::Basis;
     use oedometer_soil::material::Material;
 
     /// A lattice of points in free cells.

@@ -1,14 +1,15 @@
-use crate::integrate::integrator::{Formulation, IntegratorKind};
-use crate::integrate::results::outcome::{Outcome, RunStatus};
-use crate::kernel::ExplicitSettings;
-use crate::method::Method;
-use crate::run::{Kernel, Schedule, TimeStepRule, run};
-use crate::scene::SceneKind;
-use crate::scene::column::{Column, Footing, Undrained, column_parameters};
-use crate::scene::problem::column_problem;
+use crate::run::{Kernel, Schedule, run};
+use crate::tests::column_problem;
 use crate::time_limit::TimeLimit;
 use oedometer_exact::footing::LOAD_FACTOR;
-use oedometer_exact::parameters::Base;
+use oedometer_problem::integrator::{Formulation, IntegratorKind};
+use oedometer_problem::method::Method;
+use oedometer_problem::outcome::{Outcome, RunStatus};
+use oedometer_problem::settings::ExplicitSettings;
+use oedometer_problem::time_step::TimeStepRule;
+use oedometer_scenes::SceneKind;
+use oedometer_scenes::column::{Column, Footing, Undrained, column_parameters};
+use oedometer_soil::base::Base;
 use oedometer_soil::material::Material;
 
 /// A run of a footing to settlements over its width.

@@ -1,18 +1,18 @@
 //! Scenes of a column: what acts on it, how it starts, and which exact solutions hold for it.
 
-use crate::scene::column::{Column, column_parameters};
-use crate::scene::definition::{
-    ColumnStart, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartFields, StartPressure,
-};
-use oedometer_exact::dynamic_column::{DynamicColumn, Start};
+use crate::column::{Column, column_parameters};
+use crate::definition::{SceneDefinition, SceneLoad, SceneStart, StartPressure};
+use oedometer_exact::dynamic_column::{self, DynamicColumn};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::large_strain::diffusion::LargeStrainModel;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_exact::single_mode::SingleMode;
 use oedometer_exact::solution::Solution;
+use oedometer_problem::problem::{Start, StartFields, Strain};
 use oedometer_soil::continuity::Continuity;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
+use std::sync::Arc;
 
 /// The large-strain reference of the default law; [`ReferenceKind::for_soil`] takes that of a soil.
 const LARGE_STRAIN: ReferenceKind = ReferenceKind::LargeStrain(LargeStrainModel::XIE_LEO);
@@ -36,7 +36,7 @@ pub(super) static TERZAGHI: SceneDefinition = SceneDefinition {
             soil.stiffness().stress(&[[0.0, 0.0], [0.0, strain]]);
         let pressure = -soil.coupling_modulus() * strain;
         let fields = StartFields { pressure, vertical_stress, lateral_stress, ..StartFields::default() };
-        Ok(ColumnStart::uniform(strain, fields))
+        Ok(Start::uniform(strain, fields))
     }),
     // Written out here, and not taken from the solver or the reference: this is the check.
     start_pressure: StartPressure::Uniform(|column, soil| {
@@ -55,7 +55,7 @@ pub(super) static SINGLE_MODE: SceneDefinition = SceneDefinition {
 };
 
 /// The mode of the quasi-static equations, with the velocities that it has.
-fn mode_without_inertia(column: &Column, soil: &Material) -> Result<ColumnStart, ExactError> {
+fn mode_without_inertia(column: &Column, soil: &Material) -> Result<Start, ExactError> {
     let mode = SingleMode::compressible(&column_parameters(column, soil))?;
     let soil = *soil;
     let fields = move |zeta: f64| {
@@ -67,7 +67,7 @@ fn mode_without_inertia(column: &Column, soil: &Material) -> Result<ColumnStart,
             ..StartFields::at_rest(&soil, fields.pressure, fields.effective_stress)
         })
     };
-    Ok(ColumnStart { vertical_gradient: 0.0, fields: Box::new(fields) })
+    Ok(Start::OverDepth { gradient: 0.0, fields: Arc::new(fields) })
 }
 
 /// A column loaded at once or over a time and drained at its top, at large strain, from the undrained
@@ -87,7 +87,7 @@ pub(super) static XIE_LEO: SceneDefinition = SceneDefinition {
             },
         )
     },
-    strain: SceneStrain::Large,
+    strain: Strain::Large,
     // Xie & Leo's load acts at once.
     load: SceneLoad::SuddenOrGrowing(&[LARGE_STRAIN]),
     start: SceneStart::OverDepth(|column, soil| Ok(undrained(column, soil))),
@@ -96,9 +96,9 @@ pub(super) static XIE_LEO: SceneDefinition = SceneDefinition {
 
 /// The undrained equilibrium at finite strain, `p(J) − σ'(J) = q` with `J − 1` the displacement gradient;
 /// a load that grows finds the soil at rest without stress.
-fn undrained(column: &Column, soil: &Material) -> ColumnStart {
+fn undrained(column: &Column, soil: &Material) -> Start {
     if column.loading_time > 0.0 {
-        return ColumnStart::unloaded();
+        return Start::unloaded();
     }
     let modulus = soil.oedometric_modulus();
     let carried =
@@ -114,7 +114,7 @@ fn undrained(column: &Column, soil: &Material) -> ColumnStart {
     }
     let stress = modulus * soil.law.uniaxial_stress_ratio(strain);
     let fields = StartFields::at_rest(soil, soil.undrained_pressure_at(strain), stress);
-    ColumnStart::uniform(strain, fields)
+    Start::uniform(strain, fields)
 }
 
 /// A column at rest, loaded at once or over a time, with all its waves.
@@ -145,13 +145,17 @@ pub(super) static STANDING_WAVE: SceneDefinition = SceneDefinition {
     has_waves: true,
     start: SceneStart::OverDepth(|column, soil| {
         // Skeleton and water displaced together and let go at rest.
-        let wave = DynamicColumn::new(&column_parameters(column, soil), Start::StandingWave, &[0.0])?;
+        let wave = DynamicColumn::new(
+            &column_parameters(column, soil),
+            dynamic_column::Start::StandingWave,
+            &[0.0],
+        )?;
         let soil = *soil;
         let fields = move |zeta: f64| {
             let fields = wave.fields(0.0, zeta)?;
             Ok(StartFields::at_rest(&soil, fields.pressure, fields.effective_stress))
         };
-        Ok(ColumnStart { vertical_gradient: 0.0, fields: Box::new(fields) })
+        Ok(Start::OverDepth { gradient: 0.0, fields: Arc::new(fields) })
     }),
     start_pressure: StartPressure::OfReference,
     ..SceneDefinition::UNLOADED
@@ -197,8 +201,9 @@ mod tests {
             for (load, stiffness) in [(1.0, 2.2e9), (2e5, 2.2e9), (2e5, 2e7), (2e5, 2e6)] {
                 let soil = Material { law, water_bulk_modulus: stiffness, ..Material::default() };
                 let start = undrained(&Column { load, ..Column::default() }, &soil);
-                assert!(start.vertical_gradient < 0.0 && start.vertical_gradient > -0.1);
-                let fields = (start.fields)(0.5).expect("inside");
+                let Start::OverDepth { gradient, fields } = start else { panic!("over the depth") };
+                assert!(gradient < 0.0 && gradient > -0.1);
+                let fields = fields(0.5).expect("inside");
                 let total = fields.pressure - fields.vertical_stress;
                 assert!((total / load - 1.0).abs() < 1e-9, "{law:?} {load} {stiffness}: {total}");
             }

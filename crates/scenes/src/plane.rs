@@ -1,6 +1,6 @@
 //! Scenes of a layer or a slab in the plane; `manufactured` has those of a square.
 
-use crate::scene::definition::{SceneBody, SceneDefinition, SceneLoad, StartPressure};
+use crate::definition::{SceneBody, SceneDefinition, SceneLoad, StartPressure};
 use oedometer_exact::reference::ReferenceKind;
 
 /// A plane layer loaded at once by a cosine and drained at its top, at small strain, from the undrained

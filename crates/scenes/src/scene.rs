@@ -1,31 +1,19 @@
-//! A scene is a physical problem: geometry, load, start, the physics it needs and the references
-//! that hold for it. It knows the exact solutions and the solver, and makes a problem for one from
-//! the other. The definitions of the scenes are in `columns`, `plane` and `manufactured`; what they have in common is
-//! asked here.
+//! A scene is a physical problem: geometry, load, start, the physics it needs and the references that hold for it. The
+//! definitions of the scenes are in `columns`, `plane` and `manufactured`; what they have in common is asked here.
 
-pub mod arrangement;
-pub mod column;
-mod columns;
-mod definition;
-mod manufactured;
-mod moment_fitting;
-mod plane;
-pub mod problem;
-
-use crate::integrate::critical_step::formula;
-use crate::integrate::integrator::IntegratorKind;
-use crate::kernel::scheme::Scheme;
-use crate::kernel::{Drag, ExplicitSettings};
-use crate::method::{Configuration, Method};
-use crate::scene::column::{Column, column_parameters};
-use crate::scene::definition::{
-    SceneBody, SceneDefinition, SceneLoad, SceneStart, SceneStrain, StartPressure,
-};
+use crate::column::{Column, column_parameters};
+use crate::definition::{SceneBody, SceneDefinition, SceneLoad, SceneStart, StartPressure};
+use crate::{columns, manufactured, plane};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
 use oedometer_exact::manufactured::motion::ManufacturedModel;
 use oedometer_exact::manufactured::motion::Motion;
 use oedometer_exact::reference::{Reference, ReferenceKind};
+use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::{Configuration, Method};
+use oedometer_problem::problem::Strain;
+use oedometer_problem::settings::{Drag, ExplicitSettings, Scheme};
+use oedometer_problem::wave_speeds;
 use oedometer_soil::law::Law;
 use oedometer_soil::material::Material;
 use oedometer_soil::wording::words;
@@ -77,7 +65,7 @@ words!(
 
 impl SceneKind {
     /// The scene's own file.
-    fn definition(self) -> &'static SceneDefinition {
+    pub(crate) fn definition(self) -> &'static SceneDefinition {
         match self {
             Self::Terzaghi => &columns::TERZAGHI,
             Self::SingleMode => &columns::SINGLE_MODE,
@@ -167,7 +155,7 @@ impl SceneKind {
             _ => &[0.05, 0.1, 0.2, 0.5, 1.0],
         };
         let period = |column: &Column, soil: &Material| {
-            soil.coefficient_of_consolidation() / (column.height * formula::undrained_wave_speed(soil))
+            soil.coefficient_of_consolidation() / (column.height * wave_speeds::undrained_wave_speed(soil))
         };
         let longer = if self == Self::StandingWave {
             period(column, soil) / period(&Column::default(), &Material::default())
@@ -198,7 +186,7 @@ impl SceneKind {
     }
 
     /// The motion that was chosen, and its law where nobody names one; none where a load or a start moves the body.
-    fn model(self) -> Option<ManufacturedModel> {
+    pub(crate) fn model(self) -> Option<ManufacturedModel> {
         match self.references().first() {
             Some(ReferenceKind::Manufactured(model)) => Some(*model),
             _ => None,
@@ -268,7 +256,7 @@ impl SceneKind {
 
     /// Whether its strains are large: degree of consolidation, not time, measures its progress.
     pub fn is_large_strain(self) -> bool {
-        self.definition().strain == SceneStrain::Large
+        self.definition().strain == Strain::Large
     }
 
     /// Why the scene cannot take a configuration, where it cannot.

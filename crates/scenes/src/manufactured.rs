@@ -3,21 +3,21 @@
 
 #![expect(clippy::inline_always, reason = "formulas run in registers of four only where they are inlined")]
 
-use crate::actions::forcing::{BodyForces, Forcing};
-use crate::integrate::integrator::Formulation;
-use crate::scene::column::{Column, Shape, column_parameters};
-use crate::scene::definition::{SceneBody, SceneDefinition, SceneStrain};
-use crate::wide::wide;
+use crate::column::{Column, Shape, column_parameters};
+use crate::definition::{SceneBody, SceneDefinition};
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::manufactured::Manufactured;
 use oedometer_exact::manufactured::dual::{Four, PLACES};
 use oedometer_exact::manufactured::motion::ManufacturedModel;
 use oedometer_exact::manufactured::motion::{Motion, Spot, Spots};
 use oedometer_exact::manufactured::motion_state::Inertia;
-use oedometer_exact::parameters::MotionParameters;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_problem::forcing::{BodyForces, Forcing};
+use oedometer_problem::formulation::Formulation;
+use oedometer_problem::problem::{MakeForcing, Strain};
 use oedometer_soil::material::Material;
-use oedometer_soil::tensor::Vector;
+use oedometer_soil::motion::MotionParameters;
+use oedometer_soil::wide::wide;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
 /// Common definition of the motions: at the start there is no displacement, pressure or velocity.
 const OF_ALL: SceneDefinition = SceneDefinition {
     body: SceneBody::Square,
-    strain: SceneStrain::Large,
+    strain: Strain::Large,
     has_waves: true,
     ..SceneDefinition::UNLOADED
 };
@@ -83,33 +83,21 @@ struct MadeMotion {
     spots: Vec<Spot>,
 }
 
-/// Body forces and sources of a prescribed motion, for a square, its soil, and points at initial places, m.
+/// Body forces and sources of a prescribed motion, for a square and its soil.
 ///
 /// # Errors
 /// When the parameters are impossible.
-pub(crate) fn forcing<const D: usize>(
+pub(crate) fn forcing(
     model: ManufacturedModel,
     square: &Column,
     soil: &Material,
-    points: &[Vector<D>],
-) -> Result<Arc<dyn Forcing<D>>, ExactError> {
+) -> Result<MakeForcing, ExactError> {
     let model = ManufacturedModel { law: soil.law, ..model };
     let solution = Manufactured::new(model, &column_parameters(square, soil))?;
-    Ok(Arc::new(MadeMotion {
-        solution,
-        spots: points.iter().map(|place| Spot::new(in_plane(place))).collect(),
+    Ok(Arc::new(move |places| {
+        let spots = places.iter().map(|place| Spot::new(*place)).collect();
+        Arc::new(MadeMotion { solution: solution.clone(), spots })
     }))
-}
-
-/// A place in the plane; its last component is the vertical one.
-#[inline]
-fn in_plane<const D: usize>(place: &Vector<D>) -> [f64; 2] {
-    [place[0], place[D - 1]]
-}
-
-#[inline]
-fn in_space<const D: usize>(vector: [f64; 2]) -> Vector<D> {
-    std::array::from_fn(|d| vector[d.min(1)])
 }
 
 impl MadeMotion {
@@ -124,8 +112,8 @@ impl MadeMotion {
 
     /// The same of the places of four sites.
     #[inline(always)]
-    fn spots_of<const D: usize>(&self, places: &[Vector<D>], sites: &[usize; PLACES]) -> Spots {
-        let spot = |site: usize| self.spot(site, in_plane(&places[site]));
+    fn spots_of(&self, places: &[[f64; 2]], sites: &[usize; PLACES]) -> Spots {
+        let spot = |site: usize| self.spot(site, places[site]);
         Spots::new(&[spot(sites[0]), spot(sites[1]), spot(sites[2]), spot(sites[3])])
     }
 }
@@ -154,13 +142,13 @@ fn inertia_of(formulation: Formulation) -> Inertia {
     }
 }
 
-impl<const D: usize> Forcing<D> for MadeMotion {
+impl Forcing<2> for MadeMotion {
     fn body_forces(
         &self,
         formulation: Formulation,
-        places: &[Vector<D>],
+        places: &[[f64; 2]],
         time: f64,
-        forces: &mut [BodyForces<D>],
+        forces: &mut [BodyForces<2>],
     ) {
         let (moment, inertia) = (self.solution.moment(time), inertia_of(formulation));
         wide!(by_fours(
@@ -170,7 +158,7 @@ impl<const D: usize> Forcing<D> for MadeMotion {
                 let states = self.solution.states_at(&self.spots_of(places, sites), &moment);
                 let [mixture, water] = states.body_forces(inertia);
                 for place in 0..count {
-                    let at = |force: [Four; 2]| in_space([force[0].0[place], force[1].0[place]]);
+                    let at = |force: [Four; 2]| [force[0].0[place], force[1].0[place]];
                     forces[sites[place]] = [at(mixture), at(water)];
                 }
             }
@@ -179,7 +167,7 @@ impl<const D: usize> Forcing<D> for MadeMotion {
 
     fn sources(
         &self,
-        places: &[Vector<D>],
+        places: &[[f64; 2]],
         sites: &mut dyn Iterator<Item = usize>,
         time: f64,
         sources: &mut [f64],
@@ -200,21 +188,21 @@ impl<const D: usize> Forcing<D> for MadeMotion {
 
     fn material_places(
         &self,
-        present: &dyn Fn(usize) -> Vector<D>,
+        present: &dyn Fn(usize) -> [f64; 2],
         sites: &mut dyn Iterator<Item = usize>,
         time: f64,
-        places: &mut [Vector<D>],
+        places: &mut [[f64; 2]],
     ) {
         let moment = self.solution.moment(time);
         wide!(by_fours(
             sites,
             #[inline(always)]
             |sites, count| {
-                let guesses = sites.map(|site| in_plane(&places[site]));
-                let there = sites.map(|site| in_plane(&present(site)));
+                let guesses = sites.map(|site| places[site]);
+                let there = sites.map(|site| present(site));
                 let material = self.solution.material_places(&there, &moment, &guesses);
                 for place in 0..count {
-                    places[sites[place]] = in_space(material[place]);
+                    places[sites[place]] = material[place];
                 }
             }
         ));

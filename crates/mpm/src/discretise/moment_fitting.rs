@@ -166,10 +166,10 @@ impl<const D: usize> FilledCells<D> {
 mod tests {
     use super::*;
     use crate::kernel::body::Body;
-    use crate::method::{Configuration, Method};
-    use crate::scene::SceneKind;
-    use crate::scene::column::Column;
-    use crate::scene::problem::column_problem;
+    use crate::tests::column_problem;
+    use oedometer_problem::method::{Configuration, Method};
+    use oedometer_scenes::SceneKind;
+    use oedometer_scenes::column::Column;
     use oedometer_soil::material::Material;
     use proptest::prelude::*;
     use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! The definition of a scene: one table per scene, each in its own file.
 
-use crate::scene::column::Column;
-use crate::state::points::Points;
+use crate::column::Column;
 use oedometer_exact::exact_error::ExactError;
 use oedometer_exact::reference::ReferenceKind;
+use oedometer_problem::problem::{Start, Strain};
 use oedometer_soil::material::Material;
 
 /// A scene as data and a few functions.
@@ -17,7 +17,7 @@ pub struct SceneDefinition {
     /// Kind of body: whether a study describes it in the table of a column or of a layer.
     pub body: SceneBody,
     /// Size of the strains that its theory holds for.
-    pub strain: SceneStrain,
+    pub strain: Strain,
     /// Load on the surface.
     pub load: SceneLoad,
     /// Whether waves run in it.
@@ -36,10 +36,10 @@ impl SceneDefinition {
         references: &[],
         model_difference: |_, _| None,
         body: SceneBody::Column,
-        strain: SceneStrain::Small,
+        strain: Strain::Small,
         load: SceneLoad::None,
         has_waves: false,
-        start: SceneStart::OverDepth(|_, _| Ok(ColumnStart::unloaded())),
+        start: SceneStart::OverDepth(|_, _| Ok(Start::unloaded())),
         start_pressure: StartPressure::Uniform(|_, _| 0.0),
     };
     /// The same column under a sudden load, from the undrained equilibrium of its own operators.
@@ -66,15 +66,6 @@ pub enum SceneBody {
     Square,
 }
 
-/// Size of strains.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum SceneStrain {
-    /// Infinitesimal: nothing moves.
-    Small,
-    /// Finite.
-    Large,
-}
-
 /// Load on the surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum SceneLoad {
@@ -93,7 +84,7 @@ pub enum SceneLoad {
 /// Origin of the points' state at the start.
 pub enum SceneStart {
     /// A function of the depth.
-    OverDepth(fn(&Column, &Material) -> Result<ColumnStart, ExactError>),
+    OverDepth(fn(&Column, &Material) -> Result<Start, ExactError>),
     /// The undrained equilibrium that the body finds by its own operators.
     Solved,
 }
@@ -106,65 +97,4 @@ pub enum StartPressure {
     ZeroMean,
     /// The pressure of the scene's own reference.
     OfReference,
-}
-
-/// State at a depth.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct StartFields {
-    /// Pore pressure, Pa.
-    pub pressure: f64,
-    /// Vertical effective stress, Pa.
-    pub vertical_stress: f64,
-    /// Lateral effective stress, Pa.
-    pub lateral_stress: f64,
-    /// Vertical velocity of the skeleton, m/s.
-    pub solid_velocity: f64,
-    /// Vertical velocity of the water, m/s.
-    pub water_velocity: f64,
-}
-
-/// The state from which a column starts.
-pub struct ColumnStart {
-    /// Vertical displacement gradient that was reached before any water moved.
-    pub vertical_gradient: f64,
-    /// Fields at a relative depth from 0, the surface, to 1, the base.
-    pub fields: Box<dyn Fn(f64) -> Result<StartFields, ExactError>>,
-}
-
-impl StartFields {
-    /// The stresses of an oedometer at rest: `ν/(1 − ν)` of the vertical one to the sides.
-    pub fn at_rest(soil: &Material, pressure: f64, vertical_stress: f64) -> Self {
-        let lateral_stress = soil.poissons_ratio / (1.0 - soil.poissons_ratio) * vertical_stress;
-        Self { pressure, vertical_stress, lateral_stress, ..Self::default() }
-    }
-}
-
-impl ColumnStart {
-    /// A uniform state at every depth.
-    pub fn uniform(vertical_gradient: f64, fields: StartFields) -> Self {
-        Self { vertical_gradient, fields: Box::new(move |_| Ok(fields)) }
-    }
-
-    /// At rest, without stress.
-    pub fn unloaded() -> Self {
-        Self::uniform(0.0, StartFields::default())
-    }
-
-    /// Gives points of a column of a height, m, their state.
-    ///
-    /// # Errors
-    /// When a solution refuses a depth.
-    pub fn apply<const D: usize>(&self, points: &mut Points<D>, height: f64) -> Result<(), ExactError> {
-        for point in 0..points.len() {
-            let fields = (self.fields)(1.0 - points.initial_position[point][D - 1] / height)?;
-            points.pressure[point] = fields.pressure;
-            for d in 0..D {
-                points.effective_stress[point][d][d] =
-                    if d + 1 == D { fields.vertical_stress } else { fields.lateral_stress };
-            }
-            points.solid_velocity[point][D - 1] = fields.solid_velocity;
-            points.water_velocity[point][D - 1] = fields.water_velocity;
-        }
-        Ok(())
-    }
 }

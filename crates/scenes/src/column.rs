@@ -1,9 +1,11 @@
 //! Geometry and load of the body of soil that a scene is about.
 
-use oedometer_exact::parameters::{Base, ColumnParameters, MotionParameters};
+use oedometer_exact::parameters::ColumnParameters;
 use oedometer_problem::arrangement::{Arrangement, is_single_set, single_set};
+use oedometer_soil::base::Base;
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 use oedometer_soil::material::Material;
+use oedometer_soil::motion::MotionParameters;
 use oedometer_soil::wording::{is_default, words};
 use serde::{Deserialize, Serialize};
 
