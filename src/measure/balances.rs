@@ -39,7 +39,9 @@ pub fn start_checks(
 /// Masses and forces at an output against those of the start.
 pub fn balance(case: &Case, time_factor: f64, start: &Snapshot, now: &Snapshot) -> Balance {
     let load = case.column.pressure_scale();
-    let applied = if case.scene.is_loaded() { load } else { 0.0 };
+    let loading_time = case.column.loading_time;
+    let grown = if now.time < loading_time { now.time / loading_time } else { 1.0 };
+    let applied = if case.scene.is_loaded() { grown * load } else { 0.0 };
     let parameters = column_parameters(&case.column, &case.material);
     let stresses = now.points.effective_stress.iter().zip(&now.points.pressure);
     let squares: f64 = stresses

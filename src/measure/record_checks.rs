@@ -2,7 +2,9 @@
 
 use crate::record::{Balance, Record, Status};
 use oedometer_problem::arrangement::Arrangement;
+use oedometer_problem::formulation::Formulation;
 use oedometer_problem::integrator::IntegratorKind;
+use oedometer_problem::method::Basis;
 use oedometer_problem::outcome::FailureKind;
 use oedometer_scenes::SceneKind;
 use oedometer_soil::continuity::Continuity;
@@ -22,9 +24,10 @@ const SHIFTED: f64 = 2.0;
 /// Residual of the equilibrium of points that do not move, on the coarsest meshes: a larger one means a pressure or a
 /// stress that is wrong by the load.
 const OUT_OF_BALANCE: f64 = 1.0;
-/// Bound on the residual of the equilibrium where points move. Stresses jump as points cross cells: by a quarter of the load
-/// for hat functions at half the height lost, and by a tenth for the others.
-const OUT_OF_BALANCE_MOVING: f64 = 0.4;
+/// Bounds on the residual of the equilibrium where points move: of domains that follow the deformation and of splines, and of
+/// hat functions and fixed domains, whose stresses jump by a quarter of the load as points cross cells. In 400 random runs at
+/// 15 to 50 % strain the pressures beyond the first bound were 3 % of the load off, or more.
+const OUT_OF_BALANCE_MOVING: [f64; 2] = [0.1, 0.4];
 /// Wave time over consolidation time up to which a column is in balance except for its first waves.
 const LITTLE_INERTIA: f64 = 1e-3;
 /// Why the points of a moving plane and of two point sets are not judged.
@@ -239,7 +242,7 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
     if case.scene.is_manufactured() {
         return Err("a motion made by body forces does not balance a load");
     }
-    if case.scene.has_waves() || case.column.loading_time > 0.0 {
+    if case.scene.has_waves() && case.formulation != Formulation::QuasiStatic {
         return Err("waves are not an error; the energy of the run is checked");
     }
     if case.is_spline() {
@@ -253,7 +256,10 @@ fn equilibrium_bound(record: &Record) -> Result<f64, &'static str> {
         } else {
             None
         };
-        return unjudged.map_or(Ok(OUT_OF_BALANCE_MOVING + SHIFTED * shift(record)), Err);
+        let method = case.method.built_in();
+        let jumps = method.is_none_or(|method| matches!(method.basis, Basis::Hat | Basis::Ugimp));
+        let bound = OUT_OF_BALANCE_MOVING[usize::from(jumps)] + SHIFTED * shift(record);
+        return unjudged.map_or(Ok(bound), Err);
     }
     if case.scene.needs_two_dimensions() && case.integrator == IntegratorKind::Implicit {
         // The residual of the nodes, which the solver balances.

@@ -5,6 +5,7 @@
 
 mod differential;
 mod draw;
+mod halved;
 mod known;
 mod laws;
 mod numbers;
@@ -130,4 +131,15 @@ fn what_theory_makes_equal_is_equal() {
         Outcome { options: related.base, kind, violations }
     });
     judge("relations", seed, &outcomes);
+}
+
+#[test]
+fn halved_steps_at_large_strain_do_not_leave_the_exact_solution_in_silence() {
+    let seed = asked("OEDOMETER_RANDOM_SEED", SEED);
+    let outcomes = swept(asked("OEDOMETER_RANDOM_CASES", CASES) / 20, |index| {
+        let options = halved::drawn(seed, index);
+        let (kind, violations) = halved::held(&options);
+        Outcome { options, kind, violations }
+    });
+    judge("halved steps", seed, &outcomes);
 }

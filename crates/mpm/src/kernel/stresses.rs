@@ -289,7 +289,7 @@ impl Following {
 /// deformation gradient with the volume of the method's own divergence, shared by three directions, as [`StrainIncrement::components`]
 /// shares it, also by those in which nothing is displaced.
 #[inline]
-fn assumed<const D: usize>(deformation: &Tensor<D>, volume_share: f64) -> Tensor<D> {
+pub(crate) fn assumed<const D: usize>(deformation: &Tensor<D>, volume_share: f64) -> Tensor<D> {
     let stretch = elementary::powf(volume_share, 1.0 / 3.0);
     deformation.map(|row| row.map(|component| stretch * component))
 }

@@ -2,11 +2,12 @@
 
 use crate::integrate::implicit::point_strain::PointStrain;
 use crate::integrate::implicit::trial::Trial;
+use crate::kernel::stresses::assumed;
 use crate::operators::stencil::{Stencils, with_stencils};
 use crate::operators::strain_gradient::StrainOperator;
 use crate::wide::wide;
 use oedometer_soil::law::StrainIncrement;
-use oedometer_soil::tensor::{identity, inverse, product, strain_between};
+use oedometer_soil::tensor::{Tensor, identity, inverse, product, strain_between};
 
 impl<const D: usize> Trial<D> {
     /// Deformation and effective stress of all points under the present displacement of the nodes; with B-bar, what
@@ -31,7 +32,8 @@ impl<const D: usize> Trial<D> {
     fn strain_points_by<const W: usize>(&mut self, stencils: &Stencils<D, W>, traces: &[f64]) -> bool {
         let (stride, laws) = (*self.body.grid.node_stride(), &self.body.stress_laws[..]);
         let is_hyperelastic = self.body.material.law.is_hyperelastic();
-        let (deforms, points) = (self.body.configuration.deforms(), &mut self.body.points);
+        let (deforms, moves) = (self.body.configuration.deforms(), self.body.configuration.moves_points());
+        let points = &mut self.body.points;
         let count = self.anchor.len();
         let stencils = stencils.slices(count);
         let (anchor_ratio, anchor_stress) =
@@ -52,6 +54,7 @@ impl<const D: usize> Trial<D> {
             }
             strained_for[point] = strained;
             has_changed = true;
+            let motion = gradient;
             if let Some(trace) = trace {
                 dilation = trace - (0..D).map(|d| gradient[d][d]).sum::<f64>();
                 for d in 0..D {
@@ -63,15 +66,13 @@ impl<const D: usize> Trial<D> {
             let mut deformation = identity();
             if deforms {
                 let before = &anchor_deformation[point];
-                let mut after = *before;
-                for i in 0..D {
-                    for j in 0..D {
-                        after[i][j] += gradient[i][j];
-                    }
-                }
+                let after = sum(before, &gradient);
                 let (inverse_after, volume) = inverse(&after);
                 let stretch = volume / inverse(before).1;
-                inverse_deformation[point] = inverse_after;
+                // Of the kinematics only the volume goes the way of the water's, as in the explicit step. A domain that did so
+                // would keep its length where points move apart, and nothing would resist that (docs/methods.md).
+                inverse_deformation[point] =
+                    if trace.is_some() && moves { inverse(&sum(before, &motion)).0 } else { inverse_after };
                 volume_ratio[point] = start * stretch;
                 strain.volume_ratio[1] = start * stretch;
                 deformation = after;
@@ -82,7 +83,13 @@ impl<const D: usize> Trial<D> {
             let mut stress = anchor_stress[point];
             let mut history = self.anchor.history.get(point).copied().unwrap_or_default();
             let law = &laws[usize::from(soil[point])];
-            law.update(&mut stress, &mut history, &strain, || product(&deformation, &carried[point]));
+            law.update(&mut stress, &mut history, &strain, || {
+                if trace.is_none() || !moves {
+                    return product(&deformation, &carried[point]);
+                }
+                let whole = product(&inverse(&inverse_deformation[point]).0, &carried[point]);
+                assumed(&whole, volume_ratio[point] / inverse(&whole).1)
+            });
             effective_stress[point] = stress;
             if let Some(kept) = points.history.get_mut(point) {
                 *kept = history;
@@ -90,4 +97,8 @@ impl<const D: usize> Trial<D> {
         }
         has_changed
     }
+}
+
+fn sum<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j]))
 }
