@@ -1,27 +1,22 @@
-//! Worlds: what the exact solution would be with one input of the solver, or one reading of times and places, changed.
+//! Worlds: what the exact solution would be with one input of the solver, or one meaning of places and times, changed.
 //!
 //! A world predicts every column of a result at once, so a cause that one column excludes is never named for another.
 
-use super::given::Given;
+use super::columns::{Field, Given};
 use crate::import::SampledState;
 use crate::measure::fields::{ExactFields, SamplePlaces};
 use oedometer_exact::{ColumnParameters, Reference, ReferenceKind, ShelfProblem};
 use oedometer_soil::layers::{SoilLayer, SoilLayers};
 
-/// Time factors after which nothing changes.
-const LAST: f64 = 40.0;
-/// [`LAST`] of solutions that are computed step by step.
-const LAST_STEPPED: f64 = 5.0;
-/// Time factor before which nothing has drained that samples show.
-const FIRST: f64 = 1e-9;
-/// [`FIRST`] of solutions that are computed step by step.
-const FIRST_STEPPED: f64 = 1e-8;
-
+/// Time factors before which nothing has drained that samples show, and after which nothing changes.
+const EDGES: [f64; 2] = [1e-9, 40.0];
+/// [`EDGES`] of solutions that are computed step by step.
+const STEPPED_EDGES: [f64; 2] = [1e-8, 5.0];
 /// Share of the height at which nothing of a drained surface is seen at the start.
 const JUST_BELOW: f64 = 1e-9;
 
 /// Places in [0, 1] and weights of Gauss' rule of six points.
-const GAUSS: [(f64, f64); 6] = [
+pub const GAUSS: [(f64, f64); 6] = [
     (0.033_765_242_898_423_97, 0.085_662_246_189_585_17),
     (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
     (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
@@ -30,26 +25,36 @@ const GAUSS: [(f64, f64); 6] = [
     (0.966_234_757_101_576, 0.085_662_246_189_585_17),
 ];
 
-/// Fields at all samples of all states, one after the other, and the settlement of each state.
+/// Fields at all samples of all sets, one after the other, and the settlement of each output.
 #[derive(Clone, Debug, Default)]
 pub struct Predicted {
-    pressure: Vec<f64>,
-    effective_stress: Vec<f64>,
-    up: Vec<f64>,
-    along: Vec<f64>,
+    fields: ExactFields,
     settlement: Vec<f64>,
 }
 
 impl Predicted {
     /// The values of a field.
-    pub fn field(&self, field: super::given::Field) -> &[f64] {
-        use super::given::Field;
+    pub fn field(&self, field: Field) -> &[f64] {
         match field {
-            Field::Pressure => &self.pressure,
-            Field::EffectiveStress => &self.effective_stress,
-            Field::Up => &self.up,
-            Field::Along => &self.along,
+            Field::Pressure => &self.fields.pressure,
+            Field::EffectiveStress => &self.fields.effective_stress,
+            Field::Up => &self.fields.displacement,
+            Field::Along => &self.fields.horizontal_displacement,
             Field::Settlement => &self.settlement,
+        }
+    }
+
+    fn lists(&mut self) -> [&mut Vec<f64>; 5] {
+        let ExactFields { pressure, effective_stress, displacement, horizontal_displacement } =
+            &mut self.fields;
+        [pressure, effective_stress, displacement, horizontal_displacement, &mut self.settlement]
+    }
+
+    /// Adds a multiple of another prediction of the same samples.
+    fn add(&mut self, share: f64, mut other: Self) {
+        for (list, other) in self.lists().into_iter().zip(other.lists()) {
+            list.resize(other.len(), 0.0);
+            list.iter_mut().zip(other).for_each(|(value, other)| *value += share * *other);
         }
     }
 }
@@ -73,16 +78,7 @@ pub enum Ends {
     OtherSide,
 }
 
-/// Which terms couple skeleton and water.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coupling {
-    /// Both.
-    Whole,
-    /// The pressure is missing from the momentum balance: the skeleton carries the load at once.
-    WithoutPressure,
-}
-
-/// One changed input or reading.
+/// One changed input or meaning.
 #[derive(Clone, Debug)]
 pub struct World {
     pub kind: ReferenceKind,
@@ -90,21 +86,21 @@ pub struct World {
     /// Factor of the times, and what is added to them, s.
     pub clock: [f64; 2],
     pub ends: Ends,
-    pub coupling: Coupling,
+    /// Whether the skeleton feels the pressure; else it carries the load at once.
+    pub is_coupled: bool,
     /// Factor of the pressure, where a problem has another start.
     pub pressure: f64,
     /// Factor of all fields, of another load at small strain.
     pub load: f64,
+    /// How long the load rises, s, in place of being there at once.
+    pub ramp: f64,
     /// How a sentence goes on after "the exact one".
     pub said: String,
     /// The questions to ask.
     pub asked: Vec<String>,
-    /// How long the load rises, s, in place of being there at once.
-    pub ramp: f64,
-    /// Number of single mistakes in it.
+    /// Number of single mistakes in it, and how many of its numbers were fitted.
     pub count: usize,
-    /// Whether a number of it was fitted.
-    pub is_fitted: bool,
+    pub fitted: usize,
 }
 
 impl World {
@@ -115,14 +111,14 @@ impl World {
             parameters: *given.parameters,
             clock: [1.0, 0.0],
             ends: Ends::Own,
-            coupling: Coupling::Whole,
+            is_coupled: true,
             pressure: 1.0,
             load: 1.0,
             ramp: 0.0,
             said: String::new(),
             asked: Vec::new(),
             count: 0,
-            is_fitted: false,
+            fitted: 0,
         }
     }
 
@@ -135,6 +131,32 @@ impl World {
         self
     }
 
+    /// [`with`](Self::with) of a number that was fitted.
+    #[must_use]
+    pub fn fitted(self, said: &str, asked: impl Into<String>) -> Self {
+        Self { fitted: self.fitted + 1, ..self.with(said, asked) }
+    }
+
+    /// This world under another load: a factor of all fields, or another input where they do not grow with it.
+    #[must_use]
+    pub fn loaded(mut self, factor: f64, given: &Given<'_>) -> Self {
+        if given.is_linear() && !self.parameters.self_weight {
+            self.load = factor;
+        } else {
+            self.parameters.load *= factor;
+        }
+        self
+    }
+
+    /// This world with a skeleton that is stiffer by a factor: slower to move, and less.
+    #[must_use]
+    pub fn stiffer(self, factor: f64) -> Self {
+        let parameters = with_soils(&self.parameters, |layer| {
+            layer.youngs_modulus = layer.youngs_modulus.map(|modulus| factor * modulus);
+        });
+        Self { parameters, ..self }
+    }
+
     /// Whether the times mean what a diffusion makes of them.
     pub fn is_slow(&self) -> bool {
         use ReferenceKind::{AtRest, DynamicColumn, DynamicSingleMode, Footing, SealedElement, StandingWave};
@@ -145,18 +167,14 @@ impl World {
 
     /// Whether a load in parts has the sum of what each part does.
     pub fn adds_up(&self) -> bool {
-        use ReferenceKind::{CosineLayer, CosineLayerIncompressible, Layered, Mandel, Shelf, Terzaghi};
+        use ReferenceKind::{
+            CosineLayer, CosineLayerIncompressible, Layered, Mandel, Terzaghi, TerzaghiIncompressible,
+        };
         use ShelfProblem::{Barron, BarronFreeStrain, BiotColumn, Cryer};
-        matches!(
-            self.kind,
-            Terzaghi
-                | ReferenceKind::TerzaghiIncompressible
-                | Layered
-                | CosineLayer
-                | CosineLayerIncompressible
-                | Mandel
-                | Shelf(BiotColumn | Cryer | Barron | BarronFreeStrain)
-        )
+        let shelf = [BiotColumn, Cryer, Barron, BarronFreeStrain].map(ReferenceKind::Shelf);
+        let scenes =
+            [Terzaghi, TerzaghiIncompressible, Layered, CosineLayer, CosineLayerIncompressible, Mandel];
+        scenes.contains(&self.kind) || shelf.contains(&self.kind)
     }
 
     /// Whether the body is one column of soil, or of layers, that strains along its height alone and has no weight.
@@ -172,27 +190,26 @@ impl World {
         let factor = self.parameters.time_factor(self.clock[0] * seconds + self.clock[1]);
         let own = self.parameters.time_factor(seconds);
         match self.kind {
-            ReferenceKind::LargeStrain(_) if factor > 0.0 => factor.clamp(FIRST_STEPPED, LAST_STEPPED),
-            _ if self.is_slow() && factor > 0.0 => factor.clamp(FIRST.min(own), LAST.max(own)),
+            ReferenceKind::LargeStrain(_) if factor > 0.0 => factor.clamp(STEPPED_EDGES[0], STEPPED_EDGES[1]),
+            _ if self.is_slow() && factor > 0.0 => factor.clamp(EDGES[0].min(own), EDGES[1].max(own)),
             _ => factor,
         }
     }
 
-    /// The time factors of all states of a result.
-    pub fn time_factors(&self, given: &Given<'_>) -> Vec<f64> {
-        given.states.iter().map(|state| self.time_factor(state.time)).collect()
+    /// The time factors of times.
+    pub fn time_factors(&self, times: &[f64]) -> Vec<f64> {
+        times.iter().map(|time| self.time_factor(*time)).collect()
     }
 
-    /// The solution, ready for all states of a result at some factors of the times.
-    pub fn solution(&self, given: &Given<'_>, factors: &[f64]) -> Option<Reference> {
+    /// The solution, ready for times at some factors of them.
+    pub fn solution(&self, given: &Given<'_>, times: &[f64], factors: &[f64]) -> Option<Reference> {
         let at = |factor: &f64| {
             let world = Self { clock: [factor * self.clock[0], self.clock[1]], ..self.clone() };
-            world.time_factors(given)
+            world.time_factors(times)
         };
         let is_timed = !self.is_slow() || matches!(self.kind, ReferenceKind::LargeStrain(_));
-        let is_own = self.kind == given.kind && self.parameters == *given.parameters;
-        if let Some(own) = given.solution.as_ref().filter(|_| is_own && !is_timed) {
-            return Some(own.clone());
+        if self.kind == given.kind && self.parameters == *given.parameters && !is_timed {
+            return Some(given.solution.clone());
         }
         let times: Vec<f64> = factors.iter().flat_map(at).collect();
         Reference::for_lines(self.kind, &self.parameters, &times).ok()
@@ -200,65 +217,63 @@ impl World {
 
     /// What the world predicts for the samples of a result.
     pub fn predict(&self, given: &Given<'_>) -> Option<Predicted> {
-        let world = self.of_half();
-        let own_is_enough = self.clock == [1.0, 0.0] && matches!(self.kind, ReferenceKind::LargeStrain(_));
-        let solution = if own_is_enough {
-            Reference::new(world.kind, &world.parameters, &world.time_factors(given)).ok()?
-        } else {
-            world.solution(given, &[1.0])?
-        };
-        self.predict_by(&solution, given)
+        self.predict_at(given, &given.times)
     }
 
-    /// As [`predict`](Self::predict), by a solution that is ready.
-    pub fn predict_by(&self, solution: &Reference, given: &Given<'_>) -> Option<Predicted> {
-        let world = self.of_half();
+    /// As [`predict`](Self::predict), at other times of its outputs.
+    pub fn predict_at(&self, given: &Given<'_>, times: &[f64]) -> Option<Predicted> {
+        let solution = self.of_half().solution(given, times, &[1.0])?;
+        self.predict_by(&solution, given, times)
+    }
+
+    /// As [`predict_at`](Self::predict_at), by a solution that is ready: at once, or as the sum of what each part of a
+    /// rising load does.
+    pub fn predict_by(&self, solution: &Reference, given: &Given<'_>, times: &[f64]) -> Option<Predicted> {
         let mut all = Predicted::default();
-        for state in &given.states {
-            let places = Places::of(self, &world, state);
-            let (fields, settlement) = self.under_its_load(&world, solution, state.time, &places)?;
-            let loaded = |value: &f64| self.load * value;
-            all.pressure.extend(fields.pressure.iter().map(|p| self.pressure * loaded(p)));
-            all.effective_stress.extend(fields.effective_stress.iter().map(loaded));
-            all.up.extend(fields.displacement.iter().map(loaded));
-            all.along.extend(fields.horizontal_displacement.iter().map(loaded));
-            let halves = if self.ends == Ends::BothDrained { 2.0 } else { 1.0 };
-            all.settlement.push(halves * loaded(&settlement));
+        for (output, seconds) in times.iter().enumerate() {
+            let sets = || given.sets.iter().filter(|(of, _)| *of == output).map(|(_, set)| &**set);
+            let mut here = Predicted::default();
+            if self.ramp > 0.0 {
+                // Ages of the load's parts; most happens when they are young, as the root of the age.
+                let youngest = (seconds - self.ramp).max(0.0);
+                for (place, weight) in GAUSS {
+                    let share = 2.0 * (seconds - youngest) * place * weight / self.ramp;
+                    let age = youngest + (seconds - youngest) * place * place;
+                    here.add(share, self.state(solution, age, sets())?);
+                }
+            } else {
+                here = self.state(solution, *seconds, sets())?;
+            }
+            here.fields.pressure.iter_mut().for_each(|pressure| *pressure *= self.pressure);
+            for (list, here) in all.lists().into_iter().zip(here.lists()) {
+                list.extend(here.iter().map(|value| self.load * value));
+            }
         }
         Some(all)
     }
 
-    /// The fields and the settlement of a state, at once or as the sum of what each part of a rising load does.
-    fn under_its_load(
+    /// The fields at the places of an output under the whole load.
+    fn state<'b>(
         &self,
-        half: &Self,
         solution: &Reference,
         seconds: f64,
-        places: &Places,
-    ) -> Option<(ExactFields, f64)> {
-        let at = |seconds: f64| {
-            let time = half.time_factor(seconds);
-            Some((self.fields(solution, time, places)?, solution.settlement(time).ok()?))
-        };
-        if self.ramp <= 0.0 {
-            return at(seconds);
-        }
-        let mut sum: Option<(ExactFields, f64)> = None;
-        // Ages of the load's parts; most happens when they are young, as the root of the age.
-        let youngest = (seconds - self.ramp).max(0.0);
-        for (place, weight) in GAUSS {
-            let share = 2.0 * (seconds - youngest) * place * weight / self.ramp;
-            let (part, settlement) = at(youngest + (seconds - youngest) * place * place)?;
-            let (fields, so_far) = sum.get_or_insert_with(|| (of_zeros(&part), 0.0));
-            *so_far += share * settlement;
-            for (list, part) in lists_of(fields).into_iter().zip(lists_of(&mut part.clone())) {
-                list.iter_mut().zip(part).for_each(|(value, part)| *value += share * *part);
+        sets: impl Iterator<Item = &'b SampledState>,
+    ) -> Option<Predicted> {
+        let half = self.of_half();
+        let time = half.time_factor(seconds);
+        let halves = if self.ends == Ends::BothDrained { 2.0 } else { 1.0 };
+        let settlement = solution.settlement(time).ok()?;
+        let mut all = Predicted { settlement: vec![halves * settlement], ..Predicted::default() };
+        for set in sets {
+            let mut fields = self.fields(solution, time, &Places::of(self, &half, set))?;
+            for (list, here) in all.lists().into_iter().zip(lists_of(&mut fields)) {
+                list.append(here);
             }
         }
-        sum
+        Some(all)
     }
 
-    /// The half of a column that is drained at both ends.
+    /// The body whose solution is asked: half of a column that is drained at both ends, one on its head.
     fn of_half(&self) -> Self {
         let mut world = self.clone();
         if self.ends == Ends::BothDrained {
@@ -270,13 +285,12 @@ impl World {
         world
     }
 
-    /// The fields of a state.
+    /// The fields at places.
     fn fields(&self, solution: &Reference, time: f64, places: &Places) -> Option<ExactFields> {
         let at = |time: f64| ExactFields::of(solution, time, places.samples()).ok();
         let mut fields = at(time)?;
-        if self.coupling == Coupling::WithoutPressure {
-            let drained = at(LAST)?;
-            fields = ExactFields { pressure: fields.pressure, ..drained };
+        if !self.is_coupled {
+            fields = ExactFields { pressure: fields.pressure, ..at(EDGES[1])? };
         }
         // A strain that is mirrored adds up from the other end.
         let top = solution.settlement(time).ok()?;
@@ -298,13 +312,6 @@ impl World {
 fn lists_of(fields: &mut ExactFields) -> [&mut Vec<f64>; 4] {
     let ExactFields { pressure, effective_stress, displacement, horizontal_displacement } = fields;
     [pressure, effective_stress, displacement, horizontal_displacement]
-}
-
-/// Fields of 0 at as many places.
-fn of_zeros(fields: &ExactFields) -> ExactFields {
-    let mut zeros = fields.clone();
-    lists_of(&mut zeros).into_iter().flatten().for_each(|value| *value = 0.0);
-    zeros
 }
 
 /// The places of a state in the body of a world.
@@ -352,31 +359,24 @@ fn turned(layers: &SoilLayers) -> SoilLayers {
 
 /// The soils of a column with all their values changed: that of the column, and those of its layers.
 pub fn with_soils(parameters: &ColumnParameters, change: impl Fn(&mut SoilLayer)) -> ColumnParameters {
-    let mut changed = *parameters;
-    let mut layer = SoilLayer {
-        thickness: parameters.height,
-        youngs_modulus: Some(parameters.soil.youngs_modulus),
-        poissons_ratio: Some(parameters.soil.poissons_ratio),
-        porosity: Some(parameters.soil.porosity),
-        water_bulk_modulus: Some(parameters.soil.water_bulk_modulus),
-        hydraulic_conductivity: Some(parameters.soil.hydraulic_conductivity),
-    };
-    change(&mut layer);
-    changed.soil = layer.soil(&parameters.soil);
-    let of_layer = |layer: &SoilLayer| {
-        let soil = layer.soil(&parameters.soil);
-        let mut whole = SoilLayer {
-            thickness: layer.thickness,
+    let changed = |thickness: f64, soil: &oedometer_soil::material::Material| {
+        let mut layer = SoilLayer {
+            thickness,
             youngs_modulus: Some(soil.youngs_modulus),
             poissons_ratio: Some(soil.poissons_ratio),
             porosity: Some(soil.porosity),
             water_bulk_modulus: Some(soil.water_bulk_modulus),
             hydraulic_conductivity: Some(soil.hydraulic_conductivity),
         };
-        change(&mut whole);
-        whole
+        change(&mut layer);
+        layer
     };
-    let layers: Vec<SoilLayer> = parameters.soils.iter().map(of_layer).collect();
-    changed.soils = SoilLayers::from_slice(&layers).unwrap_or(parameters.soils);
-    changed
+    let soil = &parameters.soil;
+    let layers: Vec<SoilLayer> =
+        parameters.soils.iter().map(|layer| changed(layer.thickness, &layer.soil(soil))).collect();
+    ColumnParameters {
+        soil: changed(parameters.height, soil).soil(soil),
+        soils: SoilLayers::from_slice(&layers).unwrap_or(parameters.soils),
+        ..*parameters
+    }
 }

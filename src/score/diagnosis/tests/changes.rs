@@ -11,6 +11,7 @@
     reason = "one table of all changes, each a closure"
 )]
 
+use super::super::world::with_soils;
 use super::super::*;
 use crate::import::mapping::Mapping;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
