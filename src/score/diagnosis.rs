@@ -29,10 +29,6 @@ const SAMPLES: [usize; 2] = [5000, 16];
 const UNEVEN_TOP: f64 = 0.02;
 /// Relative distance of times that stand for one.
 const SAME_TIME: f64 = 1e-6;
-/// Share of the load that a difference of two pressures shows.
-const NOTABLE: f64 = 1e-3;
-/// Values up to this share of the largest are equal.
-const ROUND_OFF: f64 = 1e-9;
 /// Words of a question about one column, where the others match.
 const ONLY: &str = "and only it: ";
 /// Error up to which a column matches.
@@ -63,9 +59,6 @@ pub fn diagnosis(
         [outputs] => scene.told(outputs, None),
         runs => Told { causes: vec![scene.told_of_runs(runs)], places: Vec::new() },
     };
-    if sentences.is_empty() {
-        sentences.extend(scene.exchanged_axes(states));
-    }
     let uneven = scene.uneven_top(states);
     sentences.extend(places.into_iter().filter(|_| uneven.is_none()));
     sentences.extend(uneven);
@@ -213,29 +206,6 @@ impl Scene<'_> {
             told.causes.push(format!("{alone}: there {}{run}", there.causes.join("; ")));
         }
         true
-    }
-
-    /// A sentence about a slab whose pressure varies across the drained direction alone.
-    fn exchanged_axes(&self, states: &[SampledState]) -> Option<String> {
-        let state = states.iter().find(|state| state.pressure.len() == state.initial_distance.len())?;
-        if self.solution.kind() != ReferenceKind::Mandel || state.pressure.is_empty() {
-            return None;
-        }
-        let scale = state.pressure.iter().copied().map(f64::abs).fold(0.0, f64::max);
-        // The largest difference of two neighbours along one direction, at one place across it.
-        let largest = |across: &[f64], along: &[f64]| {
-            let mut order: Vec<usize> = (0..across.len()).collect();
-            order.sort_by(|a, b| across[*a].total_cmp(&across[*b]).then(along[*a].total_cmp(&along[*b])));
-            let pairs = order.windows(2).filter(|pair| across[pair[0]] == across[pair[1]]);
-            pairs.map(|pair| (state.pressure[pair[0]] - state.pressure[pair[1]]).abs()).fold(0.0, f64::max)
-        };
-        let along_x = largest(&state.initial_distance, &state.initial_height);
-        let along_y = largest(&state.initial_height, &state.initial_distance);
-        (along_x <= ROUND_OFF * scale && along_y > NOTABLE * scale).then(|| {
-            "your p varies along y alone: are the axes exchanged? Of `mandel` x runs along the drained direction, from \
-             the middle, and y across"
-                .to_owned()
-        })
     }
 
     /// A sentence about the top of a column that does not stay plane: samples of its highest row that settle differently.

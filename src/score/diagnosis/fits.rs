@@ -3,7 +3,7 @@
 use super::columns::Given;
 use super::hypotheses::{Family, Fitted, NAME, Scale, scales};
 use super::search::{FLOOR, spoils};
-use super::world::{Ends, World};
+use super::world::World;
 use oedometer_exact::Reference;
 use oedometer_soil::elementary::{exp, ln};
 use oedometer_soil::wording::short;
@@ -165,8 +165,8 @@ pub fn worlds(family: &Family, given: &Given<'_>, base: &World, in_units: bool) 
         .filter_map(|fit| match family.kind {
             Fitted::Clock => clock(given, base, &fit, &names),
             Fitted::Stiffness => stiffness(given, base, &fit, names.clone()),
-            Fitted::Moment => moment(&trial, base, fit.number, first, value(fit.number)),
-            _ => ramp(&trial, base, &fit, first),
+            Fitted::Moment => moment(base, fit.number, first),
+            _ => ramp(base, &fit),
         })
         .collect()
 }
@@ -253,6 +253,17 @@ fn golden_section([mut low, mut high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> 
 /// The world of a factor of the time, with what it may be.
 fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) -> Option<World> {
     let at = |factor: f64| World { clock: [factor, 0.0], ..base.clone() };
+    let off = |factor: f64| ln(factor / fit.number).abs();
+    // The names of some factors, the nearest first.
+    let named = |is_meant: &dyn Fn(f64) -> bool| -> Vec<&(f64, String)> {
+        let mut named: Vec<&(f64, String)> = names.iter().filter(|(factor, _)| is_meant(*factor)).collect();
+        named.sort_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+        named.truncate(MOST_NAMES);
+        named
+    };
+    let few = |is_meant: &dyn Fn(f64) -> bool| -> String {
+        named(is_meant).into_iter().map(|(_, asked)| format!(" Or {asked}")).collect()
+    };
     match fit.is_open {
         [true, true] => None,
         [_, true] => {
@@ -266,46 +277,27 @@ fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) ->
             } else {
                 ""
             };
-            let few = far_names(given, |factor| factor >= fit.from, false);
-            Some(at(fit.to).fitted(&said, format!("is k, or are the times, too large by far{few}?{or}")))
+            let few = few(&|factor| factor >= fit.from);
+            Some(at(fit.to).fitted(&said, format!("is k, or are the times, too large by far?{few}{or}")))
         }
         [true, false] => {
-            let few = far_names(given, |factor| 1.0 / factor <= fit.to, true);
             let most = shown(rounded(fit.to));
-            let asked = format!("is k, or are the times, too small by far, {most} × at most{few}?");
+            let few = few(&|factor| factor <= fit.to);
+            let asked = format!("is k, or are the times, too small by far, {most} × at most?{few}");
             Some(at(fit.number).with(" of the start: nothing has drained at the last time", asked))
         }
         [false, false] if (fit.number - 1.0).abs() < NEAR_ONE => None,
         [false, false] => {
-            let mut named: Vec<&(f64, String)> =
-                names.iter().filter(|(factor, _)| fit.allows(*factor)).collect();
-            let off = |factor: f64| ln(factor / fit.number).abs();
-            named.sort_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+            let named = named(&|factor| fit.allows(factor));
             let Some((factor, _)) = named.first() else {
                 let said = format!(" at {} × the time", shown(three_digits(fit.number)));
                 return Some(at(fit.number).fitted(&said, generic(given, fit.number)));
             };
-            let asked: Vec<&str> = named.iter().take(MOST_NAMES).map(|(_, asked)| &**asked).collect();
+            let asked: Vec<&str> = named.iter().map(|(_, asked)| &**asked).collect();
             let said = format!(" at {} × the time", shown(three_digits(*factor)));
             Some(at(*factor).with(&said, asked.join(" Or ")))
         }
     }
-}
-
-/// Named factors beyond a bound, as examples; of slow times their reciprocals.
-fn far_names(given: &Given<'_>, is_beyond: impl Fn(f64) -> bool, is_slow: bool) -> String {
-    let all = [
-        (60.0, "s and min, or m/s and m/min"),
-        (3600.0, "s and h, or m/s and m/hour"),
-        (86_400.0, "s and days, or m/s and m/day"),
-        (365.25 * 86_400.0, "s and years, or m/s and m/year"),
-        (given.parameters.soil.unit_weight_of_water(), "k and k/γ_w"),
-        (1e3, "k and k/μ"),
-    ];
-    let far = all.into_iter().filter(|(factor, _)| is_beyond(*factor));
-    let part = if is_slow { "1/" } else { "" };
-    let names: Vec<String> = far.map(|(factor, what)| format!("{part}{} ({what})", short(factor))).collect();
-    if names.is_empty() { String::new() } else { format!(", as by {}", names.join(", ")) }
 }
 
 /// The inputs of which each alone would make the time run faster by a factor, with the numbers that they would be.
@@ -328,38 +320,22 @@ fn generic(given: &Given<'_>, factor: f64) -> String {
 }
 
 /// The world of times that count from another moment.
-fn moment(trial: &Trial<'_>, base: &World, moment: f64, first: f64, left: f64) -> Option<World> {
-    if moment.abs() < NEAR_ONE * first || base.ends != Ends::Own {
-        return None;
-    }
+fn moment(base: &World, moment: f64, first: f64) -> Option<World> {
     let seconds = short(rounded(moment.abs()));
     let (side, late) = if moment < 0.0 { ("before", "late") } else { ("after", "early") };
-    // A load that rises before the first time looks like a late one, halfway.
-    let rising = World { ramp: -2.0 * moment, ..base.clone() };
-    let rises_as_well = moment < 0.0 && base.adds_up() && trial.left(&rising, None) <= left + ln(AS_WELL);
-    let rises = match rises_as_well {
-        true => format!(" Or does the load rise over {} s, in a ramp?", short(three_digits(rising.ramp))),
-        false => String::new(),
-    };
-    let asked =
-        format!("do your times count from another moment, so that all are {seconds} s too {late}?{rises}");
-    Some(World { clock: [1.0, moment], ..base.clone() }.fitted(&format!(" {seconds} s {side}"), asked))
+    let asked = format!("do your times count from another moment, so that all are {seconds} s too {late}?");
+    let world = World { clock: [1.0, moment], ..base.clone() }.fitted(&format!(" {seconds} s {side}"), asked);
+    (moment.abs() >= NEAR_ONE * first).then_some(world)
 }
 
 /// The world of a load that rises evenly, where that of the scene is there at once.
-fn ramp(trial: &Trial<'_>, base: &World, fit: &Fit, first: f64) -> Option<World> {
-    if fit.is_open.contains(&true) {
-        return None;
-    }
+fn ramp(base: &World, fit: &Fit) -> Option<World> {
     let seconds = short(three_digits(fit.number));
-    let late = World { clock: [1.0, -0.5 * fit.number], ..base.clone() };
-    let is_late = fit.number < 2.0 * first && trial.left(&late, None) <= fit.left + ln(AS_WELL);
-    let or = if is_late { " Or do your times count from another moment, half of that earlier?" } else { "" };
-    let asked = format!(
-        "does your load rise over {seconds} s, in a ramp, where that of the scene is there at once?{or}"
-    );
+    let asked =
+        format!("does your load rise over {seconds} s, in a ramp, where that of the scene is there at once?");
     let said = format!(" under a load that rises over {seconds} s");
-    Some(World { ramp: fit.number, ..base.clone() }.fitted(&said, asked))
+    let world = World { ramp: fit.number, ..base.clone() }.fitted(&said, asked);
+    (fit.is_open == [false, false]).then_some(world)
 }
 
 /// The world of a stiffness that fits, where displacements tell it from a permeability.
@@ -432,15 +408,6 @@ fn common_factor(given: &Given<'_>) -> Option<f64> {
     let first = *factors.first()?;
     let are_one = factors.iter().all(|factor| (factor / first - 1.0).abs() <= COMMON);
     (are_one && first > 0.0).then(|| factors.iter().sum::<f64>() / factors.len() as f64)
-}
-
-/// A power of e, and the logarithm that it is of.
-pub fn power(at: f64) -> f64 {
-    exp(at)
-}
-
-pub fn log(number: f64) -> f64 {
-    ln(number)
 }
 
 /// A factor in words: −1.00, 0.001, 60.

@@ -53,7 +53,7 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
         factor,
         asked: Some(asked).filter(|asked| !asked.is_empty()).into_iter().collect(),
         key: key.to_owned(),
-        is_head: asked_is_head(key),
+        is_head: key.starts_with("head"),
     };
     let mut all = vec![scale(1.0, String::new(), "")];
     let mut add = |factor: f64, asked: String, key: &str| {
@@ -95,10 +95,6 @@ pub fn scales(field: Field, given: &Given<'_>) -> Vec<Scale> {
     all.into_iter().chain(turned).collect()
 }
 
-fn asked_is_head(key: &str) -> bool {
-    key.starts_with("head")
-}
-
 /// Numbers with their questions.
 type Names = fn(&Given<'_>, Field) -> Vec<(f64, String)>;
 
@@ -137,6 +133,8 @@ pub enum Need {
     /// A sign that no column tells, because it is another quantity.
     AnySign,
 }
+
+use Need::{AnySign, AnyTime, Head, Large, NoScale, OneSoil, OtherRight, Still, TwoOutputs};
 
 /// A hypothesis about one column.
 pub struct Row {
@@ -190,233 +188,73 @@ impl Row {
 
 /// What one column may hold: name, columns, needs, what it does, the question, and the values with the part of them that
 /// varies as the exact solution does.
+#[rustfmt::skip]
 pub const READINGS: &[Row] = &[
-    row("factor", ANY, &[Need::NoScale], "is {} × the exact one", "", |x, factor| x.times(factor))
-        .named(factors),
-    row(
-        "effective stress",
-        P,
-        &[Need::AnySign],
-        "matches the exact effective stress",
-        "is it given in place of the pore pressure?",
-        |x, _| whole(x.stress().iter().map(|stress| -stress).collect()),
-    ),
-    row(
-        "total stress",
-        P,
-        &[Need::AnySign],
-        "matches the exact total stress",
-        "is it given in place of the pore pressure?",
-        |x, _| whole(x.total()),
-    ),
-    row(
-        "pressure",
-        S,
-        &[Need::AnySign],
-        "matches the exact pore pressure",
-        "is it given in place of the effective stress?",
-        |x, _| whole(x.pressure()),
-    ),
-    row(
-        "pressure left in",
-        S,
-        &[Need::AnySign],
-        "matches the exact total stress",
-        "is the pore pressure left in?",
-        |x, _| whole(x.total().iter().map(|total| -total).collect()),
-    ),
-    row(
-        "degree",
-        P,
-        &[],
-        "matches 1 − p/q of the exact one",
-        "is a degree of consolidation given in its place?",
-        |x, _| x.offset(-1.0, 1.0, &x.dimensionless()),
-    ),
-    row(
-        "strain",
-        STRESS,
-        &[Need::OneSoil, Need::AnySign],
-        "matches the exact strain",
-        "is the strain given in its place?",
-        |x, _| whole(x.strain()),
-    ),
-    row(
-        "porosity",
-        STRESS,
-        &[Need::OneSoil],
-        "matches the exact porosity",
+    row("factor", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| x.times(factor)).named(factors),
+    row("effective stress", P, &[AnySign], "matches the exact effective stress",
+        "is it given in place of the pore pressure?", |x, _| whole(x.stress().iter().map(|stress| -stress).collect())),
+    row("total stress", P, &[AnySign], "matches the exact total stress",
+        "is it given in place of the pore pressure?", |x, _| whole(x.total())),
+    row("pressure", S, &[AnySign], "matches the exact pore pressure",
+        "is it given in place of the effective stress?", |x, _| whole(x.pressure())),
+    row("pressure left in", S, &[AnySign], "matches the exact total stress", "is the pore pressure left in?",
+        |x, _| whole(x.total().iter().map(|total| -total).collect())),
+    row("degree", P, &[], "matches 1 − p/q of the exact one", "is a degree of consolidation given in its place?",
+        |x, _| x.offset(-1.0, 1.0, &x.dimensionless())),
+    row("strain", STRESS, &[OneSoil, AnySign], "matches the exact strain",
+        "is the strain given in its place?", |x, _| whole(x.strain())),
+    row("porosity", STRESS, &[OneSoil], "matches the exact porosity",
         "is the porosity given in its place, as it changes with the strain?",
-        |x, _| x.offset(1.0 - x.porosity(), x.porosity(), &x.strain()),
-    ),
-    row(
-        "void ratio",
-        STRESS,
-        &[Need::OneSoil],
-        "matches the exact void ratio",
+        |x, _| x.offset(1.0 - x.porosity(), x.porosity(), &x.strain())),
+    row("void ratio", STRESS, &[OneSoil], "matches the exact void ratio",
         "is the void ratio given in its place?",
-        |x, _| x.offset(1.0 / (1.0 - x.porosity()), x.porosity() / (1.0 - x.porosity()), &x.strain()),
-    ),
-    row("absolute", P, &[], "differs from the exact one by a constant of {} Pa", "", |x, constant| {
-        x.beside(|_| constant, true)
-    })
-    .named(|_, _| atmospheres("")),
-    row(
-        "hydrostatic",
-        P,
-        &[],
-        "differs from the exact one by a constant gradient of {} Pa/m",
-        "",
-        |x, weight| x.beside(|place| weight * x.depth(place), false),
-    )
-    .named(hydrostatic),
-    row(
-        "hydrostatic of the present depth",
-        P,
-        &[Need::Large],
-        "differs from the exact one by a constant gradient of {} Pa/m",
-        "",
-        |x, weight| x.beside(|place| weight * x.present_depth(place), false),
-    )
-    .named(hydrostatic),
-    row(
-        "hydrostatic and absolute",
-        P,
-        &[],
-        "differs from the exact one by a hydrostatic part and {} Pa",
-        "",
-        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true),
-    )
-    .named(|_, _| atmospheres("is the hydrostatic part left in? And "))
-    .counts(2),
-    row(
-        "elevation",
-        P,
-        &[Need::Head],
-        "differs from the exact one by a constant gradient",
+        |x, _| x.offset(1.0 / (1.0 - x.porosity()), x.porosity() / (1.0 - x.porosity()), &x.strain())),
+    row("absolute", P, &[], "differs from the exact one by a constant of {} Pa", "",
+        |x, constant| { x.beside(|_| constant, true) }).named(|_, _| atmospheres("")),
+    row("hydrostatic", P, &[], "differs from the exact one by a constant gradient of {} Pa/m", "",
+        |x, weight| x.beside(|place| weight * x.depth(place), false)).named(hydrostatic),
+    row("hydrostatic of the present depth", P, &[Large], "differs from the exact one by a constant gradient of {} Pa/m",
+        "", |x, weight| x.beside(|place| weight * x.present_depth(place), false)).named(hydrostatic),
+    row("hydrostatic and absolute", P, &[], "differs from the exact one by a hydrostatic part and {} Pa", "",
+        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true)).named(|_, _| atmospheres("is the hydrostatic part left in? And ")).counts(2),
+    row("elevation", P, &[Head], "differs from the exact one by a constant gradient",
         "is it a total head, with the elevation?",
-        |x, _| x.beside(|place| x.weight() * (x.given.parameters.height - x.depth(place)), false),
-    ),
-    row(
-        "hydrostatic of another level",
-        P,
-        &[],
-        "differs from the exact one by a hydrostatic part and {} Pa",
+        |x, _| x.beside(|place| x.weight() * (x.given.parameters.height - x.depth(place)), false)),
+    row("hydrostatic of another level", P, &[], "differs from the exact one by a hydrostatic part and {} Pa",
         "is the hydrostatic part left in?",
-        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true),
-    )
-    .fitted(Number::Constant),
-    row(
-        "constant",
-        P,
-        &[],
-        "differs from the exact one by a constant of {} Pa",
-        "is a constant of {} Pa left in?",
-        |x, constant| x.beside(|_| constant, true),
-    )
-    .fitted(Number::Constant),
-    row(
-        "earlier stage",
-        UP,
-        &[Need::TwoOutputs],
-        "differs from the exact one by the same at all times, {} m at the top",
+        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true)).fitted(Number::Constant),
+    row("constant", P, &[], "differs from the exact one by a constant of {} Pa", "is a constant of {} Pa left in?",
+        |x, constant| x.beside(|_| constant, true)).fitted(Number::Constant),
+    row("earlier stage", UP, &[TwoOutputs], "differs from the exact one by the same at all times, {} m at the top",
         "is the displacement of an earlier stage, as of the own weight, left in?",
-        |x, top| x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true),
-    )
-    .fitted(Number::Slope),
-    row(
-        "later moment",
-        MOVED,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches the exact one less that of {} s",
+        |x, top| x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true)).fitted(Number::Slope),
+    row("later moment", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of {} s",
         "does it count from a later moment, at {} s, in place of the start of loading?",
-        |x, moment| x.less(&x.at(|_| moment)?, |_| false),
-    )
-    .fitted(Number::Time),
-    row(
-        "restart",
-        MOVED,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches the exact one less that of the first output",
+        |x, moment| x.less(&x.at(|_| moment)?, |_| false)).fitted(Number::Time),
+    row("restart", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of the first output",
         "does it count anew after the first output, as after a restart or a stage?",
-        |x, _| x.less(&x.at(|_| x.given.times[0])?, |output| output == 0),
-    ),
-    row(
-        "per output",
-        INCREASE,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches what the exact one gains from output to output",
+        |x, _| x.less(&x.at(|_| x.given.times[0])?, |output| output == 0)),
+    row("per output", INCREASE, &[AnyTime, TwoOutputs], "matches what the exact one gains from output to output",
         "is it the increment since the output before, not the whole?",
-        |x, _| x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0),
-    ),
-    row(
-        "output behind",
-        ANY,
-        &[Need::AnyTime, Need::TwoOutputs, Need::OtherRight],
-        "matches the exact one of the output before",
-        "is it that of the output before?",
-        |x, _| whole(x.at(|output| x.given.before[output])?),
-    ),
-    row(
-        "steps behind",
-        ANY,
-        &[Need::AnyTime, Need::TwoOutputs, Need::OtherRight],
-        "matches the exact one of {} s before",
+        |x, _| x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0)),
+    row("output behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one of the output before",
+        "is it that of the output before?", |x, _| whole(x.at(|output| x.given.before[output])?)),
+    row("steps behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one of {} s before",
         "is it {} s behind the other columns, as by a step or half of one?",
-        |x, late| whole(x.at(|output| (x.given.times[output] - late).max(0.0))?),
-    )
-    .fitted(Number::Time),
-    row(
-        "one state",
-        ANY,
-        &[Need::AnyTime, Need::Still, Need::OtherRight],
-        "matches the exact one of {} s at all outputs",
-        "is it one state at all outputs, that of {} s?",
-        |x, moment| whole(x.at(|_| moment)?),
-    )
-    .fitted(Number::Time),
-    row(
-        "integral",
-        STRESS,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches the integral of the exact one over time",
-        "is it integrated over time?",
-        |x, _| whole(x.integral()?),
-    ),
-    row(
-        "mean over time",
-        STRESS,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches the mean of the exact one since the start",
+        |x, late| whole(x.at(|output| (x.given.times[output] - late).max(0.0))?)).fitted(Number::Time),
+    row("one state", ANY, &[AnyTime, Still, OtherRight], "matches the exact one of {} s at all outputs",
+        "is it one state at all outputs, that of {} s?", |x, moment| whole(x.at(|_| moment)?)).fitted(Number::Time),
+    row("integral", STRESS, &[AnyTime, TwoOutputs], "matches the integral of the exact one over time",
+        "is it integrated over time?", |x, _| whole(x.integral()?)),
+    row("mean over time", STRESS, &[AnyTime, TwoOutputs], "matches the mean of the exact one since the start",
         "is it the mean over time since the start?",
-        |x, _| whole(x.integral()?.iter().enumerate().map(|(place, sum)| sum / x.time(place)).collect()),
-    ),
-    row(
-        "rate",
-        INCREASE,
-        &[Need::AnyTime, Need::TwoOutputs],
-        "matches the rate of the exact one",
-        "is it the rate (velocity), not the whole?",
-        |x, _| whole(x.rate()?),
-    ),
-    row(
-        "turned alone",
-        PLACED,
-        &[Need::OtherRight],
-        "matches the exact one upside down",
-        "is only this column written from the other end?",
-        |x, _| whole(x.turned()?),
-    ),
-    row(
-        "unnamed factor",
-        ANY,
-        &[Need::NoScale],
-        "is {} × the exact one at all times and places",
-        "is a factor missing where it is written?",
-        |x, factor| x.times(factor),
-    )
-    .fitted(Number::Factor)
-    .counts(2),
+        |x, _| whole(x.integral()?.iter().enumerate().map(|(place, sum)| sum / x.time(place)).collect())),
+    row("rate", INCREASE, &[AnyTime, TwoOutputs], "matches the rate of the exact one",
+        "is it the rate (velocity), not the whole?", |x, _| whole(x.rate()?)),
+    row("turned alone", PLACED, &[OtherRight], "matches the exact one upside down",
+        "is only this column written from the other end?", |x, _| whole(x.turned()?)),
+    row("unnamed factor", ANY, &[NoScale], "is {} × the exact one at all times and places",
+        "is a factor missing where it is written?", |x, factor| x.times(factor)).fitted(Number::Factor).counts(2),
 ];
 
 /// Named factors of one column alone.
@@ -478,114 +316,62 @@ fn is_slab(given: &Given<'_>) -> bool {
 }
 
 /// What all columns may share.
+#[rustfmt::skip]
 pub const CHANGES: &[Change] = &[
-    change(
-        " upside down",
-        "is `y` counted from the other end?",
-        |given, _| !is_slab(given),
-        |_, own| World { ends: Ends::UpsideDown, ..own },
-    ),
-    change(
-        " with x turned",
-        "does `x` count from the drained side?",
-        |given, _| is_slab(given),
-        |_, own| World { ends: Ends::UpsideDown, ..own },
-    ),
-    change(
-        " of a column that drains at its base",
-        "is the base drained in place of the surface?",
-        |_, own| own.is_a_column(),
-        |_, own| World { ends: Ends::DrainedBase, ..own },
-    ),
-    change(
-        " of a column that drains at both ends",
-        "is the base drained, too?",
-        |given, own| own.is_a_column() && given.parameters.soils.is_empty(),
-        |_, own| World { ends: Ends::BothDrained, ..own },
-    ),
-    change(
-        " with x and y exchanged",
+    change(" upside down", "is `y` counted from the other end?",
+        |given, _| !is_slab(given), |_, own| World { ends: Ends::UpsideDown, ..own }),
+    change(" with x turned", "does `x` count from the drained side?",
+        |given, _| is_slab(given), |_, own| World { ends: Ends::UpsideDown, ..own }),
+    change(" of a column that drains at its base", "is the base drained in place of the surface?",
+        |_, own| own.is_a_column(), |_, own| World { ends: Ends::DrainedBase, ..own }),
+    change(" of a column that drains at both ends", "is the base drained, too?",
+        |given, own| own.is_a_column() && given.parameters.soils.is_empty(), |_, own| World { ends: Ends::BothDrained, ..own }),
+    change(" with x and y exchanged",
         "are the axes exchanged? Of `mandel` x runs along the drained direction, from the middle, and y across",
-        |given, _| is_slab(given),
-        |_, own| World { ends: Ends::AxesExchanged, ..own },
-    ),
-    change(
-        " with x turned",
-        "does `x` count from the other end?",
-        |given, _| given.is_plane(),
-        |_, own| World { ends: Ends::OtherSide, ..own },
-    ),
-    change(
-        " of incompressible water",
-        "is the storage of the water, n/K_w, missing from the mass balance?",
-        |_, _| true,
-        |_, own| with_water(own, 1e9),
-    ),
-    change(
-        " of water softer by n",
-        "is K_w taken for K_w/n?",
-        |_, _| true,
-        |given, own| with_water(own, given.parameters.soil.porosity),
-    ),
-    change(
-        " of compressible water",
+        |given, _| is_slab(given), |_, own| World { ends: Ends::AxesExchanged, ..own }),
+    change(" with x turned", "does `x` count from the other end?",
+        |given, _| given.is_plane(), |_, own| World { ends: Ends::OtherSide, ..own }),
+    change(" of incompressible water", "is the storage of the water, n/K_w, missing from the mass balance?",
+        |_, _| true, |_, own| with_water(own, 1e9)),
+    change(" of water softer by n", "is K_w taken for K_w/n?",
+        |_, _| true, |given, own| with_water(own, given.parameters.soil.porosity)),
+    change(" of compressible water",
         "does the water of your solver store, so that `--reference terzaghi` is the right one?",
-        |_, own| own.kind == ReferenceKind::TerzaghiIncompressible,
-        |_, own| World { kind: ReferenceKind::Terzaghi, ..own },
-    ),
-    change(
-        " of compressible water",
+        |_, own| own.kind == ReferenceKind::TerzaghiIncompressible, |_, own| World { kind: ReferenceKind::Terzaghi, ..own }),
+    change(" of compressible water",
         "does the water of your solver store, so that `--reference cosine-layer` is the right one?",
-        |_, own| own.kind == ReferenceKind::CosineLayerIncompressible,
-        |_, own| World { kind: ReferenceKind::CosineLayer, ..own },
-    ),
-    change(
-        " of the start at all times",
-        "does nothing drain: is the surface closed?",
-        |_, own| own.is_slow(),
-        |_, own| World { clock: [0.0, 0.0], ..own },
-    ),
-    change(
-        " of the start at all times",
-        "does nothing drain: is the surface closed?",
-        |_, own| own.is_slow(),
-        |_, own| World { clock: [0.0, 0.0], ends: Ends::Closed, ..own },
-    ),
-    change(
-        " of a skeleton without the pressure",
+        |_, own| own.kind == ReferenceKind::CosineLayerIncompressible, |_, own| World { kind: ReferenceKind::CosineLayer, ..own }),
+    change(" of the start at all times", "does nothing drain: is the surface closed?",
+        |_, own| own.is_slow(), |_, own| World { clock: [0.0, 0.0], ..own }),
+    change(" of the start at all times", "does nothing drain: is the surface closed?",
+        |_, own| own.is_slow(), |_, own| World { clock: [0.0, 0.0], ends: Ends::Closed, ..own }),
+    change(" of a skeleton without the pressure",
         "is the pore pressure missing from the momentum balance, so that the skeleton carries the load at once?",
-        |given, own| own.is_slow() && given.moves() && given.has_pressure(),
-        |_, own| World { is_coupled: false, ..own },
-    ),
-    change(
-        " of a slab whose load does not move to its middle",
-        "is the top held plane by a rigid plate?",
-        |given, _| is_slab(given) && !given.moves(),
-        |given, own| {
-            let slab = Reference::new(ReferenceKind::Mandel, given.parameters, &[]).ok();
-            let start =
-                slab.and_then(|slab| slab.fields(EARLY, 1.0).ok()).map_or(0.0, |start| start.pressure);
-            let kind = ReferenceKind::TerzaghiIncompressible;
-            World { kind, pressure: start / given.parameters.load, ..own }
-        },
-    ),
-    change(
-        " of another stiffness",
-        "are λ and μ exchanged?",
-        |given, _| given.is_plane() || is_slab(given),
-        |_, own| {
-            let parameters = with_soils(&own.parameters, |layer| {
-                let (young, nu) = (layer.youngs_modulus.unwrap_or(1.0), layer.poissons_ratio.unwrap_or(0.25));
-                let shear = young / (2.0 * (1.0 + nu));
-                let lame = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-                // λ for μ and μ for λ.
-                layer.youngs_modulus = Some(lame * (3.0 * shear + 2.0 * lame) / (shear + lame));
-                layer.poissons_ratio = Some(shear / (2.0 * (shear + lame)));
-            });
-            World { parameters, ..own }
-        },
-    ),
+        |given, own| own.is_slow() && given.moves() && given.has_pressure(), |_, own| World { is_coupled: false, ..own }),
+    change(" of a slab whose load does not move to its middle", "is the top held plane by a rigid plate?",
+        |given, _| is_slab(given) && !given.moves(), without_plate),
+    change(" of another stiffness", "are λ and μ exchanged?",
+        |given, _| given.is_plane() || is_slab(given), |_, own| with_moduli_exchanged(own)),
 ];
+
+/// A slab of which every part carries its own load: a column of the slab's pressure at the start.
+fn without_plate(given: &Given<'_>, own: World) -> World {
+    let slab = Reference::new(ReferenceKind::Mandel, given.parameters, &[]).ok();
+    let start = slab.and_then(|slab| slab.fields(EARLY, 1.0).ok()).map_or(0.0, |start| start.pressure);
+    World { kind: ReferenceKind::TerzaghiIncompressible, pressure: start / given.parameters.load, ..own }
+}
+
+/// A world of λ for μ and μ for λ.
+fn with_moduli_exchanged(own: World) -> World {
+    let parameters = with_soils(&own.parameters, |layer| {
+        let (young, nu) = (layer.youngs_modulus.unwrap_or(1.0), layer.poissons_ratio.unwrap_or(0.25));
+        let shear = young / (2.0 * (1.0 + nu));
+        let lame = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        layer.youngs_modulus = Some(lame * (3.0 * shear + 2.0 * lame) / (shear + lame));
+        layer.poissons_ratio = Some(shear / (2.0 * (shear + lame)));
+    });
+    World { parameters, ..own }
+}
 
 /// A world whose water is stiffer by a factor.
 fn with_water(own: World, factor: f64) -> World {

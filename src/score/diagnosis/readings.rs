@@ -5,7 +5,7 @@ use super::fits;
 use super::hypotheses::{Need, Number, READINGS, Row, Scale, is_named_constant, scales};
 use super::search::Limit;
 use super::world::{Ends, GAUSS, Predicted, World};
-use oedometer_soil::elementary::powi;
+use oedometer_soil::elementary::{exp, ln, powi};
 
 /// Constants below this share of the weight of the water in the column are none.
 const NO_CONSTANT: f64 = 5e-3;
@@ -323,9 +323,9 @@ fn fitted(x: &Exact<'_>, row: &Row, factor: f64) -> Option<f64> {
         Number::Time => {
             let [first, last] = x.given.span()?;
             let left = |power: f64| {
-                off(fits::power(power)).map_or(f64::INFINITY, |off| powi(column.size(&off) / column.scale, 2))
+                off(exp(power)).map_or(f64::INFINITY, |off| powi(column.size(&off) / column.scale, 2))
             };
-            fits::least(&left, [fits::log(1e-3 * first), fits::log(3.0 * last)], 40.0).map(fits::power)
+            fits::least(&left, [ln(1e-3 * first), ln(3.0 * last)], 40.0).map(exp)
         }
         Number::None | Number::Named(_) => None,
     };

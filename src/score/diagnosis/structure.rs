@@ -4,6 +4,7 @@ use super::columns::{Column, Given};
 use super::fits;
 use super::search::Limit;
 use super::world::World;
+use oedometer_soil::elementary::{exp, ln};
 use oedometer_soil::wording::short;
 
 /// Time factors between which the times of outputs are looked for, trials over them, and how often these are refined.
@@ -78,7 +79,7 @@ fn free_times(given: &Given<'_>) -> Option<Vec<f64>> {
     }
     let count = given.times.len();
     let errors = |powers: &[f64]| -> Option<Vec<f64>> {
-        let times: Vec<f64> = powers.iter().map(|power| given.parameters.time(fits::power(*power))).collect();
+        let times: Vec<f64> = powers.iter().map(|power| given.parameters.time(exp(*power))).collect();
         let predicted = world.predict_at(given, &times)?;
         let of_column = |column: &Column, output: usize| {
             let exact = column.exact(&predicted);
@@ -89,7 +90,7 @@ fn free_times(given: &Given<'_>) -> Option<Vec<f64>> {
             |output| given.columns.iter().map(|column| of_column(column, output)).fold(0.0, f64::max);
         Some((0..count).map(of_output).collect())
     };
-    let [low, high] = TIME_FACTORS.map(fits::log);
+    let [low, high] = TIME_FACTORS.map(ln);
     let (mut centre, mut width, mut trials) =
         (vec![f64::midpoint(low, high); count], 0.5 * (high - low), TRIALS);
     let mut least = vec![f64::INFINITY; count];
@@ -110,7 +111,7 @@ fn free_times(given: &Given<'_>) -> Option<Vec<f64>> {
     let left = least.iter().copied().fold(0.0, f64::max);
     let before = given.columns.iter().map(|column| column.residual).fold(f64::INFINITY, f64::min);
     (left <= LEFT.min(0.1 * before))
-        .then(|| centre.into_iter().map(|power| given.parameters.time(fits::power(power))).collect())
+        .then(|| centre.into_iter().map(|power| given.parameters.time(exp(power))).collect())
 }
 
 /// What a column holds that no reading explains: zeros, a constant, numbers in order, nothing like the exact one.
