@@ -253,16 +253,18 @@ fn golden_section([mut low, mut high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> 
 /// The world of a factor of the time, with what it may be.
 fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) -> Option<World> {
     let at = |factor: f64| World { clock: [factor, 0.0], ..base.clone() };
-    let off = |factor: f64| ln(factor / fit.number).abs();
-    // The names of some factors, the nearest first.
-    let named = |is_meant: &dyn Fn(f64) -> bool| -> Vec<&(f64, String)> {
+    // The names of some factors, the nearest to one first.
+    let named = |is_meant: &dyn Fn(f64) -> bool, near: f64| -> Vec<&(f64, String)> {
+        let off = |factor: f64| ln(factor / near).abs();
         let mut named: Vec<&(f64, String)> = names.iter().filter(|(factor, _)| is_meant(*factor)).collect();
         named.sort_by(|a, b| off(a.0).total_cmp(&off(b.0)));
-        named.truncate(MOST_NAMES);
         named
     };
-    let few = |is_meant: &dyn Fn(f64) -> bool| -> String {
-        named(is_meant).into_iter().map(|(_, asked)| format!(" Or {asked}")).collect()
+    let few = |is_meant: &dyn Fn(f64) -> bool, near: f64| -> String {
+        let named = named(is_meant, near)
+            .into_iter()
+            .filter(|(_, asked)| !asked.contains("E_oed") && !asked.contains("of ten"));
+        named.take(MOST_NAMES).map(|(_, asked)| format!(" Or {asked}")).collect()
     };
     match fit.is_open {
         [true, true] => None,
@@ -277,23 +279,23 @@ fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) ->
             } else {
                 ""
             };
-            let few = few(&|factor| factor >= fit.from);
+            let few = few(&|factor| factor >= fit.from, fit.from);
             Some(at(fit.to).fitted(&said, format!("is k, or are the times, too large by far?{few}{or}")))
         }
         [true, false] => {
             let most = shown(rounded(fit.to));
-            let few = few(&|factor| factor <= fit.to);
+            let few = few(&|factor| factor <= fit.to, fit.to);
             let asked = format!("is k, or are the times, too small by far, {most} × at most?{few}");
             Some(at(fit.number).with(" of the start: nothing has drained at the last time", asked))
         }
         [false, false] if (fit.number - 1.0).abs() < NEAR_ONE => None,
         [false, false] => {
-            let named = named(&|factor| fit.allows(factor));
+            let named = named(&|factor| fit.allows(factor), fit.number);
             let Some((factor, _)) = named.first() else {
                 let said = format!(" at {} × the time", shown(three_digits(fit.number)));
                 return Some(at(fit.number).fitted(&said, generic(given, fit.number)));
             };
-            let asked: Vec<&str> = named.iter().map(|(_, asked)| &**asked).collect();
+            let asked: Vec<&str> = named.iter().take(MOST_NAMES).map(|(_, asked)| &**asked).collect();
             let said = format!(" at {} × the time", shown(three_digits(*factor)));
             Some(at(*factor).with(&said, asked.join(" Or ")))
         }

@@ -1,7 +1,6 @@
 //! Patterns of samples: one number in place of values, pressures that alternate, values in another order.
 
 use super::columns::{Column, Field, Given};
-use super::fits::shown;
 use super::readings::{Held, Reading};
 use super::search::{FLOOR, Limit};
 use crate::score::coverage::lines;
@@ -63,7 +62,7 @@ fn blank(column: &Column, exact: &[f64], given: &Given<'_>, limit: &Limit) -> Op
     let looked = if given.are_picked { " looked at" } else { "" };
     let begin = format!(
         "is exactly {} at {} of {inside} samples{looked}{place} where it should not be, and right at the others",
-        shown(blank),
+        short(blank),
         places.len()
     );
     Some(reading(begin, asked, [1, 0], left, column))

@@ -157,7 +157,7 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
     let own = World::own(given);
     let mut all: Vec<Explanation> =
         judged(own.clone(), &given.own, given, Some(whole), false).into_iter().collect();
-    let mut add = |all: &mut Vec<Explanation>, worlds: Vec<World>| {
+    let add = |all: &mut Vec<Explanation>, worlds: Vec<World>| {
         let of = |world: World| judged(world.clone(), &world.predict(given)?, given, None, false);
         all.extend(worlds.into_iter().filter_map(of));
         all.sort_by(|a, b| a.open.cmp(&b.open).then(a.cost().total_cmp(&b.cost())));

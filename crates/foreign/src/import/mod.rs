@@ -17,5 +17,5 @@ mod table_rows;
 mod tests;
 
 pub use expected::Absent;
-pub use samples::{SampledState, states_of};
+pub use samples::{Beside, SampledState, states_of};
 pub use table_rows::not_ended;

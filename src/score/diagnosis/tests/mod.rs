@@ -1,4 +1,5 @@
 mod changes;
+mod table;
 
 use super::*;
 use crate::import::mapping::preset::{CONVENTION, PLANE_CONVENTION};
