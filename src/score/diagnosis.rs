@@ -147,8 +147,8 @@ impl Scene<'_> {
         if let Some(told) = structure::same_state(&thin).filter(|_| !(is_world && is_closed)) {
             return Told::of(told);
         }
-        let mut told = Told::default();
-        told.causes = found.as_ref().map_or(Vec::new(), |found| sentences_of(found, &thin));
+        let causes = found.as_ref().map_or(Vec::new(), |found| sentences_of(found, &thin));
+        let mut told = Told { causes, places: Vec::new() };
         let is_open = |column: &&Column| match &found {
             Some(found) => found.best.leaves(column.field, &thin),
             None => !column.is_right(),

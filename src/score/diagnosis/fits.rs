@@ -264,7 +264,7 @@ fn clock(given: &Given<'_>, base: &World, fit: &Fit, names: &[(f64, String)]) ->
         let named = named(is_meant, near)
             .into_iter()
             .filter(|(_, asked)| !asked.contains("E_oed") && !asked.contains("of ten"));
-        named.take(MOST_NAMES).map(|(_, asked)| format!(" Or {asked}")).collect()
+        named.take(MOST_NAMES).flat_map(|(_, asked)| [" Or ", &**asked]).collect()
     };
     match fit.is_open {
         [true, true] => None,
@@ -313,9 +313,10 @@ fn generic(given: &Given<'_>, factor: f64) -> String {
     let pair = |number: f64, unit: &str| {
         format!("{} {unit} for {}", short(three_digits(factor * number)), short(three_digits(number)))
     };
-    let modulus = match given.moves() {
-        true => String::new(),
-        false => format!(", or E_oed {}", pair(soil.oedometric_modulus(), "Pa")),
+    let modulus = if given.moves() {
+        String::new()
+    } else {
+        format!(", or E_oed {}", pair(soil.oedometric_modulus(), "Pa"))
     };
     let (k, c_v) = (soil.hydraulic_conductivity, soil.coefficient_of_consolidation());
     format!("is k {} (c_v {}){modulus}, or are the times off?", pair(k, "m/s"), pair(c_v, "m²/s"))

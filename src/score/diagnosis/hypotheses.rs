@@ -4,7 +4,7 @@
 //! concern all of them.
 
 use super::columns::{Field, Given};
-use super::readings::{Exact, Held, whole};
+use super::readings::{Exact, Held, negative, whole};
 use super::world::{Ends, World, with_soils};
 use crate::import::mapping::units::{StressUnit, TimeUnit};
 use oedometer_exact::{Reference, ReferenceKind};
@@ -128,13 +128,14 @@ pub enum Need {
     Large,
     /// A pressure head.
     Head,
-    /// No other unit or sign.
+    /// Another unit or sign, or none.
+    Scale,
     NoScale,
     /// A sign that no column tells, because it is another quantity.
     AnySign,
 }
 
-use Need::{AnySign, AnyTime, Head, Large, NoScale, OneSoil, OtherRight, Still, TwoOutputs};
+use Need::{AnySign, AnyTime, Head, Large, NoScale, OneSoil, OtherRight, Scale as Scaled, Still, TwoOutputs};
 
 /// A hypothesis about one column.
 pub struct Row {
@@ -190,71 +191,72 @@ impl Row {
 /// varies as the exact solution does.
 #[rustfmt::skip]
 pub const READINGS: &[Row] = &[
-    row("factor", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| x.times(factor)).named(factors),
+    row("", ANY, &[Scaled], "", "", |x, _| whole(x.own.clone())),
+    row("factor", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(factors),
     row("effective stress", P, &[AnySign], "matches the exact effective stress",
-        "is it given in place of the pore pressure?", |x, _| whole(x.stress().iter().map(|stress| -stress).collect())),
+        "is it given in place of the pore pressure?", |x, _| whole(negative(&x.stress()))),
     row("total stress", P, &[AnySign], "matches the exact total stress",
         "is it given in place of the pore pressure?", |x, _| whole(x.total())),
     row("pressure", S, &[AnySign], "matches the exact pore pressure",
         "is it given in place of the effective stress?", |x, _| whole(x.pressure())),
     row("pressure left in", S, &[AnySign], "matches the exact total stress", "is the pore pressure left in?",
-        |x, _| whole(x.total().iter().map(|total| -total).collect())),
+        |x, _| whole(negative(&x.total()))),
     row("degree", P, &[], "matches 1 − p/q of the exact one", "is a degree of consolidation given in its place?",
-        |x, _| x.offset(-1.0, 1.0, &x.dimensionless())),
+        |x, _| Some(x.offset(-1.0, 1.0, &x.dimensionless()))),
     row("strain", STRESS, &[OneSoil, AnySign], "matches the exact strain",
         "is the strain given in its place?", |x, _| whole(x.strain())),
     row("porosity", STRESS, &[OneSoil], "matches the exact porosity",
         "is the porosity given in its place, as it changes with the strain?",
-        |x, _| x.offset(1.0 - x.porosity(), x.porosity(), &x.strain())),
+        |x, _| Some(x.offset(1.0 - x.porosity(), x.porosity(), &x.strain()))),
     row("void ratio", STRESS, &[OneSoil], "matches the exact void ratio",
         "is the void ratio given in its place?",
-        |x, _| x.offset(1.0 / (1.0 - x.porosity()), x.porosity() / (1.0 - x.porosity()), &x.strain())),
+        |x, _| Some(x.offset(1.0 / (1.0 - x.porosity()), x.porosity() / (1.0 - x.porosity()), &x.strain()))),
     row("absolute", P, &[], "differs from the exact one by a constant of {} Pa", "",
-        |x, constant| { x.beside(|_| constant, true) }).named(|_, _| atmospheres("")),
+        |x, constant| Some(x.beside(|_| constant, true))).named(|_, _| atmospheres("")),
     row("hydrostatic", P, &[], "differs from the exact one by a constant gradient of {} Pa/m", "",
-        |x, weight| x.beside(|place| weight * x.depth(place), false)).named(hydrostatic),
+        |x, weight| Some(x.beside(|place| weight * x.depth(place), false))).named(hydrostatic),
     row("hydrostatic of the present depth", P, &[Large], "differs from the exact one by a constant gradient of {} Pa/m",
-        "", |x, weight| x.beside(|place| weight * x.present_depth(place), false)).named(hydrostatic),
+        "", |x, weight| Some(x.beside(|place| weight * x.present_depth(place), false))).named(hydrostatic),
     row("hydrostatic and absolute", P, &[], "differs from the exact one by a hydrostatic part and {} Pa", "",
-        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true)).named(|_, _| atmospheres("is the hydrostatic part left in? And ")).counts(2),
+        |x, constant| Some(x.beside(|place| x.weight() * x.depth(place) + constant, true))).named(|_, _| atmospheres("is the hydrostatic part left in? And ")).counts(2),
     row("elevation", P, &[Head], "differs from the exact one by a constant gradient",
         "is it a total head, with the elevation?",
-        |x, _| x.beside(|place| x.weight() * (x.given.parameters.height - x.depth(place)), false)),
+        |x, _| Some(x.beside(|place| x.weight() * (x.given.parameters.height - x.depth(place)), false))),
     row("hydrostatic of another level", P, &[], "differs from the exact one by a hydrostatic part and {} Pa",
         "is the hydrostatic part left in?",
-        |x, constant| x.beside(|place| x.weight() * x.depth(place) + constant, true)).fitted(Number::Constant),
+        |x, constant| Some(x.beside(|place| x.weight() * x.depth(place) + constant, true))).fitted(Number::Constant),
     row("constant", P, &[], "differs from the exact one by a constant of {} Pa", "is a constant of {} Pa left in?",
-        |x, constant| x.beside(|_| constant, true)).fitted(Number::Constant),
+        |x, constant| Some(x.beside(|_| constant, true))).fitted(Number::Constant),
     row("earlier stage", UP, &[TwoOutputs], "differs from the exact one by the same at all times, {} m at the top",
         "is the displacement of an earlier stage, as of the own weight, left in?",
-        |x, top| x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true)).fitted(Number::Slope),
+        |x, top| Some(x.beside(|place| top * x.column.heights[place] / x.given.parameters.height, true))).fitted(Number::Slope),
     row("later moment", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of {} s",
         "does it count from a later moment, at {} s, in place of the start of loading?",
-        |x, moment| x.less(&x.at(|_| moment)?, |_| false)).fitted(Number::Time),
+        |x, moment| whole(x.less(&x.at(|_| moment)?, |_| false))).fitted(Number::Time),
     row("restart", MOVED, &[AnyTime, TwoOutputs], "matches the exact one less that of the first output",
         "does it count anew after the first output, as after a restart or a stage?",
-        |x, _| x.less(&x.at(|_| x.given.times[0])?, |output| output == 0)),
+        |x, _| whole(x.less(&x.at(|_| x.given.times[0])?, |output| output == 0))),
     row("per output", INCREASE, &[AnyTime, TwoOutputs], "matches what the exact one gains from output to output",
         "is it the increment since the output before, not the whole?",
-        |x, _| x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0)),
+        |x, _| whole(x.less(&x.at(|output| x.given.before[output])?, |output| x.given.before[output] == 0.0))),
     row("output behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one of the output before",
-        "is it that of the output before?", |x, _| whole(x.at(|output| x.given.before[output])?)),
+        "is it that of the output before?", |x, _| whole(x.at(|output| x.given.before[output]))),
     row("steps behind", ANY, &[AnyTime, TwoOutputs, OtherRight], "matches the exact one of {} s before",
         "is it {} s behind the other columns, as by a step or half of one?",
-        |x, late| whole(x.at(|output| (x.given.times[output] - late).max(0.0))?)).fitted(Number::Time),
+        |x, late| whole(x.at(|output| (x.given.times[output] - late).max(0.0)))).fitted(Number::Time),
     row("one state", ANY, &[AnyTime, Still, OtherRight], "matches the exact one of {} s at all outputs",
-        "is it one state at all outputs, that of {} s?", |x, moment| whole(x.at(|_| moment)?)).fitted(Number::Time),
+        "is it one state at all outputs, that of {} s?", |x, moment| whole(x.at(|_| moment))).fitted(Number::Time),
     row("integral", STRESS, &[AnyTime, TwoOutputs], "matches the integral of the exact one over time",
-        "is it integrated over time?", |x, _| whole(x.integral()?)),
+        "is it integrated over time?", |x, _| whole(x.integral())),
     row("mean over time", STRESS, &[AnyTime, TwoOutputs], "matches the mean of the exact one since the start",
         "is it the mean over time since the start?",
-        |x, _| whole(x.integral()?.iter().enumerate().map(|(place, sum)| sum / x.time(place)).collect())),
+        |x, _| whole(x.mean_over_time())),
     row("rate", INCREASE, &[AnyTime, TwoOutputs], "matches the rate of the exact one",
-        "is it the rate (velocity), not the whole?", |x, _| whole(x.rate()?)),
+        "is it the rate (velocity), not the whole?", |x, _| whole(x.rate())),
     row("turned alone", PLACED, &[OtherRight], "matches the exact one upside down",
-        "is only this column written from the other end?", |x, _| whole(x.turned()?)),
+        "is only this column written from the other end?", |x, _| whole(x.turned())),
     row("unnamed factor", ANY, &[NoScale], "is {} × the exact one at all times and places",
-        "is a factor missing where it is written?", |x, factor| x.times(factor)).fitted(Number::Factor).counts(2),
+        "is a factor missing where it is written?", |x, factor| whole(x.times(factor))).fitted(Number::Factor).counts(2),
 ];
 
 /// Named factors of one column alone.
@@ -424,13 +426,14 @@ pub const FAMILIES: &[Family] = &[
         kind: Fitted::Load,
         // At small strain one column alone cannot tell the load from a factor of its own.
         is_possible: |given, own| {
-            let tells = if given.is_linear() { given.moves() && given.is_stressed() } else { true };
+            let tells = !given.is_linear() || (given.moves() && given.is_stressed());
             tells && !own.kind.is_manufactured()
         },
-        names: |_| {
+        names: |given| {
             let asked =
                 |factor: f64| format!("is the load {} × that of the scene?", super::fits::shown(factor));
-            [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, asked(factor))).to_vec()
+            let all = [2.0, 0.5, 10.0, 0.1, 1e3, 1e-3, 1e6, 1e-6].map(|factor| (factor, asked(factor)));
+            all[..if given.moves() && given.is_stressed() { 8 } else { 2 }].to_vec()
         },
         of: |given, own, factor| own.loaded(factor, given),
     },

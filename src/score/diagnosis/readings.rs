@@ -27,9 +27,15 @@ impl Held {
     }
 }
 
-/// Values that vary as a whole.
-pub fn whole(values: Vec<f64>) -> Option<Held> {
+/// Values that vary as a whole, where there are any.
+pub fn whole(values: impl Into<Option<Vec<f64>>>) -> Option<Held> {
+    let values = values.into()?;
     Some(Held { varying: values.clone(), values })
+}
+
+/// Values with the other sign.
+pub fn negative(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| -value).collect()
 }
 
 /// What a row may look at.
@@ -91,28 +97,28 @@ impl Exact<'_> {
     }
 
     /// A multiple of the exact values.
-    pub fn times(&self, factor: f64) -> Option<Held> {
-        whole(self.own.iter().map(|own| factor * own).collect())
+    pub fn times(&self, factor: f64) -> Vec<f64> {
+        self.own.iter().map(|own| factor * own).collect()
     }
 
     /// A multiple of what varies about its mean, on a constant.
-    pub fn offset(&self, factor: f64, constant: f64, of: &[f64]) -> Option<Held> {
+    pub fn offset(&self, factor: f64, constant: f64, of: &[f64]) -> Held {
         let mean = self.column.mean(of);
         let values = of.iter().map(|value| factor * value + constant).collect();
-        Some(Held { values, varying: of.iter().map(|value| factor * (value - mean)).collect() })
+        Held { values, varying: of.iter().map(|value| factor * (value - mean)).collect() }
     }
 
     /// The exact values with an offset; where it is constant in place or time, what varies is about their mean.
-    pub fn beside(&self, offset: impl Fn(usize) -> f64, is_about_mean: bool) -> Option<Held> {
+    pub fn beside(&self, offset: impl Fn(usize) -> f64, is_about_mean: bool) -> Held {
         let mean = if is_about_mean { self.column.mean(&self.own) } else { 0.0 };
         let values = self.own.iter().enumerate().map(|(place, own)| own + offset(place)).collect();
-        Some(Held { values, varying: self.own.iter().map(|own| own - mean).collect() })
+        Held { values, varying: self.own.iter().map(|own| own - mean).collect() }
     }
 
     /// The exact values less others, but for some outputs.
-    pub fn less(&self, others: &[f64], is_kept: impl Fn(usize) -> bool) -> Option<Held> {
+    pub fn less(&self, others: &[f64], is_kept: impl Fn(usize) -> bool) -> Vec<f64> {
         let at = |place: usize| if is_kept(self.column.outputs[place]) { 0.0 } else { others[place] };
-        whole(self.own.iter().enumerate().map(|(place, own)| own - at(place)).collect())
+        self.own.iter().enumerate().map(|(place, own)| own - at(place)).collect()
     }
 
     /// The exact values at other times of the outputs.
@@ -141,6 +147,10 @@ impl Exact<'_> {
             }
         }
         Some(sum)
+    }
+
+    pub fn mean_over_time(&self) -> Option<Vec<f64>> {
+        Some(self.integral()?.iter().enumerate().map(|(place, sum)| sum / self.time(place)).collect())
     }
 
     pub fn rate(&self) -> Option<Vec<f64>> {
@@ -196,9 +206,6 @@ pub fn accepted(x: &Exact<'_>, limit: &Limit, is_own: bool, is_slow_wanted: bool
     let column = x.column;
     let all = scales(column.field, x.given);
     let mut readings = Vec::new();
-    for scale in all.iter().filter(|scale| !scale.asked.is_empty()) {
-        readings.extend(accepted_scale(x, scale, limit));
-    }
     let is_possible = |row: &&Row| {
         let is_timed = row.needs.contains(&Need::AnyTime);
         let is_fitted = !matches!(row.number, Number::None | Number::Named(_));
@@ -209,7 +216,8 @@ pub fn accepted(x: &Exact<'_>, limit: &Limit, is_own: bool, is_slow_wanted: bool
     };
     for row in READINGS.iter().filter(is_possible) {
         let of_row = all.iter().filter(|scale| match scale.asked.len() {
-            0 => !row.needs.contains(&Need::Head),
+            0 => !row.needs.iter().any(|need| [Need::Head, Need::Scale].contains(need)),
+            _ if row.needs.contains(&Need::Scale) => true,
             _ if row.needs.contains(&Need::NoScale) => false,
             _ if row.needs.contains(&Need::Head) => scale.is_head,
             _ if scale.is_head => row.of == [Field::Pressure] && row.needs.is_empty(),
@@ -230,22 +238,8 @@ fn is_met(need: Need, x: &Exact<'_>, limit: &Limit) -> bool {
         Need::Still => x.column.stands_still(),
         Need::OneSoil => x.world.is_a_column() && x.given.parameters.soils.is_empty(),
         Need::Large => !x.given.is_linear(),
-        Need::Head | Need::NoScale | Need::AnySign => true,
+        Need::Head | Need::Scale | Need::NoScale | Need::AnySign => true,
     }
-}
-
-fn accepted_scale(x: &Exact<'_>, scale: &Scale, limit: &Limit) -> Option<Reading> {
-    let left = limit.accepts(x.column, &Held::itself(&x.own), scale.factor, true)?;
-    let signs = usize::from(scale.factor < 0.0);
-    Some(Reading {
-        key: scale.key.clone(),
-        begin: begin_of(scale, ""),
-        asked: scale.asked.clone(),
-        count: scale.asked.len(),
-        fitted: 0,
-        signs,
-        left,
-    })
 }
 
 /// The readings of a row in a unit and with a sign, one for each of its numbers.
@@ -270,7 +264,8 @@ fn accepted_row(x: &Exact<'_>, row: &Row, scale: &Scale, limit: &Limit) -> Vec<R
         }
         let shown = fits::rounded(number);
         let filled = |text: &str| text.replace("{}", &fits::shown(shown));
-        let mut questions = vec![filled(&asked)];
+        let mut questions: Vec<String> =
+            Some(filled(&asked)).filter(|asked| !asked.is_empty()).into_iter().collect();
         questions
             .extend(scale.asked.iter().filter(|asked| !(is_any_sign && asked.contains("sign"))).cloned());
         let sign = if is_any_sign { " with the other sign" } else { "" };
@@ -280,7 +275,7 @@ fn accepted_row(x: &Exact<'_>, row: &Row, scale: &Scale, limit: &Limit) -> Vec<R
         all.push(Reading {
             key: format!("{} {shown} {} {of}", row.name, scale.key),
             begin: begin_of(scale, &format!("{}{sign}", filled(row.said))),
-            count: row.count + questions.len() - 1,
+            count: row.count.max(1) - 1 + questions.len(),
             asked: questions,
             fitted: usize::from(is_fitted),
             signs,

@@ -172,10 +172,11 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
         add(&mut all, changes.map(|change| changed(change, given, &own)).collect());
         add(&mut all, family(&[Fitted::Load], &own, false));
     }
-    for in_units in [false, true] {
-        if !is_enough(&all) {
-            add(&mut all, family(&[Fitted::Clock], &own, in_units));
-        }
+    if !is_enough(&all) {
+        add(&mut all, family(&[Fitted::Clock], &own, false));
+    }
+    if all.first().is_none_or(|best| best.open > 0 || best.mistakes > 1) {
+        add(&mut all, family(&[Fitted::Clock], &own, true));
     }
     if !is_enough(&all) && are_all_outputs {
         add(&mut all, family(&[Fitted::Stiffness], &own, false));

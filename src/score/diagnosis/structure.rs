@@ -153,7 +153,8 @@ pub fn content(column: &Column, given: &Given<'_>) -> Option<String> {
         ));
     }
     let alike = correlation(column, &column.exact(&given.own));
-    (is_other_right && values.len() >= FEWEST && alike.is_some_and(|alike| alike < UNLIKE)).then(|| {
+    let is_unlike = alike.is_some_and(|alike| alike < UNLIKE) && place(column, given).is_none();
+    (is_other_right && values.len() >= FEWEST && is_unlike).then(|| {
         let [least, most] =
             [f64::min, f64::max].map(|of| short(values.iter().copied().reduce(of).unwrap_or(0.0)));
         format!("your {name} (from {least} to {most}) does not vary as the exact one: {another}")
@@ -198,10 +199,11 @@ pub fn apart(columns: &[&Column], given: &Given<'_>) -> Option<[Vec<usize>; 2]> 
     let all: Vec<(usize, f64)> = (0..given.times.len()).map(|output| (output, misfit(output))).collect();
     let worst = all.iter().map(|(_, misfit)| *misfit).fold(0.0, f64::max);
     let allowed = 1e-3_f64.max(0.03_f64.min(ELSEWHERE * worst));
-    let (right, wrong): (Vec<(usize, f64)>, Vec<(usize, f64)>) =
-        all.into_iter().partition(|(_, misfit)| *misfit <= allowed);
-    let numbers = |list: Vec<(usize, f64)>| list.into_iter().map(|(output, _)| output).collect::<Vec<_>>();
-    (!right.is_empty() && !wrong.is_empty()).then(|| [numbers(right), numbers(wrong)])
+    let numbers = |is_right: bool| -> Vec<usize> {
+        all.iter().filter(|(_, misfit)| (*misfit <= allowed) == is_right).map(|(output, _)| *output).collect()
+    };
+    let (right, wrong) = (numbers(true), numbers(false));
+    (!right.is_empty() && !wrong.is_empty()).then_some([right, wrong])
 }
 
 /// Whether a residual is so large that its place is told without a cause.

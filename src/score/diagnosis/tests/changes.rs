@@ -538,6 +538,28 @@ fn changes() -> Vec<Change> {
         written("p as head in cm", &["your p", "a head in cm"], P, move |_, state| {
             times(&mut state.pressure, 100.0 / weight)
         }),
+        change("p of the output before", &["your p", "output before"], ["behind", "", ""], |scene| {
+            let mut states = scene.own();
+            let times = scene.seconds();
+            for place in (1..states.len()).rev() {
+                let before = scene.solved(&scene.parameters, &|_| times[place - 1]);
+                states[place].pressure.clone_from(&before[0].pressure);
+            }
+            let start = scene.solved(&scene.parameters, &|_| 0.0);
+            states[0].pressure.clone_from(&start[0].pressure);
+            Some(states)
+        }),
+        change("u per output", &["is it the increment"], ["increment", "", "increment"], |scene| {
+            let mut states = scene.own();
+            for place in (1..states.len()).rev() {
+                let before = states[place - 1].displacement.clone();
+                states[place].displacement.iter_mut().zip(before).for_each(|(u, before)| *u -= before);
+            }
+            Some(states)
+        }),
+        written("p in bar", &["your p", "in bar"], ["unit", "unit", ""], |_, state| {
+            times(&mut state.pressure, 1e-5);
+        }),
         change("x and y exchanged", &["axes exchanged"], ["axes", "axes", ""], |scene| {
             (scene.kind == ReferenceKind::Mandel).then(|| {
                 let mut states = scene.own();

@@ -55,10 +55,10 @@ fn increments(states: &mut [SampledState]) {
 /// The question, the column, the largest noise that leaves enough of it, and the edit.
 const ROWS: [(&str, &str, f64, Edit); 21] = [
     ("is it in bar where Pa", "p", 1e-2, |states| {
-        each(states, |state| super::scale(&mut state.pressure, 1e-5))
+        each(states, |state| super::scale(&mut state.pressure, 1e-5));
     }),
     ("is it in in where m", "u_y", 1e-2, |states| {
-        each(states, |one| super::scale(&mut one.displacement, 1.0 / 0.0254))
+        each(states, |one| super::scale(&mut one.displacement, 1.0 / 0.0254));
     }),
     ("is it divided by the final settlement", "u_y", 1e-2, |states| {
         each(states, |state| super::scale(&mut state.displacement, 1.2e6));
@@ -70,20 +70,20 @@ const ROWS: [(&str, &str, f64, Edit); 21] = [
         each(states, |state| super::scale(&mut state.effective_stress, 1.0 / 3.0));
     }),
     ("is a factor missing where it is written", "p", 1e-3, |states| {
-        each(states, |one| super::scale(&mut one.pressure, 0.731))
+        each(states, |one| super::scale(&mut one.pressure, 0.731));
     }),
     ("is it given in place of the effective stress", "effective_stress", 1e-2, |states| {
         each(states, |state| state.effective_stress.clone_from(&state.pressure));
     }),
     ("is the strain given in its place", "p", 1e-2, |states| {
         each(states, |state| {
-            state.pressure = state.effective_stress.iter().map(|stress| stress / 1.2e6).collect()
+            state.pressure = state.effective_stress.iter().map(|stress| stress / 1.2e6).collect();
         });
     }),
     ("does it count anew after the first output", "u_y", 1e-3, |states| {
         let first = states[0].displacement.clone();
         each(&mut states[1..], |state| {
-            state.displacement.iter_mut().zip(&first).for_each(|(u, first)| *u -= first)
+            state.displacement.iter_mut().zip(&first).for_each(|(u, first)| *u -= first);
         });
     }),
     ("is it the increment since the output before", "u_y", 1e-2, |states| increments(states)),
@@ -110,10 +110,10 @@ const ROWS: [(&str, &str, f64, Edit); 21] = [
         });
     }),
     ("is only this column written from the other end", "p", 1e-2, |states| {
-        each(states, |one| one.pressure.reverse())
+        each(states, |one| one.pressure.reverse());
     }),
     ("another order, the same at every output", "p", 0.0, |states| {
-        each(states, |one| one.pressure.rotate_left(7))
+        each(states, |one| one.pressure.rotate_left(7));
     }),
     (
         "all of t = 40.88 s, where it should not be, and right at the others: is this output not written",
@@ -141,7 +141,7 @@ const ROWS: [(&str, &str, f64, Edit); 21] = [
     }),
     ("is the porosity given in its place", "p", 0.0, |states| {
         each(states, |one| {
-            one.pressure = one.effective_stress.iter().map(|s| 0.3 + 0.7 * s / 1.2e6).collect()
+            one.pressure = one.effective_stress.iter().map(|s| 0.3 + 0.7 * s / 1.2e6).collect();
         });
     }),
     ("is it the rate (velocity)", "p", 0.0, |states| {
