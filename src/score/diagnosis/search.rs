@@ -120,7 +120,10 @@ impl Explanation {
 
     /// Whether another one is as good, with as many mistakes.
     fn is_tied(&self, other: &Self) -> bool {
+        // Of worlds that leave a column open, none is an alternative to what explains each column by itself.
+        let is_as_whole = other.open == 0 || other.world.count == self.world.count;
         (other.open, other.mistakes, other.fitted) == (self.open, self.mistakes, self.fitted)
+            && is_as_whole
             && other.left <= AS_WELL * self.left + FLOOR * 1e-4
     }
 
