@@ -143,8 +143,9 @@ impl Scene<'_> {
         }
         let found = search::explanation(&thin, &whole, are_all);
         let is_world = found.as_ref().is_some_and(|found| found.best.world.count > 0);
+        let is_other = wrong.iter().any(|column| structure::content(column, &whole).is_some());
         let is_closed = found.as_ref().is_some_and(|found| found.best.is_closed());
-        if let Some(told) = structure::same_state(&thin).filter(|_| !(is_world && is_closed)) {
+        if let Some(told) = structure::same_state(&thin).filter(|_| !(is_world && is_closed || is_other)) {
             return Told::of(told);
         }
         let causes = found.as_ref().map_or(Vec::new(), |found| sentences_of(found, &thin));

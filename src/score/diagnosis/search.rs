@@ -32,6 +32,8 @@ const PER_MISTAKE: f64 = 1.1;
 const PER_FIT: f64 = 0.9;
 /// Mistakes of a column, its world's included; signs are free.
 const MISTAKES: usize = 2;
+/// Relative distance of two factors of the time that are one.
+const NEAR: f64 = 0.05;
 /// What is left of an error is next to nothing.
 const CLEAR: f64 = 1e-3;
 
@@ -203,7 +205,10 @@ pub fn explanation(given: &Given<'_>, whole: &Given<'_>, are_all_outputs: bool) 
     if best.open == given.columns.iter().filter(|column| !column.is_right()).count() {
         return None;
     }
-    let ties = all.filter(|other| best.is_tied(other));
+    // Two minima of one clock are no alternatives.
+    let [at, _] = best.world.clock;
+    let is_near = |clock: f64| at != 1.0 && (clock / at - 1.0).abs() < NEAR;
+    let ties = all.filter(|other| best.is_tied(other) && !is_near(other.world.clock[0]));
     let mut alternatives: Vec<String> = Vec::new();
     for asked in ties.map(|other| asked_of(&other)) {
         if !asked.is_empty() && asked != asked_of(&best) && !alternatives.contains(&asked) {
