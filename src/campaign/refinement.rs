@@ -1,91 +1,152 @@
-//! The meshes of a contender of the race, from coarse to fine, and when refinement ends.
+//! The runs of a contender of the race: its meshes from coarse to fine until it has arrived for good, and shorter steps where
+//! an arrival rests on them or a run has failed.
 
 use crate::case::Case;
 use crate::case::contender::CONTENDERS;
 use crate::record::Record;
 use crate::record::calibration::cost_of;
-use crate::record::race_errors::{ARRIVED, NEGLIGIBLE, ROUGH, largest_error};
+use crate::record::race_errors::{ARRIVED, ROUGH, ReadOut, RunErrors, SMALLEST};
+use crate::record::reached::reached;
 use crate::study::check::Study;
 use oedometer_soil::elementary;
 use std::collections::BTreeMap;
 
-/// Counted cost, s, that a mesh may take of a contender that has not arrived.
+/// Counted cost, s, that a mesh may take.
 const MOST_WORK: f64 = 1.0;
-/// Counted cost, s, that a mesh may take of one that has: it shows that the error stays below 1 %, or reaches 0.1 %.
-const MORE_WORK: f64 = 0.1;
 /// By how much an order may rise on finer meshes before a contender is given up.
 const RISE: f64 = 1.0;
 
-/// What a mesh came to.
+/// What a run came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mesh {
     cells: usize,
-    /// The largest error, none where the run failed.
-    error: Option<f64>,
+    /// The largest error by read-out, none where the run failed.
+    errors: [Option<f64>; 2],
+    /// Whether it failed while its errors were small.
+    grew: bool,
     /// Counted cost, s.
     cost: f64,
 }
 
-/// The meshes of a contender that have run so far.
+impl Mesh {
+    fn is_within(&self, read_out: ReadOut, tolerance: f64) -> bool {
+        self.errors[read_out as usize].is_some_and(|error| error <= tolerance)
+    }
+}
+
+/// The steps of a study on each mesh: the race's own, its half and its quarter.
+pub type StepsOfMesh = BTreeMap<usize, Vec<f64>>;
+
+/// The steps that a study tries on each mesh, the longest first.
+pub fn steps_of(study: &Study) -> StepsOfMesh {
+    let mut steps = StepsOfMesh::new();
+    for planned in &study.planned {
+        steps.entry(planned.case.cells).or_default().push(planned.case.time_step.number());
+    }
+    for numbers in steps.values_mut() {
+        numbers.sort_by(|a, b| b.total_cmp(a));
+        numbers.dedup();
+    }
+    steps
+}
+
+/// How often the step of a case is halved.
+pub fn halvings(steps: &StepsOfMesh, case: &Case) -> usize {
+    let longer = |number: &&f64| **number > case.time_step.number();
+    steps.get(&case.cells).map_or(0, |numbers| numbers.iter().filter(longer).count())
+}
+
+/// The runs of a contender so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
-    /// Cells of the finest mesh that it may take.
-    finest: usize,
-    /// By cells.
-    meshes: BTreeMap<usize, Mesh>,
+    steps: StepsOfMesh,
+    /// By halvings of the step and cells.
+    runs: BTreeMap<(usize, usize), Mesh>,
 }
 
 impl Refinement {
     /// Nothing has run of a study.
     pub fn of(study: &Study) -> Self {
-        Self { finest: finest_mesh(study), meshes: BTreeMap::new() }
+        Self { steps: steps_of(study), runs: BTreeMap::new() }
     }
 
-    /// Adds a run. The first one on a mesh counts: another one with half its step shows what the step does.
+    /// Adds a run.
     pub fn add(&mut self, record: &Record) {
         let cells = record.case.cells;
-        let mesh = || Mesh { cells, error: largest_error(record), cost: cost_of(record) };
-        self.meshes.entry(cells).or_insert_with(mesh);
+        let errors = RunErrors::of(record);
+        let small =
+            |read_out| errors.largest_reached(read_out, None, None).is_some_and(|error| error <= ROUGH);
+        let grew = !errors.is_whole && ReadOut::BOTH.into_iter().any(small);
+        let errors = ReadOut::BOTH.map(|read_out| errors.largest(read_out, None, None));
+        let mesh = Mesh { cells, errors, grew, cost: cost_of(record) };
+        self.runs.insert((halvings(&self.steps, &record.case), cells), mesh);
     }
 
-    /// Whether a case is wanted still, after all coarser meshes.
+    /// Whether a case is wanted still, after all coarser meshes and longer steps.
     pub fn wants(&self, case: &Case) -> bool {
-        let coarser: Vec<Mesh> = self.meshes.range(..case.cells).map(|(_, mesh)| *mesh).collect();
-        let next = |place: usize| coarser.get(place).map_or(case.cells, |mesh| mesh.cells);
+        match halvings(&self.steps, case) {
+            0 => self.wants_mesh(case.cells, case.column.dimensions),
+            halvings => self.wants_step(halvings, case.cells, case.column.dimensions),
+        }
+    }
+
+    fn wants_mesh(&self, cells: usize, dimensions: usize) -> bool {
+        let coarser: Vec<Mesh> = self.runs.range(..(0, cells)).map(|(_, mesh)| *mesh).collect();
+        let next = |place: usize| coarser.get(place).map_or(cells, |mesh| mesh.cells);
         (1..=coarser.len()).all(|count| {
             let (last, before) = (coarser[count - 1], count.checked_sub(2).map(|place| coarser[place]));
-            let cost = predicted_cost(before, last, next(count), case.column.dimensions);
-            self.goes_on(before, last, cost)
+            predicted_cost(before, last, next(count), dimensions) <= MOST_WORK && self.goes_on(before, last)
         })
     }
 
-    /// Whether a mesh of a predicted cost follows the last one and that before. Two failures in a row are enough; who has
-    /// arrived takes cheap meshes to 0.1 %, and who has not those that its budget allows, as long as the line is in reach.
-    fn goes_on(&self, before: Option<Mesh>, last: Mesh, cost: f64) -> bool {
-        match (last.error, before) {
-            (None, Some(Mesh { error: None, .. })) => false,
-            (Some(error), _) if error <= NEGLIGIBLE => false,
-            (Some(error), _) if error <= ARRIVED => cost <= MORE_WORK,
-            (Some(error), Some(Mesh { error: Some(coarse), cells, .. })) => {
-                let finer = last.cells as f64 / cells as f64;
-                let order = elementary::ln(coarse / error) / elementary::ln(finer);
-                cost <= MOST_WORK && self.is_in_reach(last.cells, error, order)
-            }
-            _ => cost <= MOST_WORK,
+    /// Half the step is taken on the mesh that arrives and on the next, and where the finest mesh fails from small errors; a
+    /// quarter where half of it does so too.
+    fn wants_step(&self, halvings: usize, cells: usize, dimensions: usize) -> bool {
+        let meshes: Vec<Mesh> = (self.runs.range(..(1, 0)).map(|(_, mesh)| *mesh))
+            .filter(|mesh| self.wants_mesh(mesh.cells, dimensions))
+            .collect();
+        let grew = |halvings: usize| self.runs.get(&(halvings, cells)).is_some_and(|mesh| mesh.grew);
+        if meshes.last().is_some_and(|last| last.cells == cells) && (0..halvings).all(grew) {
+            return true;
         }
+        let rests_on_it = |read_out: ReadOut| {
+            let holds = |mesh: &Mesh| {
+                let halved = self.runs.get(&(1, mesh.cells)).filter(|mesh| mesh.cells < cells);
+                mesh.is_within(read_out, ARRIVED) && halved.is_none_or(|run| run.is_within(read_out, ARRIVED))
+            };
+            let arrival = reached(&meshes.iter().map(holds).collect::<Vec<_>>());
+            arrival.is_some_and(|at| meshes[at.place..].iter().take(2).any(|mesh| mesh.cells == cells))
+        };
+        halvings == 1 && ReadOut::BOTH.into_iter().any(rests_on_it)
+    }
+
+    /// Whether a mesh follows the last one and that before. Two failures in a row are enough, and so are two meshes within
+    /// the smallest tolerance, however it is read; who has not arrived goes on as long as the line is in reach.
+    fn goes_on(&self, before: Option<Mesh>, last: Mesh) -> bool {
+        let Some(before) = before else { return true };
+        let is_wanted = |read_out: ReadOut| {
+            let place = read_out as usize;
+            match (before.errors[place], last.errors[place]) {
+                (None, None) => false,
+                (Some(coarse), Some(fine)) if coarse.max(fine) <= SMALLEST => false,
+                (Some(coarse), Some(fine)) if fine > ARRIVED => {
+                    let finer = last.cells as f64 / before.cells as f64;
+                    let order = elementary::ln(coarse / fine) / elementary::ln(finer);
+                    self.is_in_reach(last.cells, fine, order)
+                }
+                _ => true,
+            }
+        };
+        ReadOut::BOTH.into_iter().any(is_wanted)
     }
 
     /// Whether an error may fall below 1 %, or first below 10 %, on the finest mesh, even if its order rises yet.
     fn is_in_reach(&self, cells: usize, error: f64, order: f64) -> bool {
-        let finer = self.finest as f64 / cells as f64;
+        let finest = self.steps.keys().next_back().copied().unwrap_or(cells);
+        let finer = finest as f64 / cells as f64;
         let least = error * elementary::powf(finer, -(order.max(0.0) + RISE));
         least <= if error > ROUGH { ROUGH } else { ARRIVED }
     }
-}
-
-/// Cells of the finest mesh that a study of the race allows.
-pub fn finest_mesh(study: &Study) -> usize {
-    study.planned.iter().map(|planned| planned.case.cells).max().unwrap_or(0)
 }
 
 /// Counted cost of a mesh by those of the meshes before it, s: by the power of both, or that of points and steps.
@@ -98,8 +159,10 @@ fn predicted_cost(before: Option<Mesh>, last: Mesh, cells: usize, dimensions: us
     last.cost * elementary::powf(finer, observed.map_or(usual, |power| power.clamp(1.0, usual + 1.0)))
 }
 
-/// Places of the cases of the race that run one after the other: those of each contender, from coarse to fine.
-pub fn ladders(cases: &[&Case]) -> Vec<Vec<usize>> {
+/// Places of the cases of the race that run one after the other: those of each contender, from coarse to fine and then with
+/// shorter steps.
+pub fn ladders(study: &Study, cases: &[&Case]) -> Vec<Vec<usize>> {
+    let steps = steps_of(study);
     let mut ladders: Vec<Vec<usize>> = vec![Vec::new(); CONTENDERS.len()];
     let mut others = Vec::new();
     for (place, case) in cases.iter().enumerate() {
@@ -109,7 +172,7 @@ pub fn ladders(cases: &[&Case]) -> Vec<Vec<usize>> {
         }
     }
     for ladder in &mut ladders {
-        ladder.sort_by_key(|place| cases[*place].cells);
+        ladder.sort_by_key(|place| (halvings(&steps, cases[*place]), cases[*place].cells));
     }
     ladders.into_iter().filter(|ladder| !ladder.is_empty()).chain(others).collect()
 }
@@ -129,54 +192,79 @@ pub fn wanted<'a>(study: &Study, missing: Vec<&'a Case>, records: &[Record]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::runner::{RunOptions, records_of, run_study, study_of};
+    use crate::campaign::runner::{RunOptions, run_study, study_of};
     use crate::case::Tier;
 
+    /// A case of the race with 4 to 64 cells and three steps on each.
+    fn ladder() -> (Study, Case) {
+        let text = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['race']\n\
+                    integrator = ['implicit']\ncells = [4, 8, 16, 32, 64]\n\
+                    time_step = [{ growth = 0.1 }, { growth = 0.05 }, { growth = 0.025 }]\n";
+        let study = study_of("race-column-short", text);
+        let case = study.planned[0].case.clone();
+        (study, case)
+    }
+
+    /// Runs by halvings, cells, error at both read-outs and counted cost.
+    type Given<'a> = &'a [(usize, usize, [Option<f64>; 2], f64)];
+
+    fn wants(given: Given<'_>, halvings: usize, cells: usize) -> bool {
+        let (study, mut case) = ladder();
+        let mut refinement = Refinement::of(&study);
+        for (halvings, cells, errors, cost) in given {
+            let mesh = Mesh { cells: *cells, errors: *errors, grew: *errors == [None; 2], cost: *cost };
+            refinement.runs.insert((*halvings, *cells), mesh);
+        }
+        case.cells = cells;
+        case.time_step = case.time_step.with_number([0.1, 0.05, 0.025][halvings]);
+        refinement.wants(&case)
+    }
+
     #[test]
-    fn a_contender_goes_on_until_it_arrives_fails_twice_is_out_of_reach_or_has_spent_its_work() {
-        let mut case = records_of(
-            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['GIMP']\n\
-             integrator = ['implicit']\ncells = [4]\n",
-        )
-        .remove(0)
-        .case;
-        case.cells = 32;
+    fn a_contender_goes_on_until_two_meshes_are_within_fail_or_its_work_is_spent() {
         let free = 1e-6;
+        let at = |cells: usize, error: f64| (0, cells, [Some(error); 2], free);
+        let fails = |cells: usize| (0, cells, [None; 2], free);
         for (meshes, is_wanted) in [
             (&[][..], true),
-            (&[(4, Some(0.1), free), (8, Some(0.0011), free)], true),
-            (&[(4, Some(0.1), free), (8, Some(0.001), free)], false),
-            (&[(4, None, free), (8, Some(0.1), free)], true),
-            (&[(4, None, free), (8, None, free)], false),
-            (&[(4, None, free), (8, None, free), (16, Some(0.1), free)], false),
-            (&[(4, None, free), (8, Some(0.1), free), (16, None, free)], true),
+            (&[at(4, 0.1), at(8, 0.004)], true),
+            (&[at(8, 0.005), at(16, 0.004)], false),
+            // Read at the centres it has not arrived.
+            (&[(0, 8, [Some(0.005), Some(0.02)], free), (0, 16, [Some(0.004), Some(0.01)], free)], true),
+            (&[at(8, 0.009), at(16, 0.008)], true),
+            (&[fails(4), at(8, 0.1)], true),
+            (&[fails(8), fails(16)], false),
+            (&[fails(4), fails(8), at(16, 0.1)], false),
+            (&[at(8, 0.1), fails(16)], true),
             // What is finer says nothing about a mesh.
-            (&[(64, Some(0.0), free)], true),
+            (&[at(64, 0.0)], true),
             // From 8 to 64 cells by the order 0.2 + 1 an error falls to a twelfth: 13 % to 1.1 %, below 10 % at least.
-            (&[(4, Some(0.1149), free), (8, Some(0.1), free)], true),
-            (&[(4, Some(0.1494), free), (8, Some(0.13), free)], true),
-            (&[(4, Some(0.1379), free), (8, Some(0.0999), free), (16, Some(0.087), free)], false),
-            (&[(4, Some(2.0), free), (8, Some(1.9), free)], false),
-            (&[(4, Some(0.1), free), (8, Some(0.2), free)], true),
-            // By one mesh a finer one is of the power 2, by two of theirs.
-            (&[(16, Some(0.1), 0.24)], true),
-            (&[(16, Some(0.1), 0.26)], false),
-            (&[(16, None, 0.26)], false),
-            (&[(8, Some(0.3), 0.24), (16, Some(0.1), 0.48)], true),
-            (&[(8, Some(0.3), 0.05), (16, Some(0.1), 0.26)], false),
-            (&[(8, Some(0.3), 0.24), (16, Some(0.1), 0.24)], true),
-            (&[(8, Some(0.3), 0.24), (16, Some(0.1), 0.52)], false),
-            // The mesh before would have been too dear.
-            (&[(8, Some(0.3), 0.26), (16, Some(0.1), 0.26)], false),
-            (&[(8, Some(0.3), 0.01), (16, Some(0.01), 0.02)], true),
-            (&[(8, Some(0.3), 0.1), (16, Some(0.01), 0.2)], false),
+            (&[at(4, 0.1494), at(8, 0.13)], true),
+            (&[at(4, 0.1379), at(8, 0.0999), at(16, 0.087)], false),
+            (&[at(4, 2.0), at(8, 1.9)], false),
+            // By one mesh a finer one is of the power 2.
+            (&[(0, 16, [Some(0.1); 2], 0.24 * MOST_WORK)], true),
+            (&[(0, 16, [Some(0.1); 2], 0.26 * MOST_WORK)], false),
         ] {
-            let mut refinement = Refinement { finest: 64, meshes: BTreeMap::new() };
-            for (cells, error, cost) in meshes {
-                refinement.meshes.insert(*cells, Mesh { cells: *cells, error: *error, cost: *cost });
-            }
-            assert_eq!(refinement.wants(&case), is_wanted, "{meshes:?}");
+            assert_eq!(wants(meshes, 0, 32), is_wanted, "{meshes:?}");
         }
+    }
+
+    #[test]
+    fn shorter_steps_are_taken_where_an_arrival_rests_on_them_and_where_the_finest_mesh_fails() {
+        let run = |halvings: usize, cells: usize, error: Option<f64>| (halvings, cells, [error; 2], 1e-6);
+        let meshes =
+            [run(0, 4, Some(0.1)), run(0, 8, Some(0.009)), run(0, 16, Some(0.008)), run(0, 32, Some(0.007))];
+        let of = |given: Given<'_>, halvings| [4, 8, 16, 32, 64].map(|cells| wants(given, halvings, cells));
+        assert_eq!(of(&meshes, 1), [false, true, true, false, false]);
+        // Half the step undoes the arrival on 8 cells: that on 16 rests on 16 and 32.
+        let undone = [&meshes[..], &[run(1, 8, Some(0.5))]].concat();
+        assert_eq!(of(&undone, 1), [false, true, true, true, false]);
+        assert_eq!(of(&undone, 2), [false; 5]);
+        let failed = [&meshes[..1], &[run(0, 8, None)]].concat();
+        assert_eq!(of(&failed, 1), [false, true, false, false, false]);
+        assert_eq!(of(&failed, 2), [false; 5]);
+        assert_eq!(of(&[&failed[..], &[run(1, 8, None)]].concat(), 2), [false, true, false, false, false]);
     }
 
     #[test]
@@ -198,7 +286,8 @@ mod tests {
             .records
             .iter()
             .find(|record| record.case.cells == last && record.case.method.to_string() == "GC-SRI-patch");
-        assert!(largest_error(arrived.expect("a record")).is_some_and(|error| error <= NEGLIGIBLE));
+        let errors = RunErrors::of(arrived.expect("a record"));
+        assert!(errors.largest(ReadOut::Points, None, None).is_some_and(|error| error <= SMALLEST));
         let hashes =
             |records: &[Record]| records.iter().map(|record| record.hash.clone()).collect::<Vec<_>>();
         assert_eq!(hashes(&report.records), hashes(&run(3).records));

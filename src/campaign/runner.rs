@@ -280,7 +280,7 @@ impl<'a> Begun<'a> {
             let jobs = places.into_iter().filter(is_open).map(job).collect();
             Ladder { jobs, begun: Some(begun) }
         };
-        ladders(&cases).into_iter().map(ladder).filter(|ladder| !ladder.jobs.is_empty()).collect()
+        ladders(study, &cases).into_iter().map(ladder).filter(|ladder| !ladder.jobs.is_empty()).collect()
     }
 
     /// The report of a study whose cases have ended.

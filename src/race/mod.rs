@@ -1,120 +1,67 @@
 //! The race to one per cent: every contender refines its mesh in every situation until it arrives. What the records come
 //! to, as numbers and names; pages make sentences of it.
 
-pub mod correlation;
-pub mod family;
+pub mod answer;
 pub mod finish;
+pub mod group;
 pub mod profile;
-pub mod sensitivity;
 pub mod situation;
-pub mod trade;
 
-use crate::case::grouping::grouped;
-use crate::race::correlation::{Correlation, correlations};
-use crate::race::family::{FamilyCurve, family_curves};
-use crate::race::finish::{Question, RaceQuantity, Reason};
-use crate::race::profile::{Choice, CostRow, CostTable, Profile};
-use crate::race::sensitivity::{THRESHOLD, Variant, variants};
-use crate::race::situation::{Entry, OtherCosts, Situation};
-use crate::race::trade::{Sample, Trade, trades};
+use crate::case::contender::CONTENDERS;
+use crate::race::answer::{Answer, answers};
+use crate::race::finish::{RaceQuantity, Terms};
+use crate::race::group::{Group, cost_table, races};
+use crate::race::profile::Profile;
+use crate::race::situation::Situation;
 use crate::record::Record;
+use crate::record::race_errors::ReadOut;
 use crate::study::check::Study;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
-/// Pairs of situations that are told as the most alike.
-const MOST_PAIRS: usize = 10;
-
-/// What no situation of the race tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Untested {
-    /// Contact of bodies.
-    Contact,
-    /// Soil that parts.
-    Separation,
-    /// Soil that flows.
-    Flow,
-}
-
-/// Where the method of an answer does not arrive, and why.
+/// The profile of each method of a group for one read-out and quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Missed {
-    /// The situation.
-    pub situation: String,
-    /// The reason.
-    pub reason: Reason,
-}
-
-/// The choice in one family.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FamilyChoice {
-    /// The family.
-    pub family: String,
-    /// The choice; none where nobody arrives.
-    pub choice: Option<Choice>,
-}
-
-/// The answer to a question.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Answer {
-    /// The question.
-    pub question: Question,
-    /// The method to take.
-    pub method: String,
-    /// The integrator of most situations, by its name.
-    pub integrator: String,
-    /// Every integrator with the number of its situations.
-    pub integrators: BTreeMap<String, usize>,
-    /// Share of situations in which the method reaches 1 %, families weighing the same.
-    pub reached: f64,
-    /// Share in which it does within twice the best cost.
-    pub within_two: f64,
-    /// Situations that the answer rests on.
-    pub situations: usize,
-    /// Those of them in which the soil moves.
-    pub moving: usize,
-    /// Families of situations.
-    pub families: usize,
-    /// Contenders that were compared.
-    pub contenders: usize,
-    /// Where the method does not arrive.
-    pub missed: Vec<Missed>,
-    /// All contenders by their score, the best first.
-    pub ranked: Vec<Choice>,
-    /// The choice in each family.
-    pub by_family: Vec<FamilyChoice>,
-    /// What holds and what turns when the race is changed.
-    pub variants: Vec<Variant>,
-    /// What no situation tests.
-    pub untested: [Untested; 3],
-}
-
-/// The profile of each contender for one question and quantity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct QuestionProfiles {
-    /// The question.
-    pub answer: Question,
+pub struct GroupProfiles {
+    /// The group.
+    pub group: Group,
+    /// The read-out.
+    #[serde(rename = "readout")]
+    pub read_out: ReadOut,
     /// The quantity.
     pub quantity: RaceQuantity,
-    /// One per contender.
+    /// One per method.
     pub profiles: Vec<Profile>,
 }
+
+/// What an operator does to the number of situations that arrive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Operator {
+    /// Its word.
+    pub operator: String,
+    /// The methods without and with it.
+    pub methods: [String; 2],
+    /// Per group and read-out the situations that arrive without and with it; none where no method of the pair is of the group.
+    pub arrivals: Vec<Option<[usize; 2]>>,
+}
+
+/// The ladder: each method has one operator more than the one before, which its word names.
+const LADDER: [(&str, &str); 5] = [
+    ("GIMP", ""),
+    ("GIMP-SRI", "SRI"),
+    ("GIMP-SRI-patch", "patch"),
+    ("GC-SRI-patch", "CMPM"),
+    ("GC-Bbar-patch", "B-bar"),
+];
 
 /// What the race has found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RaceFindings {
-    /// The answers.
+    /// The answers: of each group and read-out the best method, and those that tie with it.
     pub answers: Vec<Answer>,
     /// Performance profiles to 1 %.
-    pub profiles: Vec<QuestionProfiles>,
-    /// Error over work in each family, a curve per contender.
-    pub families: Vec<FamilyCurve>,
-    /// What each operator buys and costs.
-    pub trades: Vec<Trade>,
-    /// The pairs of situations that are most alike.
-    pub correlations: Vec<Correlation>,
+    pub profiles: Vec<GroupProfiles>,
+    /// What each operator changes.
+    pub operators: Vec<Operator>,
     /// Every situation with every contender.
     pub situations: Vec<Situation>,
     /// What is no error: critical step, rest and power.
@@ -135,138 +82,52 @@ impl RaceFindings {
     /// What situations come to, in the order of their names: sentences do not depend on the order of studies.
     pub fn from_situations(mut situations: Vec<Situation>) -> Self {
         situations.sort_by(|a, b| a.name.cmp(&b.name));
-        let profiles_of = |answer: Question, quantity: RaceQuantity| {
-            let table = cost_table(&situations, quantity, THRESHOLD).only(|name| answer.takes(name));
-            QuestionProfiles { answer, quantity, profiles: table.profiles() }
+        let profiles_of = |(group, read_out): (Group, ReadOut)| {
+            RaceQuantity::EACH.map(|quantity| {
+                let table = cost_table(&situations, group, &Terms { quantity, ..Terms::usual(read_out) });
+                GroupProfiles { group, read_out, quantity, profiles: table.profiles() }
+            })
         };
-        let profiles = Question::BOTH
-            .into_iter()
-            .flat_map(|answer| RaceQuantity::EACH.map(|quantity| profiles_of(answer, quantity)))
-            .collect();
-        let errors: Vec<(&str, Vec<Option<f64>>)> = situations
-            .iter()
-            .map(|one| (one.name.as_str(), one.entries.iter().map(Entry::largest_error).collect()))
-            .collect();
-        let mut correlations = correlations(&errors);
-        correlations.truncate(MOST_PAIRS);
         Self {
-            answers: Question::BOTH
-                .into_iter()
-                .filter_map(|question| answer(question, &situations))
-                .collect(),
-            profiles,
-            families: by_family(&situations)
-                .into_iter()
-                .flat_map(|(family, situations)| family_curves(family, &situations))
-                .collect(),
-            trades: trades(&samples(&situations)),
-            correlations,
+            answers: races().flat_map(|(group, read_out)| answers(&situations, group, read_out)).collect(),
+            profiles: races().flat_map(profiles_of).collect(),
+            operators: LADDER.windows(2).map(|pair| operator(&situations, pair[0].0, pair[1])).collect(),
             situations,
             properties: Vec::new(),
         }
     }
 
-    /// What each contender costs to other ends, in the order of situations and entries.
-    pub fn other_costs(&self) -> Vec<Vec<OtherCosts>> {
-        self.situations.iter().map(|one| one.entries.iter().map(OtherCosts::new).collect()).collect()
-    }
-
-    /// The answer to a question, where somebody arrives.
-    pub fn answer(&self, question: Question) -> Option<&Answer> {
-        self.answers.iter().find(|answer| answer.question == question)
-    }
-
-    /// The profiles for a question and a quantity.
-    pub fn profiles(&self, question: Question, quantity: RaceQuantity) -> &[Profile] {
-        let is_it = |one: &&QuestionProfiles| (one.answer, one.quantity) == (question, quantity);
+    /// The profiles for a group, a read-out and a quantity.
+    pub fn profiles(&self, group: Group, read_out: ReadOut, quantity: RaceQuantity) -> &[Profile] {
+        let is_it =
+            |one: &&GroupProfiles| (one.group, one.read_out, one.quantity) == (group, read_out, quantity);
         self.profiles.iter().find(is_it).map_or(&[], |one| &one.profiles)
     }
 
-    /// The families of its situations, each once, with their situations.
-    pub fn families(&self) -> Vec<(&str, Vec<&Situation>)> {
-        by_family(&self.situations)
-    }
-
-    /// The curves of a family.
-    pub fn curves<'a>(&'a self, family: &'a str) -> impl Iterator<Item = &'a FamilyCurve> {
-        self.families.iter().filter(move |curve| curve.family == family)
+    /// The best method of a group and read-out, where one arrives.
+    pub fn best(&self, group: Group, read_out: ReadOut) -> Option<&Answer> {
+        self.answers.iter().find(|answer| (answer.group, answer.read_out) == (group, read_out))
     }
 }
 
-/// Situations by their families, both in the order of their first appearance.
-fn by_family(situations: &[Situation]) -> Vec<(&str, Vec<&Situation>)> {
-    grouped(situations, |situation| situation.family.as_str())
-}
-
-/// Costs of all contenders to a threshold of a quantity.
-pub fn cost_table(situations: &[Situation], quantity: RaceQuantity, threshold: f64) -> CostTable {
-    let row = |situation: &Situation| CostRow {
-        family: situation.family.clone(),
-        situation: situation.name.clone(),
-        costs: situation.entries.iter().map(|entry| entry.cost_to(quantity, threshold)).collect(),
+fn operator(situations: &[Situation], without: &str, (with, operator): (&str, &str)) -> Operator {
+    let arrivals = |(group, read_out): (Group, ReadOut)| {
+        // Total Lagrangian methods are those of the ladder with weights that stay.
+        let names = [without, with]
+            .map(|name| if group == Group::Total { format!("TL-{name}") } else { name.to_owned() });
+        let is_known = |name: &String| CONTENDERS.iter().any(|one| one.name == name);
+        let table = cost_table(situations, group, &Terms::usual(read_out));
+        let count = |name: &String| {
+            let place = table.methods.iter().position(|method| method == name)?;
+            Some(table.rows.iter().filter(|row| row.costs[place].is_some()).count())
+        };
+        names.iter().all(is_known).then(|| Some([count(&names[0])?, count(&names[1])?]))?
     };
-    let names = situations.first().map_or(&[][..], |one| &one.entries);
-    CostTable {
-        contenders: names.iter().map(|entry| entry.contender.clone()).collect(),
-        rows: situations.iter().map(row).collect(),
+    Operator {
+        operator: operator.to_owned(),
+        methods: [without, with].map(str::to_owned),
+        arrivals: races().map(arrivals).collect(),
     }
-}
-
-fn answer(question: Question, situations: &[Situation]) -> Option<Answer> {
-    let table = |quantity: RaceQuantity, threshold: f64| {
-        cost_table(situations, quantity, threshold).only(|name| question.takes(name))
-    };
-    let whole = table(RaceQuantity::All, THRESHOLD);
-    let best = whole.best()?;
-    let mut integrators: BTreeMap<String, usize> = BTreeMap::new();
-    for situation in situations {
-        *integrators.entry(situation.integrator.clone()).or_default() += 1;
-    }
-    let missed = whole.missed(&best.method);
-    let reason = |situation: &Situation| {
-        let entry = situation.entries.iter().find(|entry| entry.contender == best.method)?;
-        let reason = entry.reason.clone()?;
-        missed
-            .contains(&situation.name.as_str())
-            .then(|| Missed { situation: situation.name.clone(), reason })
-    };
-    let of_family = |family: &str| FamilyChoice {
-        family: family.to_owned(),
-        choice: whole.of_families(|other| other == family).best(),
-    };
-    Some(Answer {
-        question,
-        integrator: integrators.iter().max_by_key(|(_, count)| **count).map(|(name, _)| name.clone())?,
-        integrators,
-        reached: best.reached,
-        within_two: best.within_two,
-        situations: situations.len(),
-        moving: situations.iter().filter(|one| one.moves).count(),
-        families: whole.families().len(),
-        contenders: whole.contenders.len(),
-        missed: situations.iter().filter_map(reason).collect(),
-        ranked: whole.ranked(),
-        by_family: whole.families().into_iter().map(of_family).collect(),
-        variants: variants(table),
-        untested: [Untested::Contact, Untested::Separation, Untested::Flow],
-        method: best.method,
-    })
-}
-
-fn samples(situations: &[Situation]) -> Vec<Sample<'_>> {
-    situations
-        .iter()
-        .flat_map(|situation| {
-            situation.entries.iter().filter(|entry| !entry.levels.is_empty()).map(move |entry| Sample {
-                family: &situation.family,
-                situation: &situation.name,
-                contender: &entry.contender,
-                errors: entry.errors,
-                arrives: RaceQuantity::EACH.map(|quantity| entry.cost_to(quantity, THRESHOLD).is_some()),
-                cost: entry.cost,
-            })
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -2,105 +2,105 @@
 
 use super::*;
 use crate::campaign::runner::solved;
-use crate::case::contender::CONTENDERS;
-use crate::race::finish::{Level, reason_of};
-use crate::race::situation::{OtherCosts, THRESHOLDS};
+use crate::race::finish::{Level, Reason};
+use crate::race::situation::Entry;
 use crate::record::WallSample;
+use crate::record::race_errors::RunErrors;
 
 /// A situation in which the contenders of a list need as many seconds for 1 % on their second mesh; nobody else runs.
-fn situation(family: &str, name: &str, arrivals: &[(&str, Option<f64>)]) -> Situation {
+fn situation(name: &str, arrivals: &[(&str, Option<f64>)]) -> Situation {
+    let family = name.split('-').next().expect("a word");
     let entry = |contender: &str| {
         let cost = arrivals.iter().find(|(known, _)| *known == contender).map(|(_, cost)| *cost);
-        let levels: Vec<Level> = cost.map_or(Vec::new(), |cost| {
-            let (seconds, error) = cost.map_or((9.0, 0.05), |cost| (cost, 0.01));
-            let level = |cells, cost, error: f64| Level {
-                cells,
-                cost,
-                seconds: None,
-                errors: [Some(error), Some(error), None],
-            };
-            vec![level(4, 0.1 * seconds, 0.2), level(8, seconds, error)]
-        });
-        let costs = THRESHOLDS.map(|threshold| finish::cost_to(&levels, RaceQuantity::All, threshold));
-        Entry {
-            contender: contender.to_owned(),
-            costs,
-            reason: costs[1].is_none().then(|| reason_of(&levels, None, None)),
-            errors: levels.last().map_or([None; 3], |level| level.errors),
-            cost: levels.last().map(|level| level.cost),
-            levels,
-            ..Entry::default()
-        }
+        let level = |(cells, share, error): (usize, f64, f64), cost: Option<f64>| Level {
+            cells,
+            step: "growth=0.03".to_owned(),
+            cost: share * cost.unwrap_or(9.0),
+            errors: RunErrors {
+                at: [vec![[Some(error), Some(error), None]; 3], vec![[Some(0.5 * error), None, None]; 3]],
+                is_whole: true,
+            },
+            ..Level::default()
+        };
+        let meshes = |cost: Option<f64>| {
+            let fine = if cost.is_some() { 0.01 } else { 0.05 };
+            [(4, 0.1, 0.2), (8, 1.0, fine), (16, 10.0, 0.4 * fine)].map(|mesh| level(mesh, cost)).to_vec()
+        };
+        Entry { contender: contender.to_owned(), levels: cost.map_or(Vec::new(), meshes), ..Entry::default() }
     };
     Situation {
         family: family.to_owned(),
         name: name.to_owned(),
-        title: name.to_owned(),
+        title: format!("the {name}"),
         study: format!("race-{name}"),
         moves: family == "strain",
-        integrator: if family == "waves" { "explicit" } else { "implicit" }.to_owned(),
-        is_property: false,
-        budget: 8,
-        common_cells: 8,
+        integrator: "implicit".to_owned(),
+        outputs: ["0.05", "0.2", "1"].map(str::to_owned).to_vec(),
+        meshes: vec![4, 8, 16],
         entries: CONTENDERS.iter().map(|one| entry(one.name)).collect(),
+        ..Situation::default()
     }
 }
 
 fn findings() -> RaceFindings {
     RaceFindings::from_situations(vec![
-        situation(
-            "column",
-            "column-a",
-            &[("GIMP", Some(1.0)), ("MPM", Some(3.0)), ("TL-GC-SRI-patch", Some(0.1))],
-        ),
-        situation("column", "column-b", &[("GIMP", Some(1.0)), ("MPM", None)]),
-        situation("waves", "waves", &[("GIMP", Some(4.0)), ("MPM", Some(1.0))]),
-        situation("strain", "strain", &[("GIMP", None), ("MPM", Some(1.0)), ("TL-GC-SRI-patch", Some(1.0))]),
+        situation("column-a", &[("GIMP", Some(1.0)), ("MPM", Some(3.0))]),
+        situation("column-b", &[("GIMP", Some(1.0)), ("MPM", None)]),
+        situation("waves", &[("GIMP", Some(4.0)), ("MPM", Some(1.0))]),
+        situation("strain", &[("GIMP", None), ("MPM", Some(1.0)), ("TL-GC-SRI-patch", Some(1.0))]),
     ])
 }
 
 #[test]
-fn each_question_has_the_answer_of_its_own_contenders() {
+fn each_group_has_the_answer_of_its_own_methods_in_its_own_situations() {
     let findings = findings();
-    let moving = findings.answer(Question::Moving).expect("somebody arrives");
-    // MPM: (½ + 1 + 1)/3 reached and 2/3 within twice the best; GIMP: 2/3 and 1/3.
-    assert_eq!((moving.method.as_str(), moving.integrator.as_str()), ("MPM", "implicit"));
-    assert!((moving.reached - 2.5 / 3.0).abs() < 1e-12 && (moving.within_two - 2.0 / 3.0).abs() < 1e-12);
-    assert_eq!((moving.situations, moving.families, moving.moving), (4, 3, 1));
-    assert_eq!(moving.contenders, CONTENDERS.iter().filter(|one| !one.is_total()).count());
-    assert_eq!(moving.missed, [Missed { situation: "column-b".to_owned(), reason: Reason::Budget }]);
-    let families: Vec<&str> =
-        moving.by_family.iter().map(|one| one.choice.as_ref().map_or("", |choice| &choice.method)).collect();
-    assert_eq!(families, ["GIMP", "MPM", "MPM"]);
-    // Without the large strain GIMP would be better.
-    let turns: Vec<bool> = moving.variants[..3].iter().map(|one| one.holds).collect();
-    assert_eq!(turns, [true, false, true]);
-    let total = findings.answer(Question::Total).expect("somebody arrives");
-    assert_eq!((total.method.as_str(), total.missed.len()), ("TL-GC-SRI-patch", 2));
-    // Its own contenders alone: that it is ten times as fast as GIMP does not touch GIMP's profile.
-    let gimp = |quantity| {
-        let profiles = findings.profiles(Question::Moving, quantity);
-        profiles.iter().find(|one| one.contender == "GIMP").map(|one| one.share(1.0))
-    };
-    assert_eq!(gimp(RaceQuantity::All), Some(1.0 / 3.0));
-    assert_eq!(gimp(RaceQuantity::Settlement), Some(0.0), "no settlement was measured");
-    assert_eq!(findings.profiles.len(), 8);
-    assert_eq!(findings.families().iter().map(|one| one.1.len()).collect::<Vec<_>>(), [2, 1, 1]);
+    let told: Vec<(&str, &str, &str, usize, usize)> = findings
+        .answers
+        .iter()
+        .map(|one| (one.group.name(), one.read_out.name(), one.method.as_str(), one.reached, one.of))
+        .collect();
+    // At rest, families alike: GIMP reaches all and is near twice; MPM reaches ½ · ½ + ½. Read at the centres the error is half as
+    // large: on 16 cells, beyond the budget, no more than on 8.
+    let wanted = [
+        ("moving", "points", "MPM", 1, 1),
+        ("moving", "centres", "MPM", 1, 1),
+        ("rest", "points", "GIMP", 3, 3),
+        ("rest", "centres", "GIMP", 3, 3),
+        ("total", "points", "TL-GC-SRI-patch", 1, 1),
+        ("total", "centres", "TL-GC-SRI-patch", 1, 1),
+    ];
+    assert_eq!(told, wanted);
+    let rest = findings.best(Group::Rest, ReadOut::Points).expect("somebody arrives");
+    assert_eq!((rest.share, rest.within_two, rest.interval), (1.0, 0.5, [1.0, 1.0]));
+    // On the coarsest mesh nobody arrives; at 0.5 % on the finest alone.
+    assert!(rest.holds.time && rest.holds.read_out && !rest.holds.budget && !rest.holds.tolerance);
+    assert!(!rest.holds.everywhere() && rest.missed.is_empty());
+    let mpm = &answer::answers(&findings.situations[..2], Group::Rest, ReadOut::Points)[0];
+    assert_eq!((mpm.method.as_str(), mpm.alike.len()), ("GIMP", 0));
+    let gimp = findings.profiles(Group::Moving, ReadOut::Points, RaceQuantity::All);
+    assert_eq!(
+        gimp.iter().find(|one| one.method == "GIMP").map(|one| one.steps.last().map(|step| step.1)),
+        Some(Some(0.0))
+    );
+    assert_eq!((findings.profiles.len(), findings.operators.len()), (24, 4));
+    // Nobody runs the next step of the ladder: what arrived without it is lost.
+    assert_eq!(findings.operators[0].arrivals[..2], [Some([0, 0]); 2]);
+    assert_eq!((findings.operators[0].arrivals[2], findings.operators[0].arrivals[4]), (Some([3, 0]), None));
+    let of_locked = &findings.situations[1];
+    let mpm =
+        of_locked.entry("MPM").and_then(|entry| of_locked.reason(entry, &Terms::usual(ReadOut::Points)));
+    assert!(matches!(mpm, Some(Reason::Budget(order)) if (order - 2.5_f64.log2()).abs() < 1e-12), "{mpm:?}");
 }
 
 #[test]
-fn findings_do_not_depend_on_the_order_of_studies() {
+fn findings_are_plain_data_and_do_not_depend_on_the_order_of_studies() {
     let mut situations = findings().situations;
     situations.reverse();
     assert_eq!(RaceFindings::from_situations(situations), findings());
-}
-
-#[test]
-fn findings_are_plain_data() {
     let text = serde_json::to_string(&findings()).expect("plain data");
     let back: RaceFindings = serde_json::from_str(&text).expect("the same");
     assert_eq!(back, findings());
-    assert!(text.contains("\"question\":\"moving\"") && text.contains("\"within_two\""), "{text}");
+    assert!(text.contains("\"group\":\"moving\",\"readout\":\"points\""), "{text}");
     assert!(RaceFindings::from_studies([]).is_none());
 }
 
@@ -122,50 +122,13 @@ fn findings_are_the_same_on_any_machine() {
             record.wall = [1e-3, 2e-3, 4e-3].map(sample).to_vec();
             record.provenance.target = processor.to_owned();
         }
-        let findings = RaceFindings::from_studies([(&study, records.as_slice())]).expect("a race");
-        let seconds = findings.situations[0].entries[0].levels[0].seconds.expect("measured");
-        (seconds, without_seconds(&findings))
+        let mut findings = RaceFindings::from_studies([(&study, records.as_slice())]).expect("a race");
+        let levels =
+            findings.situations.iter_mut().flat_map(|one| &mut one.entries).flat_map(|one| &mut one.levels);
+        let seconds: Vec<f64> = levels.filter_map(|level| level.seconds.take()).collect();
+        (seconds[0], findings)
     };
     let [(quick, ours), (slow, theirs)] = [on(1.0, "x86_64"), on(7.3, "aarch64")];
     assert!((slow / quick - 7.3).abs() < 1e-9, "{quick} {slow}");
     assert!(ours == theirs, "costs or choices follow the clock");
-}
-
-fn without_seconds(findings: &RaceFindings) -> RaceFindings {
-    let mut findings = findings.clone();
-    for situation in findings.situations.iter_mut().chain(&mut findings.properties) {
-        for entry in &mut situation.entries {
-            entry.seconds = None;
-            entry.levels.iter_mut().for_each(|level| level.seconds = None);
-        }
-    }
-    findings
-}
-
-/// Nobody runs the other steps of the ladder: a contender without a mesh neither wins nor loses a situation.
-#[test]
-fn an_operator_without_runs_changes_nothing() {
-    for trade in findings().trades {
-        assert_eq!((trade.situations, trade.cost_ratio), (0, None), "{}", trade.operator);
-        assert!(trade.effects.iter().all(|effect| (effect.won, effect.lost) == (0, 0)), "{}", trade.operator);
-    }
-}
-
-#[test]
-fn other_ends_are_of_a_quantity_alone_or_of_all_at_another_threshold() {
-    let level = |cells: usize, cost: f64, errors: [f64; 3]| Level {
-        cells,
-        cost,
-        seconds: None,
-        errors: errors.map(Some),
-    };
-    // The pressure arrives on the first mesh, stress and settlement on the second.
-    let levels = vec![level(4, 1.0, [1e-3, 0.5, 0.1]), level(8, 10.0, [1e-4, 1e-3, 1e-3])];
-    let costs = OtherCosts::new(&Entry { levels, ..Entry::default() });
-    let is_late = |cost: &Option<f64>| cost.is_some_and(|cost| cost > 1.0 && cost < 10.0);
-    assert_eq!(costs.alone[0], Some(1.0));
-    assert!(costs.alone[1..].iter().chain(&costs.thresholds).all(is_late), "{costs:?}");
-    // A smaller threshold costs more.
-    let [half, two, three] = costs.thresholds;
-    assert!(half > two && two > three, "{costs:?}");
 }

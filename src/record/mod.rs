@@ -9,6 +9,7 @@ pub mod named_cases;
 pub mod pack;
 pub mod provenance;
 pub mod race_errors;
+pub mod reached;
 pub mod store;
 pub mod whole_file;
 

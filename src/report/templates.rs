@@ -9,7 +9,7 @@ use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 27] = [
+const TEMPLATES: [(&str, &str); 25] = [
     ("audit", include_str!("../../templates/audit.md")),
     ("balances", include_str!("../../templates/balances.md")),
     ("changes", include_str!("../../templates/changes.md")),
@@ -26,9 +26,7 @@ const TEMPLATES: [(&str, &str); 27] = [
     ("printed-equations", include_str!("../../templates/printed-equations.md")),
     ("proposed", include_str!("../../templates/proposed.md")),
     ("race-answers", include_str!("../../templates/race-answers.md")),
-    ("race-limits", include_str!("../../templates/race-limits.md")),
-    ("race-situation", include_str!("../../templates/race-situation.md")),
-    ("race-table", include_str!("../../templates/race-table.md")),
+    ("race-rules", include_str!("../../templates/race-rules.md")),
     ("sampling", include_str!("../../templates/sampling.md")),
     ("setting", include_str!("../../templates/setting.md")),
     ("sweep", include_str!("../../templates/sweep.md")),
@@ -96,15 +94,13 @@ pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::race::RaceFindings;
-    use crate::report::answers::race;
     use regex_lite::Regex;
 
     #[test]
     fn a_template_without_its_finding_is_an_error() {
         let environment = environment().expect("templates of this program");
         // What needs no finding says the same on every page.
-        let fixed = ["balances", "mapping-back", "proposed", "work"];
+        let fixed = ["balances", "mapping-back", "proposed", "race-rules", "work"];
         let filled = TEMPLATES.map(|(name, _)| name).into_iter().filter(|name| !fixed.contains(name));
         for name in filled.chain(["no such template"]) {
             let told = render(&environment, name, &()).expect_err(name).to_string();
@@ -124,9 +120,8 @@ mod tests {
         serde_json::from_str(include_str!("../../templates/examples.json")).expect("examples")
     }
 
-    /// The filters of all templates, those of the race with them.
     fn every_filter() -> Environment<'static> {
-        race::environment(&RaceFindings::default()).expect("templates of this program")
+        environment().expect("templates of this program")
     }
 
     #[test]

@@ -14,7 +14,6 @@ mod measure_pressure_peak;
 mod option_pairs;
 mod page_numbers;
 mod paper;
-mod race_page;
 mod record_tables;
 mod records_of_programs;
 mod release_metadata;

@@ -1,7 +1,8 @@
 //! The contenders of the race, one line each: what `method = ["race"]` runs, by the names that `solve` takes.
 
 use crate::{Case, SolverName};
-use oedometer_problem::method::{Configuration, Method};
+use oedometer_problem::method::{Basis, Configuration, Method, Recovery};
+use oedometer_scenes::SceneKind;
 use std::sync::LazyLock;
 
 /// The word that stands for all contenders among the methods of a sweep.
@@ -59,6 +60,22 @@ impl Contender {
     /// Whether a case of the race is its own.
     pub fn runs(&self, case: &Case) -> bool {
         case.method == self.method()
+    }
+
+    /// Why it does not race in a case: a limit of how this program has it, that would be judged instead of the method.
+    pub fn unfit(&self, case: &Case) -> Option<&'static str> {
+        let is_spline = matches!(self.method.basis, Basis::Bspline2 | Basis::Bspline3);
+        match case.scene {
+            SceneKind::StandingWave | SceneKind::DynamicColumn if self.method.recovery == Recovery::Ppp => {
+                Some(
+                    "the published parameter of the projection is quasi-static (White & Borja 2008): its storage slows waves",
+                )
+            }
+            _ if is_spline && case.points_per_cell == 1 => {
+                Some("with one point per cell the spline beyond the surface takes an eighth of the load")
+            }
+            _ => None,
+        }
     }
 
     /// Whether its mesh follows the soil.

@@ -43,6 +43,10 @@ pub fn parts(method: &Method) -> Vec<MethodPart> {
         let cells = "stress, pressure and volume follow the parabola through the means of the surrounding cells while points move";
         parts.push(part("memory", method.memory.name(), (cells, "this program")));
     }
+    if (method.strain, method.recovery) == (StrainGradient::Bbar, Recovery::Nodal) {
+        let hybrid = "both together are a hybrid that no source has: the published averaging over nodes cures locking, and is no pressure field";
+        parts.push(part("hybrid", "", (hybrid, "cf. Zhao, Jiang & Choo 2023")));
+    }
     if let Some(configuration) = method.configuration {
         parts.push(part("configuration", configuration.name(), of_configuration(configuration)));
     }
@@ -89,7 +93,7 @@ fn of_strain(strain: StrainGradient) -> (&'static str, &'static str) {
             "González Acosta, Vardon & Hicks 2017",
         ),
         StrainGradient::CmpmEnds => (
-            "strains come from the composite cubic between the ends of the point's domain, so that they add up to the displacement of the surface",
+            "strains come from the composite cubic between the ends of the point's domain, of CPDI and not of GIMP, so that they add up to the displacement of the surface",
             "after González Acosta, Vardon & Hicks 2017",
         ),
         StrainGradient::Bbar => {

@@ -33,6 +33,16 @@ impl TimeStepRule {
         }
     }
 
+    /// Its number: of two rules of a kind the larger one takes the longer steps.
+    pub fn number(self) -> f64 {
+        let (Self::Stable(number)
+        | Self::Courant(number)
+        | Self::Seconds(number)
+        | Self::Growth(number)
+        | Self::Tolerance(number)) = self;
+        number
+    }
+
     /// The step, s, that it asks for at first.
     pub fn first(&self, scales: &StepScales) -> f64 {
         match self {

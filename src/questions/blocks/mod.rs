@@ -6,7 +6,6 @@ pub mod error_figure;
 pub mod fields;
 pub mod number;
 pub mod profiles;
-pub mod race;
 pub mod refinement;
 pub mod setting;
 pub mod soil_map;
@@ -16,11 +15,11 @@ pub mod work;
 
 use crate::judge::outside_runs::{OutsideRunFinding, outside_runs};
 use crate::questions::study_results::StudyResults;
+use crate::race::situation::Situation;
 use checks::{EndFinding, GroupFinding, MeasureFinding, WorstCheck};
 use fields::{FieldsFinding, LoadCurves};
 use oedometer_exact::ExactError;
 use profiles::ProfilesFinding;
-use race::RaceBlock;
 use refinement::RefinementFinding;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,7 +47,7 @@ pub struct StudyBlocks {
     /// Errors along every axis that is refined.
     pub refinements: Vec<RefinementFinding>,
     /// A situation of the race.
-    pub race: Option<RaceBlock>,
+    pub race: Option<Situation>,
     /// Critical steps, predicted and observed.
     pub stability: Option<StabilityFinding>,
     /// How each case ended, where the study expects how.
@@ -85,7 +84,7 @@ impl StudyBlocks {
             fields: if drawn { FieldsFinding::new(results)? } else { None },
             loads: if drawn { LoadCurves::new(results) } else { None },
             refinements: if drawn { RefinementFinding::along_all_axes(results) } else { Vec::new() },
-            race: RaceBlock::new(results),
+            race: Situation::from_records(results.study, results.records),
             stability: StabilityFinding::new(results.records),
             ends: checks::ends(results),
             measures: checks::measures(results.records),

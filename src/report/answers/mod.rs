@@ -148,7 +148,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
     let (studies, findings) = (&answers.all.studies, answers.findings);
     let race = findings.race.as_ref().filter(|race| !race.situations.is_empty());
     let all = [
-        race.map(race::section).transpose()?,
+        race.map(race::section),
         findings.cost.as_ref().map(cost_section).transpose()?,
         findings.paper.as_ref().map(paper::section).transpose()?,
         answers.changes.map(changes_section).transpose()?,

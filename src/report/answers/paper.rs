@@ -110,7 +110,7 @@ mod tests {
         );
         assert_eq!(
             *sentence,
-            "Figs 3a and 3b of Zheng et al. (2021): on 10 cells the pressure of `GC-SRI-patch` is within 3.00 % of Terzaghi's solution with \
+            "Compared are exact solutions, not the published curves, which are not digitised. Figs 3a and 3b of Zheng et al. (2021): on 10 cells the pressure of `GC-SRI-patch` is within 3.00 % of Terzaghi's solution with \
              compressible water at every output (relative L_2 error at the points; the largest at T_v = 0.2). Figs 4a and \
              4b: on 10 cells the pressure of `GC-SRI-patch` is within 2.00 % of the exact large-strain solution of its own \
              equations at every output (relative L_2 error at the points; the largest at T_v = 0.1). Evidence: \

@@ -10,7 +10,7 @@ type Part = fn(&StudyFindings) -> Result<Vec<Block>, RenderError>;
 
 /// The parts in the order of the page, after what is not as expected.
 const PARTS: [Part; 7] = [
-    race::blocks,
+    |study| Ok(race::blocks(study)),
     answers::blocks,
     maps::cheapest_methods,
     fields::blocks,

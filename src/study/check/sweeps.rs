@@ -53,10 +53,14 @@ impl Checker<'_> {
             return;
         }
         for (name, complaints) in refused {
-            if self.not_applicable.iter().all(|(known, _)| *known != name) {
-                let why = complaints[0].message.split(": a case").next().unwrap_or_default();
-                self.not_applicable.push((name, why.to_owned()));
-            }
+            self.leave_out(name, complaints[0].message.split(": a case").next().unwrap_or_default());
+        }
+    }
+
+    /// Leaves a contender out of the race, with the first reason.
+    pub(super) fn leave_out(&mut self, name: &'static str, why: &str) {
+        if self.not_applicable.iter().all(|(known, _)| *known != name) {
+            self.not_applicable.push((name, why.to_owned()));
         }
     }
 

@@ -28,8 +28,8 @@ use crate::report::blocks::index_page::index_page;
 use crate::report::blocks::study_page::study_page;
 use crate::report::checks::verdicts::text_of_answers;
 
+use crate::questions::race_tables;
 use crate::questions::study_results::StudyResults;
-use crate::report::blocks::race;
 use crate::study::check::Study;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -254,8 +254,8 @@ fn write_files(
     write_page(&out.join("findings.json"), &(serde_json::to_string_pretty(&findings)? + "\n"))?;
     if let Some(race) = &findings.race {
         let tables = out.join("tables");
-        write_page(&tables.join("race.csv"), &race::whole_table(race, &race.other_costs()).to_plain_csv()?)?;
-        write_page(&tables.join("profile.csv"), &race::profile_table(race).to_plain_csv()?)?;
+        write_page(&tables.join("race.csv"), &race_tables::whole_table(race).to_plain_csv()?)?;
+        write_page(&tables.join("profile.csv"), &race_tables::profile_table(race).to_plain_csv()?)?;
     }
     making.seconds = start.elapsed().as_secs_f64();
     let answers = Answers { all, changes, making: &making, findings: &findings };

@@ -1,0 +1,170 @@
+"""Recomputes the race's answers, sentences and profiles from `race.csv` alone, in another language than the program.
+
+    python3 tests/race.py report            # exit code 1 and every difference, or how much agrees
+    python3 tests/race.py report --turn     # tries to turn each answer: by output, budget, tolerance, read-out and family
+"""
+import csv
+import json
+import sys
+from collections import defaultdict
+
+TIE, NEARLY, RESAMPLES, INSIDE = 0.03, 2.0, 2000, 0.9
+TAUS = [1.0, 1.3, 2.0, 5.0, 10.0, 100.0, 1000.0]
+GROUPS, READOUTS = ["moving", "rest", "total"], ["points", "centres"]
+OTHER = {"budget": ["cost_half_budget", "cost_twice_budget"],
+         "tolerance": ["cost_half_percent", "cost_2_percent", "cost_5_percent"]}
+
+
+class Race:
+    def __init__(self, folder):
+        self.rows = list(csv.DictReader(open(f"{folder}/tables/race.csv", encoding="utf-8")))
+        for row in self.rows:
+            for column in row:
+                if column.startswith("cost_"):
+                    row[column] = float(row[column]) if row[column] else None
+
+    def table(self, group, readout, column="cost_1_percent", output=None, without=None):
+        """Per problem its family and the costs by method; `output` is the place of an output."""
+        problems = defaultdict(dict)
+        outputs = defaultdict(list)
+        for row in self.rows:
+            if (row["group"], row["readout"]) != (group, readout) or row["family"] == without:
+                continue
+            problem, times = row["situation"], outputs[row["situation"]]
+            if row["time"] not in times:
+                times.append(row["time"])
+            if row["time"] == (times[1 + output] if output is not None and len(times) > 1 + output else "all") \
+                    and (output is None or row["time"] != "all"):
+                problems[problem, row["family"]][row["method"]] = row[column]
+        return [(family, costs) for (_, family), costs in problems.items()]
+
+
+def shares(table, taus):
+    families = {family for family, _ in table}
+    count = {family: sum(one == family for one, _ in table) for family in families}
+    out = {method: [0.0] * len(taus) for method in (table[0][1] if table else {})}
+    for family, costs in table:
+        reached = [cost for cost in costs.values() if cost is not None]
+        for method, cost in costs.items():
+            for place, tau in enumerate(taus):
+                if cost is not None and cost / min(reached) <= tau:
+                    out[method][place] += 1.0 / (len(families) * count[family])
+    return out
+
+
+def best(table):
+    both = shares(table, [float("inf"), NEARLY])
+    largest = max((sum(one) for one in both.values()), default=0.0)
+    ranked = sorted(both, key=lambda method: -round(1e9 * sum(both[method])))
+    return [m for m in ranked if largest > 0 and sum(both[m]) >= largest - TIE - 1e-9], both
+
+
+def intervals(table):
+    state, mask = 0, (1 << 64) - 1
+    drawn = defaultdict(list)
+    for _ in range(RESAMPLES):
+        places = []
+        for _ in table:
+            state = (state + 0x9E3779B97F4A7C15) & mask
+            mixed = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & mask
+            mixed = ((mixed ^ (mixed >> 27)) * 0x94D049BB133111EB) & mask
+            places.append((mixed ^ (mixed >> 31)) % len(table))
+        for method, both in shares([table[place] for place in places], [float("inf"), NEARLY]).items():
+            drawn[method].append(both)
+    outside = int((1 - INSIDE) / 2 * RESAMPLES + 0.5)
+    ends = lambda values: [sorted(values)[place] for place in (outside, RESAMPLES - 1 - outside)]
+    return {method: [ends([one[kind] for one in both]) for kind in (0, 1)] for method, both in drawn.items()}
+
+
+def holds(race, group, readout, method):
+    is_best = lambda **other: method in best(race.table(group, **{"readout": readout, **other}))[0]
+    return {
+        "time": all(is_best(output=place) for place in range(3)),
+        "budget": all(is_best(column=column) for column in OTHER["budget"]),
+        "tolerance": all(is_best(column=column) for column in OTHER["tolerance"]),
+        "readout": all(is_best(readout=other) for other in READOUTS if other != readout),
+    }
+
+
+def count_methods(race, group):
+    return {row["method"] for row in race.rows if row["group"] == group}
+
+
+def main(folder, turn):
+    race, wrong, agree = Race(folder), [], 0
+
+    def same(what, ours, theirs):
+        nonlocal agree
+        close = (lambda a, b: abs(a - b) < 1e-9 if isinstance(a, float) else a == b)
+        if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
+            is_same = all(close(a, b) for a, b in zip(ours, theirs))
+        else:
+            is_same = close(ours, theirs)
+        agree += is_same
+        if not is_same:
+            wrong.append(f"{what}: {ours} here, {theirs} there")
+
+    text = json.load(open(f"{folder}/findings.json", encoding="utf-8"))
+    choice = [one["facts"] for one in text.get("findings", []) if one["question"] == "choice"] or [text]
+    told = choice[0]["answers"]
+    page = open(f"{folder}/README.md", encoding="utf-8").read()
+    for group in GROUPS:
+        for readout in READOUTS:
+            table = race.table(group, readout)
+            if not table:
+                continue
+            names, both = best(table)
+            answers = [one for one in told if (one["group"], one["readout"]) == (group, readout)]
+            same(f"{group}, {readout}: methods", names, [one["method"] for one in answers])
+            inside = intervals(table)
+            for one in answers:
+                method, where = one["method"], f"{group}, {readout}, {one['method']}"
+                count = sum(costs[method] is not None for _, costs in table)
+                same(where, [count, len(table)], [one["reached"], one["of"]])
+                same(where, both[method], [one["share"], one["within_two"]])
+                same(f"{where}: interval", inside[method][0], one["interval"])
+                same(f"{where}: holds", holds(race, group, readout, method), one["holds"])
+                alike = lambda other: all(a[0] <= b[1] and b[0] <= a[1] for a, b in zip(inside[method], inside[other]))
+                same(f"{where}: alike", sorted(m for m in inside if m != method and alike(m)), sorted(one["alike"]))
+            if answers:
+                first, count = answers[0], both[names[0]]
+                methods = "`, `".join(names)
+                verb = "reaches" if len(names) == 1 else "are equally good; the first reaches"
+                problems = "problem" if first["of"] == 1 else "problems"
+                same(f"{group}, {readout}: sentence", True, (
+                    f"`{methods}` {verb} 1 % in {first['reached']} of {first['of']} {problems}, "
+                    f"in {100 * count[1]:.0f} % at no more than twice the least cost") in page)
+                both_ways = lambda name: all(
+                    name in best(race.table(group, r))[0] and all(holds(race, group, r, name).values()) for r in READOUTS)
+                strong = next((name for name in names if both_ways(name)), None)
+                words = {"moving": "points that move through the mesh", "rest": "points at rest", "total": "a mesh that follows the soil"}
+                told_strong = [name for name in count_methods(race, group) if f"**For {words[group]} take `{name}`.**" in page]
+                same(f"{group}, {readout}: strong", [strong] if strong else [], told_strong)
+    profiles = defaultdict(list)
+    for row in csv.DictReader(open(f"{folder}/tables/profile.csv", encoding="utf-8")):
+        profiles[row["group"], row["readout"], row["quantity"]].append(row)
+    for (group, readout, quantity), steps in profiles.items():
+        column = "cost_1_percent" if quantity == "all" else f"cost_{quantity}"
+        table = race.table(group, readout, column)
+        taus = sorted({float(step["tau"]) for step in steps})
+        known = shares(table, [tau * (1 + 1e-12) for tau in taus]) if table else {}
+        for step in steps:
+            ours = known[step["method"]][taus.index(float(step["tau"]))] if known else 0.0
+            same(f"profile {group} {readout} {quantity} {step['method']} {step['tau']}", ours, float(step["share"]))
+    if turn:
+        for one in told:
+            group, readout, method = one["group"], one["readout"], one["method"]
+            families = sorted({row["family"] for row in race.rows if row["group"] == group})
+            tries = [("1 % at all outputs", {})] + [(f"output {k + 1}", {"output": k}) for k in range(3)]
+            tries += [(column[5:].replace("_", " "), {"column": column}) for column in sum(OTHER.values(), [])]
+            tries += [(f"read at {other}", {"readout": other}) for other in READOUTS if other != readout]
+            tries += [(f"without {family}", {"without": family}) for family in families if len(families) > 1]
+            found = [(what, best(race.table(group, **{"readout": readout, **how}))[0]) for what, how in tries]
+            turned = [f"{what}: {', '.join(names[:3]) or 'nobody'}" for what, names in found if method not in names]
+            print(f"{group}, {readout}, {method}: holds in {len(found) - len(turned)} of {len(found)}", *turned, sep="\n    ")
+    print(*wrong, f"{agree} of {agree + len(wrong)} agree", sep="\n")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], "--turn" in sys.argv))
