@@ -5,6 +5,7 @@
 
 pub mod calibration;
 pub mod csv;
+pub mod field_files;
 pub mod named_cases;
 pub mod pack;
 pub mod provenance;

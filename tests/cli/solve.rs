@@ -498,3 +498,51 @@ fn several_meshes_are_solved_in_turn_and_a_failed_one_hides_no_other() {
         assert_eq!(out.matches("on 4 cells").count(), 3, "{cells}: {out}");
     }
 }
+
+#[test]
+fn fields_that_are_written_score_as_the_run_did_to_the_last_digit() {
+    // Points that move, a plane, a slab on its side, a weight.
+    for scene in [
+        &["xie-leo", "--method", "GC-SRI-patch", "--set", "column.strain=0.2"][..],
+        &["cosine-layer", "--method", "GIMP-SRI-patch"],
+        &["mandel", "--method", "GIMP-SRI-patch", "--set", "column.width=0.25"],
+        &["terzaghi", "--set", "column.self_weight=true"],
+    ] {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let at = |name: &str| folder.path().join("fields").join(name).display().to_string();
+        let times =
+            ["--integrator", "implicit", "--cells", "4", "--time-factor", "0.1,0.4", "--fields", &at("")];
+        let solved = measures(&[scene, &times[..]].concat());
+        let set: Vec<&str> = scene.iter().copied().skip_while(|word| *word != "--set").collect();
+        let files = [at("fields.pvd"), at("mapping.toml")];
+        let line = ["score", &files[0], "--scene", scene[0], "--mapping", &files[1], "--format", "csv"];
+        let (code, out, err) = told(&[&line[..], &["--time-factor", "0.1,0.4"], &set].concat());
+        assert_eq!(code, 0, "{scene:?}: {out}{err}");
+        let scored: Vec<Measure> = rows(&out);
+        let mut compared = 0;
+        for row in scored.iter().filter(|row| row.sample == "points") {
+            let is_same = |other: &&Measure| {
+                (&other.quantity, &other.sample, &other.norm, &other.reference, other.time_factor)
+                    == (&row.quantity, &row.sample, &row.norm, &row.reference, row.time_factor)
+            };
+            // Of a slab `score` reads the displacement along the way of the water, and a run has both.
+            let is_half = scene[0] == "mandel" && row.quantity == "displacement";
+            let Some(own) = solved.iter().find(is_same).filter(|_| !is_half) else { continue };
+            compared += 1;
+            assert_eq!(own.value, row.value, "{scene:?}: {row:?}");
+        }
+        assert!(compared >= 8, "{scene:?}: {compared} of {out}");
+    }
+}
+
+#[test]
+fn fields_of_several_meshes_have_folders_and_those_of_two_point_sets_are_refused() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let fields = folder.path().display().to_string();
+    let line = ["solve", "xie-leo", "--cells", "2,4", "--time-factor", "0.1", "--fields", &fields];
+    let (code, _, err) = told(&[&line[..], &["--integrator", "implicit"]].concat());
+    assert!(code == 0 && err.contains("1 states"), "{err}");
+    assert!(folder.path().join("cells-4/fields_0000.vtu").is_file());
+    let (code, out, err) = told(&[&line[..], &["--set", "points.sets=2"]].concat());
+    assert!(code == 2 && out.is_empty() && err.contains("the water has points of its own"), "{err}");
+}

@@ -15,6 +15,7 @@ use crate::judge::soundness;
 use crate::measure::record::record_of;
 use crate::questions::blocks::checks::RecordChecks;
 use crate::questions::findings::study_answers::StudyAnswers;
+use crate::record::field_files::write_fields;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::report::checks::verdicts::text_of_answers;
@@ -25,6 +26,8 @@ use clap::ValueEnum;
 use oedometer_mpm::run::Kernel;
 use oedometer_problem::outcome::{Counters, Failure, StepSizes};
 use oedometer_scenes::SceneKind;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -60,6 +63,10 @@ pub struct Arguments {
     time_step: Option<String>,
     #[command(flatten)]
     outputs: Outputs,
+    /// Write the fields at every output for ParaView: VTU of the points, and a PVD that `score` reads back with the
+    /// mapping beside it
+    #[arg(long, value_name = "DIR")]
+    fields: Option<PathBuf>,
     /// Use the point-wise step even where the assembled step gives the same
     #[arg(long)]
     point_wise: bool,
@@ -73,6 +80,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let study = study_of(arguments)?;
     let kernel = if arguments.point_wise { Kernel::PointWise } else { Kernel::Fastest };
     refuse_endless(&study, Tier::Full)?;
+    if let Some(folder) = &arguments.fields {
+        can_write_fields(&study, folder)?;
+    }
     tell_of_long(&study);
     let course = Course { threads: all_cores(), seconds: study.case_seconds, ..Course::alone() };
     let solved = |planned: &PlannedCase| {
@@ -84,7 +94,43 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         [record] => print_one(record, arguments.format)?,
         _ => print_meshes(&study, &records, arguments.format)?,
     }
+    if let Some(folder) = &arguments.fields {
+        write_all_fields(&records, folder)?;
+    }
     records.iter().try_fold(Exit::Pass, |_, record| end_of(record))
+}
+
+/// Makes the folder of the fields before anything is solved.
+///
+/// # Errors
+/// A refusal where the water has points of its own, and those of the file system.
+fn can_write_fields(study: &Study, folder: &Path) -> anyhow::Result<()> {
+    if study.planned.iter().any(|planned| planned.case.column.points.has_two_sets()) {
+        return Err(Ended::usage(
+            "`--fields` writes the points of one set, and here the water has points of its own: leave one of the two out",
+        ));
+    }
+    fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
+}
+
+fn cannot_write(folder: &Path, error: &io::Error) -> anyhow::Error {
+    Ended::usage(format!("`--fields`: {} cannot be written: {error}", folder.display()))
+}
+
+/// Writes the fields of every run: of several meshes each into a folder of its own.
+///
+/// # Errors
+/// Those of the file system.
+fn write_all_fields(records: &[Record], folder: &Path) -> anyhow::Result<()> {
+    for record in records {
+        let folder = match records {
+            [_] => folder.to_owned(),
+            _ => folder.join(format!("cells-{}", record.case.cells)),
+        };
+        let list = write_fields(record, &folder).map_err(|error| cannot_write(&folder, &error))?;
+        say!("{}: {} states", list.display(), record.snapshots.len());
+    }
+    Ok(())
 }
 
 /// A run with its errors and checks.

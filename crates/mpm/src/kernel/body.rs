@@ -401,9 +401,12 @@ impl<const D: usize> Body<D> {
         self.apply_loads();
     }
 
-    /// Ends splines at a surface that moves through the grid: they would reach beyond it.
+    /// Ends splines at a surface that moves through the grid, and at one whose cells have one point each: that beyond the
+    /// surface would take its share of the load, and no point would carry it.
     fn end_splines(&mut self) {
-        if self.method.basis.is_spline() && self.configuration.moves_points() {
+        let is_alone = |half: &Vector<D>| half[D - 1] > 0.49 * self.grid.cell_size;
+        let is_reached = self.points.half_length.first().is_none_or(|half| !is_alone(half));
+        if self.method.basis.is_spline() && (self.configuration.moves_points() || !is_reached) {
             self.support = self.actions.surface.end_splines(&self.grid, &self.points);
             self.cells.end_at(&self.grid, self.support.outermost.unwrap_or(usize::MAX));
         }

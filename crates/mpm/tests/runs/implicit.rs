@@ -233,6 +233,21 @@ fn small_steps_do_not_make_updated_b_bar_grow() {
     }
 }
 
+/// The spline beyond the surface took an eighth of the load, which no point carried: settlements were 27 % off.
+#[test]
+fn splines_of_cells_with_one_point_carry_the_load() {
+    for method in ["B2", "B2-SRI-patch", "B2-Bbar-patch", "B3-SRI-patch"] {
+        let of_method = Method::named(method).expect("a known method");
+        let settlement = |points: usize| {
+            let (column, soil) = (Column::default(), Material::default());
+            let problem = column_problem::<1>(SceneKind::Terzaghi, &column, &soil, of_method, 10, points);
+            implicit(problem.expect("a column"), 0.02, &[0.2]).snapshots[0].settlement
+        };
+        let (one, two) = (settlement(1), settlement(2));
+        assert!((one / two - 1.0).abs() < 0.01, "{method}: {one} {two}");
+    }
+}
+
 fn xie_leo_soil() -> Material {
     Material { law: Law::LogLinear, ..Material::default() }
 }
