@@ -262,25 +262,24 @@ fn sentences_of(found: &Found, given: &Given<'_>) -> Vec<String> {
     let do_others_match = readings.iter().zip(&given.columns).all(is_match);
     let is_alone = given.columns.len() == 1;
     let sentence = |(place, (reading, columns)): (usize, (&readings::Reading, Vec<&str>))| {
-        let mut questions = reading.asked.clone();
-        if let Some(first) = questions.first_mut().filter(|first| first.contains("where it is written?")) {
-            if is_alone && world.count == 0 {
-                let factor = reading.begin.split(' ').nth(1).unwrap_or_default();
-                *first = format!("is the load {factor} × that of the scene? Or {first}");
-            } else if do_others_match && columns.len() == 1 {
-                *first = format!("{ONLY}{first}");
+        let begin = match reading.factor {
+            Some(factor) if is_alone && world.count == 0 => {
+                format!("is the load {} × that of the scene? Or ", fits::shown(factor))
             }
-        }
+            Some(_) if do_others_match && columns.len() == 1 => ONLY.to_owned(),
+            _ => String::new(),
+        };
+        let mut questions = reading.asked.clone();
         if place == 0 {
             questions.extend(world.asked.iter().cloned());
         }
-        let mut asked = questions.join(" And ");
-        if place == 0 {
-            for or in &found.alternatives {
-                asked = format!("{asked} Or {or}");
-            }
-        }
-        format!("{} {}{}: {asked}", who(&columns, "each of your"), reading.begin, world.said)
+        let alternatives = found.alternatives.iter().filter(|_| place == 0);
+        let asked = std::iter::once(&questions.join(" And "))
+            .chain(alternatives)
+            .map(|asked| &**asked)
+            .collect::<Vec<_>>()
+            .join(" Or ");
+        format!("{} {}{}: {begin}{asked}", who(&columns, "each of your"), reading.begin, world.said)
     };
     groups.into_iter().enumerate().map(sentence).collect()
 }

@@ -131,11 +131,16 @@ pub enum Need {
     /// Another unit or sign, or none.
     Scale,
     NoScale,
+    /// No other cause: a factor that of one column alone may be the load's.
+    MaybeLoad,
     /// A sign that no column tells, because it is another quantity.
     AnySign,
 }
 
-use Need::{AnySign, AnyTime, Head, Large, NoScale, OneSoil, OtherRight, Scale as Scaled, Still, TwoOutputs};
+use Need::{
+    AnySign, AnyTime, Head, Large, MaybeLoad, NoScale, OneSoil, OtherRight, Scale as Scaled, Still,
+    TwoOutputs,
+};
 
 /// A hypothesis about one column.
 pub struct Row {
@@ -192,7 +197,8 @@ impl Row {
 #[rustfmt::skip]
 pub const READINGS: &[Row] = &[
     row("", ANY, &[Scaled], "", "", |x, _| whole(x.own.clone())),
-    row("factor", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(factors),
+    row("factor", ANY, &[NoScale, MaybeLoad], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(twice),
+    row("modulus", ANY, &[NoScale], "is {} × the exact one", "", |x, factor| whole(x.times(factor))).named(moduli_of_one),
     row("effective stress", P, &[AnySign], "matches the exact effective stress",
         "is it given in place of the pore pressure?", |x, _| whole(negative(&x.stress()))),
     row("total stress", P, &[AnySign], "matches the exact total stress",
@@ -255,24 +261,31 @@ pub const READINGS: &[Row] = &[
         "is it the rate (velocity), not the whole?", |x, _| whole(x.rate())),
     row("turned alone", PLACED, &[OtherRight], "matches the exact one upside down",
         "is only this column written from the other end?", |x, _| whole(x.turned())),
-    row("unnamed factor", ANY, &[NoScale], "is {} × the exact one at all times and places",
+    row("unnamed factor", ANY, &[NoScale, MaybeLoad], "is {} × the exact one at all times and places",
         "is a factor missing where it is written?", |x, factor| whole(x.times(factor))).fitted(Number::Factor).counts(2),
 ];
 
-/// Named factors of one column alone.
-fn factors(given: &Given<'_>, field: Field) -> Vec<(f64, String)> {
+/// A column that is written twice as large, or half.
+fn twice(_: &Given<'_>, _: Field) -> Vec<(f64, String)> {
+    let all = [(2.0, "is it doubled where it is written?"), (0.5, "is it halved where it is written?")];
+    all.map(|(factor, asked)| (factor, asked.to_owned())).to_vec()
+}
+
+/// Factors of one column that another modulus makes, or another component.
+fn moduli_of_one(given: &Given<'_>, field: Field) -> Vec<(f64, String)> {
     let soil = &given.parameters.soil;
-    let mut all =
-        vec![(2.0, "is it doubled where it is written?"), (0.5, "is it halved where it is written?")];
-    if !field.is_stress() && given.parameters.soils.is_empty() {
-        let ratio = soil.oedometric_modulus() / soil.youngs_modulus;
-        all.push((ratio, "is E taken for E_oed where displacements are computed?"));
-        all.push((1.0 / ratio, "is E_oed taken for E where displacements are computed?"));
-    }
-    if field == Field::EffectiveStress {
-        let nu = soil.poissons_ratio;
-        all.push((nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy?"));
-    }
+    let (ratio, nu) = (soil.oedometric_modulus() / soil.youngs_modulus, soil.poissons_ratio);
+    let all = match field {
+        Field::EffectiveStress => {
+            vec![(nu / (1.0 - nu), "is it the horizontal component, σ_xx = ν/(1 − ν) σ_yy?")]
+        }
+        Field::Pressure => Vec::new(),
+        _ if !given.parameters.soils.is_empty() => Vec::new(),
+        _ => vec![
+            (ratio, "is E taken for E_oed where displacements are computed?"),
+            (1.0 / ratio, "is E_oed taken for E where displacements are computed?"),
+        ],
+    };
     let is_other = |(factor, _): &(f64, &str)| *factor != 0.0 && (factor - 1.0).abs() > NAME;
     all.into_iter().filter(is_other).map(|(factor, asked)| (factor, asked.to_owned())).collect()
 }

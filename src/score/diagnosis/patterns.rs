@@ -31,7 +31,16 @@ pub fn of(field: Field, given: &Given<'_>, limit: &Limit, is_open: bool) -> Vec<
 
 fn reading(begin: String, asked: &str, [count, fitted]: [usize; 2], left: f64, column: &Column) -> Reading {
     let asked = vec![asked.to_owned()];
-    Reading { key: format!("{begin} {}", column.name), begin, asked, count, fitted, signs: 0, left }
+    Reading {
+        key: format!("{begin} {}", column.name),
+        begin,
+        asked,
+        count,
+        fitted,
+        signs: 0,
+        factor: None,
+        left,
+    }
 }
 
 /// One number at places where nothing was written: an output, a place, every second row.

@@ -181,6 +181,8 @@ pub struct Reading {
     pub count: usize,
     pub fitted: usize,
     pub signs: usize,
+    /// A factor that may be the load's where there is no other column.
+    pub factor: Option<f64>,
     /// The error that is left.
     pub left: f64,
 }
@@ -195,6 +197,7 @@ impl Reading {
             count: 0,
             fitted: 0,
             signs: 0,
+            factor: None,
             left,
         }
     }
@@ -238,7 +241,7 @@ fn is_met(need: Need, x: &Exact<'_>, limit: &Limit) -> bool {
         Need::Still => x.column.stands_still(),
         Need::OneSoil => x.world.is_a_column() && x.given.parameters.soils.is_empty(),
         Need::Large => !x.given.is_linear(),
-        Need::Head | Need::Scale | Need::NoScale | Need::AnySign => true,
+        Need::Head | Need::Scale | Need::NoScale | Need::MaybeLoad | Need::AnySign => true,
     }
 }
 
@@ -279,6 +282,7 @@ fn accepted_row(x: &Exact<'_>, row: &Row, scale: &Scale, limit: &Limit) -> Vec<R
             asked: questions,
             fitted: usize::from(is_fitted),
             signs,
+            factor: Some(shown).filter(|_| row.needs.contains(&Need::MaybeLoad)),
             left,
         });
     }
