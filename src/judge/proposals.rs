@@ -194,7 +194,7 @@ fn level_of(study: &Study, one: &SeriesExpectation, size: f64) -> String {
 mod tests {
     use super::*;
     use crate::campaign::runner::{RunOptions, run_study};
-    use crate::judge::verdict::judge_study;
+    use crate::judge::verdict::{Judgement, judge_paths};
     use crate::record::Record;
     use crate::study::file::StudySource;
 
@@ -207,6 +207,11 @@ mod tests {
 
     fn run(study: &Study, tier: Tier) -> Vec<Record> {
         run_study(study, &RunOptions::whole(tier, 1), None, &|_| {}).records
+    }
+
+    fn verdicts_on(study: &Study, tier: Tier) -> Vec<Judgement> {
+        let records = run(study, tier);
+        judge_paths(study, &records, &StudyPaths::of(&records), tier)
     }
 
     /// The proposed lines of a study, and the study with them.
@@ -239,7 +244,7 @@ mod tests {
             let needs_all = tiers.contains(&"full");
             assert_eq!(proposed[0].contains("tier = \"full\""), needs_all, "{tiers:?}: {proposed:?}");
             for (tier, judged) in [(Tier::Ci, usize::from(!needs_all)), (Tier::Full, 1)] {
-                let judgements = judge_study(&whole, &run(&whole, tier), tier);
+                let judgements = verdicts_on(&whole, tier);
                 assert!(judgements.iter().all(|one| one.verdict.pass), "{tiers:?} {tier:?}: {judgements:?}");
                 assert_eq!(judgements.len(), judged, "{tiers:?} {tier:?}");
             }
@@ -253,7 +258,7 @@ mod tests {
                     integrator = ['implicit']\ncells = [4, 8, 16]\n";
         let (proposed, whole) = pasted(text);
         assert!(proposed.len() == 1 && proposed[0].contains("time_factor = 0.2446\n"), "{proposed:?}");
-        let judgements = judge_study(&whole, &run(&whole, Tier::Full), Tier::Full);
+        let judgements = verdicts_on(&whole, Tier::Full);
         assert!(judgements.len() == 1 && judgements[0].verdict.pass, "{judgements:?}");
     }
 
@@ -310,7 +315,7 @@ mod tests {
             for word in words {
                 assert!(all.contains(word), "{word}: {all}");
             }
-            let judgements = judge_study(&whole, &run(&whole, Tier::Ci), Tier::Ci);
+            let judgements = verdicts_on(&whole, Tier::Ci);
             assert_eq!(judgements.len(), series, "each is of one series: {all}");
             assert!(judgements.iter().all(|one| one.verdict.pass), "{judgements:?}");
         }

@@ -16,8 +16,7 @@ use crate::judge::error_place::place_in_kept;
 use crate::judge::paths::StudyPaths;
 use crate::judge::proposals::proposals;
 use crate::judge::soundness;
-use crate::judge::verdict::{Absent, Judgement, differing_repeats, judge_study};
-use crate::questions::findings::study_answers::StudyAnswers;
+use crate::judge::verdict::{Absent, Judgement, differing_repeats, judge_paths};
 use crate::record::{Record, Status};
 use crate::score::diagnosis::diagnosis;
 use crate::study::check::Study;
@@ -71,8 +70,6 @@ pub struct StudyCheck {
     pub warnings: Vec<String>,
     /// What seems to be wrong with the results of other programs; it stands before all else.
     pub diagnoses: Vec<String>,
-    /// What the study answers by itself; empty where a reference refuses a case, which its failure says.
-    pub answers: StudyAnswers,
 }
 
 /// How a check came out.
@@ -99,7 +96,17 @@ impl StudyCheck {
         tier: Tier,
         golden: Result<GoldenFile, GoldenError>,
     ) -> Self {
-        let paths = StudyPaths::of(records);
+        Self::along(&StudyPaths::of(records), study, records, tier, golden)
+    }
+
+    /// Judges records by their paths and compares them.
+    pub fn along(
+        paths: &StudyPaths<'_>,
+        study: &Study,
+        records: &[Record],
+        tier: Tier,
+        golden: Result<GoldenFile, GoldenError>,
+    ) -> Self {
         let absent = Absent::among(records);
         let inputs = CaseInputs::of(records.iter().map(|record| &record.case));
         let golden = golden.map(|golden| absent.without(golden).beside(&inputs));
@@ -124,14 +131,13 @@ impl StudyCheck {
             }),
             // Partial results of a failed run are not judged.
             inputs: changes,
-            proposals: proposals(study, &paths),
-            answers: StudyAnswers::new(study, records, &paths).unwrap_or_default(),
+            proposals: proposals(study, paths),
             unsound: notes(&|record| match record.status {
                 // How sound a contender's runs are is a result of the race.
                 Status::Ok if !study.is_race => soundness::complaints(record),
                 _ => Vec::new(),
             }),
-            judgements: judge_study(study, records, tier),
+            judgements: judge_paths(study, records, paths, tier),
             expected: study.expectations.len() + study.case_expectations.len(),
             held_back: absent.held_back(study),
             warnings: (slow.into_iter()).chain(absent.warnings()).chain(differing_repeats(records)).collect(),
@@ -168,6 +174,16 @@ impl StudyCheck {
         self
     }
 
+    /// How many expectations are met.
+    pub fn met(&self) -> usize {
+        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
+    }
+
+    /// Whether every expectation is met, by records that are sound.
+    pub fn meets_all(&self) -> bool {
+        self.unsound.is_empty() && self.met() == self.judgements.len()
+    }
+
     /// Compares values alone.
     fn of_values(
         name: &str,
@@ -201,7 +217,6 @@ impl StudyCheck {
             taken_over: Vec::new(),
             warnings: Vec::new(),
             diagnoses: Vec::new(),
-            answers: StudyAnswers::default(),
         }
     }
 

@@ -311,12 +311,7 @@ pub struct Judgement {
     pub uncertainty: Option<NumericalUncertainty>,
 }
 
-/// Judges every expectation of a study that its tier can answer.
-pub fn judge_study(study: &Study, records: &[Record], tier: Tier) -> Vec<Judgement> {
-    judge_paths(study, records, &StudyPaths::of(records), tier)
-}
-
-/// [`judge_study`] with the paths of the records given.
+/// Judges every expectation of a study that its tier can answer, with the paths of its records.
 pub fn judge_paths(study: &Study, records: &[Record], paths: &StudyPaths<'_>, tier: Tier) -> Vec<Judgement> {
     let absent = Absent::among(records);
     let series = study.expectations.iter().filter(|expectation| expectation.tier <= tier);

@@ -1,8 +1,8 @@
 //! Everything that a page, a table or a terminal says about a study, as one value: the findings with the verdicts, and the
 //! words that the study brings along. Pages take nothing else.
 
+use crate::campaign::taken_over::TakenOver;
 use crate::case::Task;
-use crate::judge::study_check::diagnoses;
 use crate::judge::verdict::Judgement;
 use crate::measure::statistics::larger;
 use crate::questions::findings::Findings;
@@ -104,8 +104,8 @@ impl StudyFindings {
     /// # Errors
     /// When a reference refuses a case.
     pub fn new(results: &StudyResults<'_>) -> Result<Self, ExactError> {
-        let StudyResults { study, records, paths, .. } = results;
-        let answers = StudyAnswers::new(study, records, paths)?;
+        let StudyResults { study, records, paths, check, .. } = results;
+        let answers = StudyAnswers::new(study, records, paths);
         let mut origins = Origins::default();
         for record in *records {
             origins.add(&record.provenance);
@@ -116,17 +116,17 @@ impl StudyFindings {
             summary: study.summary.clone(),
             run_command: results.run_command(),
             question: StudyQuestion::new(study),
-            shows_verdict: !study.is_race || !results.judgements.is_empty() || !results.passes(),
+            shows_verdict: !study.is_race || !check.judgements.is_empty() || !check.meets_all(),
             shows_sweeps: study.scene.has_plane_fields() && !study.is_race,
             is_stability_alone: records.iter().all(|record| record.stability.is_some()),
             plain: Findings::new(results, &answers)?,
             answers,
-            judgements: results.judgements.clone(),
-            met: results.met(),
-            passes: results.passes(),
-            unsound: results.unsound.clone(),
-            taken_over: results.taken_over.clone(),
-            diagnoses: diagnoses(study, records),
+            judgements: check.judgements.clone(),
+            met: check.met(),
+            passes: check.meets_all(),
+            unsound: check.unsound.iter().map(|note| (note.case.clone(), note.sentence.clone())).collect(),
+            taken_over: TakenOver::sentences(&check.taken_over),
+            diagnoses: check.diagnoses.clone(),
             origins,
         })
     }

@@ -1,17 +1,18 @@
 //! A study with its records, their paths and the verdicts on them: what pages are made of.
 
+use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
+use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::paths::{Path, StudyPaths};
-use crate::judge::soundness;
-use crate::judge::verdict::{Judgement, judge_paths};
+use crate::judge::study_check::StudyCheck;
 use crate::questions::study_findings::StudyFindings;
-use crate::record::{Record, Status};
+use crate::record::Record;
 use crate::study::check::Study;
 use crate::study::expectation::Axis;
 use oedometer_convergence::WINDOW;
 use oedometer_exact::ExactError;
 
-/// A study with its records and the judgements on them.
+/// A study with its records and the verdicts on them.
 pub struct StudyResults<'a> {
     /// The study.
     pub study: &'a Study,
@@ -19,40 +20,36 @@ pub struct StudyResults<'a> {
     pub records: &'a [Record],
     /// Their paths along every axis.
     pub paths: StudyPaths<'a>,
-    /// Its expectations, judged.
-    pub judgements: Vec<Judgement>,
-    /// Records that cannot be right: the case and a sentence.
-    pub unsound: Vec<(String, String)>,
+    /// The verdicts.
+    pub check: StudyCheck,
     /// The file of the study, as it was given.
     pub file: String,
-    /// Results that were there before, as sentences.
-    pub taken_over: Vec<String>,
 }
 
 impl<'a> StudyResults<'a> {
-    /// Judges the records of a study.
+    /// Judges the records of a study, and compares them with no golden values.
     pub fn new(study: &'a Study, records: &'a [Record], tier: Tier) -> Self {
-        let finished = records.iter().filter(|record| record.status == Status::Ok && !study.is_race);
-        let unsound = finished.flat_map(|record| {
-            soundness::complaints(record).into_iter().map(|sentence| (record.case.label(), sentence))
-        });
-        let file = format!("studies/{}.toml", study.name);
+        let none = GoldenError::Missing(format!("golden/{}.csv", study.name).into());
+        Self::compared(study, records, tier, Err(none))
+    }
+
+    /// Judges the records of a study, and compares them with its golden values.
+    pub fn compared(
+        study: &'a Study,
+        records: &'a [Record],
+        tier: Tier,
+        golden: Result<GoldenFile, GoldenError>,
+    ) -> Self {
         let paths = StudyPaths::of(records);
-        Self {
-            study,
-            records,
-            judgements: judge_paths(study, records, &paths, tier),
-            paths,
-            unsound: unsound.collect(),
-            file,
-            taken_over: Vec::new(),
-        }
+        let check = StudyCheck::along(&paths, study, records, tier, golden);
+        let file = format!("studies/{}.toml", study.name);
+        Self { study, records, paths, check, file }
     }
 
     /// Adds the results that were not made for this page.
     #[must_use]
-    pub fn with_taken_over(mut self, taken_over: Vec<String>) -> Self {
-        self.taken_over = taken_over;
+    pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
+        self.check = self.check.with_taken_over(taken_over);
         self
     }
 
@@ -83,11 +80,6 @@ impl<'a> StudyResults<'a> {
         paths
     }
 
-    /// How many of its expectations are met.
-    pub(crate) fn met(&self) -> usize {
-        self.judgements.iter().filter(|judgement| judgement.verdict.pass).count()
-    }
-
     /// The command that runs the study again.
     pub(crate) fn run_command(&self) -> String {
         if self.file.contains(char::is_whitespace) {
@@ -103,11 +95,6 @@ impl<'a> StudyResults<'a> {
     /// When a reference refuses a case.
     pub fn findings(&self) -> Result<StudyFindings, ExactError> {
         StudyFindings::new(self)
-    }
-
-    /// Whether every expectation is met, by records that are sound.
-    pub(crate) fn passes(&self) -> bool {
-        self.unsound.is_empty() && self.met() == self.judgements.len()
     }
 }
 
@@ -126,10 +113,10 @@ mod tests {
         }
         records[2].status = failed_at(1);
         let results = StudyResults::new(&study, &records, Tier::Full);
-        let cases: Vec<&str> = results.unsound.iter().map(|(case, _)| case.as_str()).collect();
+        let cases: Vec<&str> = results.check.unsound.iter().map(|note| note.case.as_str()).collect();
         assert_eq!(cases, [records[1].case.label()]);
-        assert!(!results.passes() && results.met() == 0);
-        assert!(StudyResults::new(&study, &records[..1], Tier::Full).passes());
+        assert!(!results.check.meets_all() && results.check.met() == 0);
+        assert!(StudyResults::new(&study, &records[..1], Tier::Full).check.meets_all());
         assert_eq!(
             (results.left_out(), StudyResults::new(&study, &records[..1], Tier::Full).left_out()),
             (0, 2)
@@ -141,7 +128,7 @@ mod tests {
         );
         study.is_race = true;
         assert_eq!(
-            StudyResults::new(&study, &records, Tier::Full).unsound,
+            StudyResults::new(&study, &records, Tier::Full).check.unsound,
             [],
             "the race tells it in its cells"
         );

@@ -5,5 +5,5 @@ pub mod answers;
 pub mod blocks;
 pub mod checks;
 pub(crate) mod history_tables;
+pub mod sections;
 pub mod tables;
-pub(crate) mod templates;

@@ -3,8 +3,9 @@
 
 use crate::campaign::runner::records_of;
 use crate::case::planned::Tier;
+use crate::judge::paths::StudyPaths;
 use crate::judge::study_check::StudyCheck;
-use crate::judge::verdict::judge_study;
+use crate::judge::verdict::judge_paths;
 use crate::study::check::Study;
 use crate::study::file::StudySource;
 
@@ -17,7 +18,7 @@ fn study(text: &str) -> Result<Study, String> {
 fn verdicts(text: &str) -> Vec<String> {
     let study = study(text).expect("a sound study");
     let records = records_of(text);
-    let told = judge_study(&study, &records, Tier::Full);
+    let told = judge_paths(&study, &records, &StudyPaths::of(&records), Tier::Full);
     let mut told: Vec<String> = told
         .iter()
         .map(|one| {

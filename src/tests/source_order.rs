@@ -53,18 +53,8 @@ const CONVERGENCE: Order = Order { root: "crates/convergence/src", floors: "*", 
 const HARNESS: Order = Order {
     root: "src",
     floors: "render record measure study campaign golden history score judge race questions report api cli",
-    circles: &[
-        "render/chart",
-        "study/check",
-        "campaign",
-        "golden",
-        "score",
-        "judge/study_check",
-        "questions",
-        "report",
-        "cli/slurm",
-    ],
-    licensed: &[("judge/study_check", "questions/findings/study_answers")],
+    circles: &["render/chart", "study/check", "campaign", "golden", "score", "questions", "cli/slurm"],
+    licensed: &[],
 };
 
 type Sources = BTreeMap<String, String>;

@@ -374,7 +374,7 @@ fn checks_of_studies_are_told_as_they_were() {
         for golden in [Ok(golden), Err(GoldenError::Missing("golden/t.csv".into()))] {
             let check = StudyCheck::new(&study, &records, Tier::Ci, golden);
             // Where a line is broken depends on how many digits a number has.
-            let told = verdicts::text_of(&check, Some(&file), false).expect("a text").replace("\n    ", " ");
+            let told = verdicts::text_of(&check, Some(&file), "").expect("a text").replace("\n    ", " ");
             let objections = verdicts::objections_of(&check).map(|text| text.lines().count());
             writeln!(text, "{told}{:?}, {objections:?} lines of objections\n", check.end()).expect("memory");
             checks.push(check);

@@ -159,12 +159,9 @@ fn a_check_tells_what_is_not_met_and_what_moved() {
     let moved = StudyCheck::new(&study, &records, Tier::Full, Ok(golden));
     let names: Vec<&str> = moved.differences().iter().map(|one| one.name.as_str()).collect();
     assert_eq!(names, [name.as_str()], "ten times the tolerance in one place, and nothing else");
-    let text = verdicts::text_of(&moved, None, false).expect("a text");
+    let text = verdicts::text_of(&moved, None, "").expect("a text");
     assert!(text.contains("1 of 2 expectations met") && text.contains("moved"), "{text}");
-    assert_snapshot(
-        "check_unmet",
-        &verdicts::text_of(&untouched, Some("small.toml"), false).expect("a text"),
-    );
+    assert_snapshot("check_unmet", &verdicts::text_of(&untouched, Some("small.toml"), "").expect("a text"));
     assert_snapshot(
         "check_markdown",
         &verdicts::markdown_of(std::slice::from_ref(&untouched), |_| Some("small.toml".to_owned()))

@@ -13,11 +13,17 @@ use crate::cli::progress::StudyBar;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;
+use crate::golden::{GoldenError, GoldenFile};
 use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
 use crate::judge::verdict::Judgement;
+use crate::questions::finding::Place;
+use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::list::answers;
+use crate::questions::study_results::StudyResults;
 use crate::record::Record;
 use crate::record::store::RecordStore;
+use crate::report::checks::verdicts::text_of_answers;
 use crate::report::checks::{annotations_of, junit, verdicts};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
@@ -64,15 +70,25 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
     let mut studies = load_after_run(&chosen, &arguments.records)?;
     arguments.trust.mark(&mut studies, &chosen);
-    let (checks, tally) = checks_of(arguments, &studies, &chosen)?;
-    if checks.is_empty() {
+    let (reports, golden) = reports_of(arguments, &studies, &chosen)?;
+    let (results, tally) = results_of(&studies, &reports, golden);
+    if results.is_empty() {
         return Err(Ended::with(Exit::NothingSelected, "no study has a case in the CI tier"));
     }
+    // What a study answers by itself stands below the verdict on it alone; a reference that refuses a case is a failure there.
+    let answers = match results.as_slice() {
+        [one] => {
+            let findings = answers(std::slice::from_ref(one), Place::Terminal).unwrap_or_default();
+            text_of_answers(&StudyAnswers::new(one.study, one.records, &one.paths), &findings)?
+        }
+        _ => String::new(),
+    };
+    let checks: Vec<StudyCheck> = results.into_iter().map(|one| one.check).collect();
     let verdict = worst_of(&checks);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
     let mut refused = Vec::new();
-    refused.extend(print(&checks, files, arguments.format).err());
+    refused.extend(print(&checks, files, &answers, arguments.format).err());
     if let Some(path) = &arguments.junit {
         refused.extend(write_document(path, &junit(&checks)?).err());
     }
@@ -94,14 +110,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 /// Cases of a study whose errors are shown, whichever its expectations are of.
 const MOST_SHOWN_CASES: usize = 64;
 
-/// The studies that have cases in the CI tier, and the exact solutions where they are wanted; how their cases ended.
-fn checks_of(
+/// Golden values of a study, or why there are none.
+type Golden = Result<GoldenFile, GoldenError>;
+
+/// The runs of the CI tier, and the golden values to compare them with.
+fn reports_of(
     arguments: &Arguments,
     studies: &[Study],
     chosen: &[PathBuf],
-) -> anyhow::Result<(Vec<StudyCheck>, Tally)> {
+) -> anyhow::Result<(Vec<RunReport>, Vec<Golden>)> {
     let read = |name: &str| golden_of(arguments.golden.as_deref(), name, chosen);
-    let mut checks = Vec::new();
     let golden: Vec<_> = studies.iter().map(|study| read(&study.name)).collect();
     // Where no golden value is compared, a record is held as far as its verdicts go.
     let is_alone = studies.iter().zip(&golden).filter(|(_, golden)| golden.is_err());
@@ -122,15 +140,25 @@ fn checks_of(
             arguments.records.display()
         );
     }
-    let mut tally = Tally::default();
-    for ((study, golden), report) in studies.iter().zip(golden).zip(&reports) {
+    Ok((reports, golden))
+}
+
+/// The studies that have cases in the CI tier with the verdicts on them, and how the cases of all ended.
+fn results_of<'a>(
+    studies: &'a [Study],
+    reports: &'a [RunReport],
+    golden: Vec<Golden>,
+) -> (Vec<StudyResults<'a>>, Tally) {
+    let (mut results, mut tally) = (Vec::new(), Tally::default());
+    for ((study, golden), report) in studies.iter().zip(golden).zip(reports) {
         tally.join(report.tally);
         if !(report.records.is_empty() && report.errors.is_empty()) {
-            let check = StudyCheck::new(study, &report.records, Tier::Ci, golden);
-            checks.push(check.with_errors(&report.errors).with_taken_over(&report.taken_over));
+            let mut one = StudyResults::compared(study, &report.records, Tier::Ci, golden);
+            one.check = one.check.with_errors(&report.errors);
+            results.push(one.with_taken_over(&report.taken_over));
         }
     }
-    Ok((checks, tally))
+    (results, tally)
 }
 
 /// Runs the CI tier of studies and keeps nothing; the records of each study.
@@ -222,13 +250,13 @@ struct CheckJson<'a> {
 fn print(
     checks: &[StudyCheck],
     file_of: impl Fn(&str) -> Option<String> + Copy,
+    answers: &str,
     format: TableFormat,
 ) -> anyhow::Result<()> {
     let text = match format {
         TableFormat::Table => {
-            let is_alone = checks.len() == 1;
             let text =
-                |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref(), is_alone);
+                |check: &StudyCheck| verdicts::text_of(check, file_of(&check.study).as_deref(), answers);
             // What fails stands first.
             let (sound, unsound): (Vec<_>, Vec<_>) =
                 checks.iter().partition(|check| check.end() == CheckEnd::Pass);
@@ -267,7 +295,6 @@ impl<'a> CheckJson<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::GoldenFile;
     use crate::study::file::StudySource;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\

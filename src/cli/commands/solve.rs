@@ -10,12 +10,14 @@ use crate::cli::commands::run::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
-use crate::judge::paths::StudyPaths;
 use crate::judge::soundness;
 use crate::measure::record::record_of;
 use crate::questions::blocks::checks::RecordChecks;
+use crate::questions::finding::Place;
 use crate::questions::findings::study_answers::StudyAnswers;
 use crate::record::field_files::write_fields;
+use crate::questions::list;
+use crate::questions::study_results::StudyResults;
 use crate::record::provenance::Provenance;
 use crate::record::{Balance, ERROR_COLUMNS, ErrorRow, Groups, Record, ReferenceUse, StartChecks, Status};
 use crate::report::checks::verdicts::text_of_answers;
@@ -155,8 +157,10 @@ fn print_meshes(study: &Study, records: &[Record], format: SolveFormat) -> anyho
         }
         SolveFormat::Json => print_data(&json_of(&records.iter().map(SolveJson::of).collect::<Vec<_>>())?),
         SolveFormat::Table => {
-            let answers = StudyAnswers::new(study, records, &StudyPaths::of(records))?;
-            print_data(text_of_answers(&answers)?.trim_start_matches('\n'))
+            let results = StudyResults::new(study, records, Tier::Full);
+            let answers = StudyAnswers::new(study, records, &results.paths);
+            let findings = list::answers(&[results], Place::Terminal)?;
+            print_data(text_of_answers(&answers, &findings)?.trim_start_matches('\n'))
         }
     }
 }

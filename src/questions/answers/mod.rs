@@ -5,11 +5,12 @@ pub mod audit;
 pub mod converges;
 pub mod cost;
 pub mod double_point;
-pub mod locking;
 pub mod paper;
 pub mod time_step;
 
 use crate::case::{Quantity, Sample};
+use crate::questions::finding::{Finding, Place, unread};
+use crate::questions::list;
 use crate::questions::study_results::StudyResults;
 use crate::race::RaceFindings;
 use oedometer_exact::ExactError;
@@ -38,8 +39,10 @@ pub struct ReportFindings {
     pub cost: Option<cost::CostFinding>,
     /// Does it reproduce the paper?
     pub paper: Option<paper::PaperFinding>,
-    /// Who locks?
-    pub locking: Option<locking::LockingFinding>,
+    /// The answers to the questions that are files of their own.
+    #[serde(default, deserialize_with = "unread")]
+    #[schemars(schema_with = "list::schema")]
+    pub findings: Vec<Finding>,
     /// Does the method converge, and to what?
     pub converges: Option<converges::ConvergesFinding>,
     /// What does the time step change?
@@ -62,7 +65,7 @@ impl ReportFindings {
             race: RaceFindings::from_studies(results.iter().map(|one| (one.study, one.records))),
             cost: cost::CostFinding::new(results),
             paper: paper::PaperFinding::new(results)?,
-            locking: locking::LockingFinding::new(results)?,
+            findings: list::answers(results, Place::Report)?,
             converges: converges::ConvergesFinding::new(results),
             time_step: time_step::TimeStepFinding::new(results),
             audit: audit::AuditFinding::new(results),
@@ -92,13 +95,13 @@ pub struct VerdictFinding {
 impl VerdictFinding {
     fn new(results: &[StudyResults<'_>]) -> Self {
         let sum = |count: &dyn Fn(&StudyResults<'_>) -> usize| results.iter().map(count).sum::<usize>();
-        let failing = results.iter().filter(|one| !one.passes()).map(|one| one.study.name.clone());
+        let failing = results.iter().filter(|one| !one.check.meets_all()).map(|one| one.study.name.clone());
         Self {
-            expectations: sum(&|one| one.judgements.len()),
-            met: results.iter().map(StudyResults::met).sum(),
+            expectations: sum(&|one| one.check.judgements.len()),
+            met: sum(&|one| one.check.met()),
             studies: results.len(),
             runs: sum(&|one| one.records.len()),
-            unsound: sum(&|one| one.unsound.len()),
+            unsound: sum(&|one| one.check.unsound.len()),
             failing: failing.collect(),
         }
     }

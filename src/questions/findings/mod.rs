@@ -6,17 +6,16 @@
 
 pub mod convergence;
 mod series;
-pub mod settlement;
 pub mod study_answers;
 pub mod within;
 
 use crate::case::Tier;
-use crate::judge::proposals::proposals;
 use crate::judge::verdict::{Judgement, VerdictOutcome};
-use crate::questions::answers::locking::LockingFinding;
 use crate::questions::blocks::StudyBlocks;
 use crate::questions::comparison::stiffness_sweep::{StiffnessSweep, SweptStiffness};
+use crate::questions::finding::{Finding, Place, unread};
 use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::list;
 use crate::questions::study_results::StudyResults;
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::Class;
@@ -25,11 +24,10 @@ use oedometer_problem::outcome::FailureKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use series::SeriesFinding;
-use settlement::SettlementTable;
 pub use within::QuantityWithin;
 
 /// Version of the layout; it rises when a field goes or changes its meaning.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Everything that is found about a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -54,11 +52,10 @@ pub struct Findings {
     pub stiffness: Vec<StiffnessFinding>,
     /// For each quantity and bound the cheapest choice of method, mesh and step within it.
     pub within: Vec<QuantityWithin>,
-    /// Settlements at the outputs, of the runs that the answer for the settlement names.
-    pub settlements: Vec<SettlementTable>,
-    /// Which methods lock, where the study sweeps Poisson's ratio in the plane.
-    #[serde(default)]
-    pub locking: Option<LockingFinding>,
+    /// The answers to the questions that are files of their own.
+    #[serde(default, deserialize_with = "unread")]
+    #[schemars(schema_with = "list::schema")]
+    pub findings: Vec<Finding>,
     /// Expectations that the results meet, as TOML, of a study without any.
     #[serde(default)]
     pub proposals: Vec<String>,
@@ -183,32 +180,26 @@ impl Findings {
     /// # Errors
     /// When a reference refuses a case.
     pub fn new(results: &StudyResults<'_>, answers: &StudyAnswers) -> Result<Self, ExactError> {
-        let StudyResults { study, records, paths, judgements, .. } = results;
+        let StudyResults { study, records, paths, check, .. } = results;
         let mut stiffness = Vec::new();
         for swept in SweptStiffness::ALL {
             stiffness.extend(StiffnessSweep::of(study, records, swept)?.iter().flat_map(of_sweep));
         }
         // The page of a race has answers of its own in their place.
         let within = if study.is_race { within::within(study, records) } else { answers.within.clone() };
-        let settlements = if study.is_race {
-            settlement::settlement_tables(study, records, &within)?
-        } else {
-            answers.settlements.clone()
-        };
         Ok(Self {
             schema: SCHEMA,
             study: study.name.clone(),
             scene: study.scene.name().to_owned(),
             references: study.references.iter().map(|kind| kind.name().to_owned()).collect(),
             left_out: study.cases(Tier::Full).len().saturating_sub(records.len()),
-            expectations: judgements.iter().map(ExpectationFinding::new).collect(),
+            expectations: check.judgements.iter().map(ExpectationFinding::new).collect(),
             runs: records.iter().map(RunFinding::new).collect(),
             series: series::all_series(study, paths),
             stiffness,
-            settlements,
             within,
-            locking: answers.locking.clone(),
-            proposals: proposals(study, paths),
+            findings: list::answers(std::slice::from_ref(results), Place::Study)?,
+            proposals: check.proposals.clone(),
             blocks: StudyBlocks::new(results)?,
         })
     }

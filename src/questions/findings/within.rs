@@ -254,7 +254,7 @@ fn is_longest_tried(record: &Record, records: &[Record]) -> bool {
 }
 
 /// A number for what is solved, whoever solves it and on whatever mesh.
-pub(super) fn problem(case: &Case) -> u64 {
+pub(crate) fn problem(case: &Case) -> u64 {
     case.number_with(|case| {
         let seed = Case::seed(case.task, case.scene);
         (case.method, case.integrator, case.formulation) = (seed.method, seed.integrator, seed.formulation);
@@ -264,7 +264,7 @@ pub(super) fn problem(case: &Case) -> u64 {
 }
 
 /// A number for who solves it, on which mesh and by which steps, whatever the problem.
-pub(super) fn choice(case: &Case) -> u64 {
+pub(crate) fn choice(case: &Case) -> u64 {
     case.number_with(|case| {
         let seed = Case::seed(case.task, case.scene);
         (case.column, case.material, case.time_factors) = (seed.column, seed.material, seed.time_factors);

@@ -223,7 +223,7 @@ pub fn tables(page: &Page) -> Vec<(String, &Table)> {
         Block::Table(table) => Some(table),
         _ => None,
     });
-    tables.enumerate().map(|(place, table)| (table_file(name, place + 1), table)).collect()
+    tables.enumerate().map(|(place, table)| (table_file(name, place + 1, table), table)).collect()
 }
 
 /// Rows that a page shows of a table that also has a file, so that a study of ten thousand cases makes a page that
@@ -241,9 +241,12 @@ pub(crate) fn shown_rows<'a>(table: &'a Table, file: Option<&str>) -> (Cow<'a, T
     (Cow::Owned(shown), Some(rest))
 }
 
-/// The name of the file of a page's table, counted from one.
-pub(crate) fn table_file(page: &str, number: usize) -> String {
-    format!("{page}-table-{number}")
+/// The name of the file of a page's table: its own name, or its number, counted from one.
+pub(crate) fn table_file(page: &str, number: usize, table: &Table) -> String {
+    match &table.file {
+        Some(name) => format!("{page}-{name}"),
+        None => format!("{page}-table-{number}"),
+    }
 }
 
 /// Names become files and anchors: they must be safe and unique.

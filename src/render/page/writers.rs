@@ -27,9 +27,9 @@ impl<'a> Written<'a> {
     }
 
     /// The name of the file of the next table.
-    fn next_table(&mut self) -> Option<String> {
+    fn next_table(&mut self, table: &Table) -> Option<String> {
         self.tables += 1;
-        self.files.map(|page| table_file(page, self.tables))
+        self.files.map(|page| table_file(page, self.tables, table))
     }
 }
 
@@ -182,7 +182,7 @@ fn html_block(block: &Block, out: &mut String, written: &mut Written<'_>) -> Res
 
 /// A table with links to its files.
 fn html_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Result<(), RenderError> {
-    let file = written.next_table();
+    let file = written.next_table(table);
     let (shown, rest) = shown_rows(table, file.as_deref());
     out.push_str(&shown.to_html()?);
     out.push_str(&rest.map(|rest| html_text(&rest)).unwrap_or_default());
@@ -281,7 +281,7 @@ fn markdown_block(block: &Block, written: &mut Written<'_>) -> Result<String, Re
             points.iter().map(point).collect::<Vec<_>>().join("\n")
         }
         Block::Table(table) => {
-            let (shown, rest) = shown_rows(table, written.next_table().as_deref());
+            let (shown, rest) = shown_rows(table, written.next_table(table).as_deref());
             let table = shown.to_markdown()?.trim_end().to_owned();
             std::iter::once(table).chain(rest).collect::<Vec<_>>().join("\n\n")
         }

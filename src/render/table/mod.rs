@@ -15,6 +15,8 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
     /// Lines below the table.
     pub notes: Vec<String>,
+    /// Name of its file, without that of its page and without an ending; a number where it has none.
+    pub file: Option<String>,
 }
 
 /// A column.
@@ -266,12 +268,19 @@ impl Table {
         columns: Vec<TableColumn>,
         rows: impl IntoIterator<Item = Vec<Cell>>,
     ) -> Self {
-        Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new() }
+        Self { title: title.into(), columns, rows: rows.into_iter().collect(), notes: Vec::new(), file: None }
     }
 
     /// The table, if it has rows.
     pub fn unless_empty(self) -> Option<Self> {
         (!self.rows.is_empty()).then_some(self)
+    }
+
+    /// Names the file of the table.
+    #[must_use]
+    pub fn file(mut self, name: impl Into<String>) -> Self {
+        self.file = Some(name.into());
+        self
     }
 
     /// Adds a line below the table.

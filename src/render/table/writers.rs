@@ -5,8 +5,9 @@ use crate::render::escape::{
     csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
 };
 use crate::render::marked_text::{html_code, html_with_code, markdown_with_code};
-use crate::render::table::{Align, Cell, Table, marked};
+use crate::render::table::{Align, Cell, Table, TableColumn, marked};
 use crate::render::{RenderError, number};
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// Length in letters from which a cell of HTML is a sentence that needs a wide column.
@@ -174,6 +175,14 @@ impl Table {
         self.csv_with(str::to_owned)
     }
 
+    /// For programs: title, headings and rows; numbers with all digits, words as they are, null for a missing value.
+    pub fn to_json(&self) -> Value {
+        let row = |row: &Vec<Cell>| row.iter().map(in_json).collect::<Vec<Value>>();
+        let columns: Vec<String> = self.columns.iter().map(TableColumn::heading).collect();
+        let rows: Vec<Vec<Value>> = self.rows.iter().map(row).collect();
+        json!({ "file": self.file, "title": self.title, "columns": columns, "rows": rows })
+    }
+
     fn csv_with(&self, words: impl Fn(&str) -> String) -> Result<String, RenderError> {
         self.check()?;
         let has_width: Vec<bool> = (0..self.columns.len())
@@ -186,7 +195,7 @@ impl Table {
                 .flatten()
                 .collect()
         };
-        let heading = |column: &crate::render::table::TableColumn| {
+        let heading = |column: &TableColumn| {
             let heading = column.heading();
             (words(&heading), words(&format!("{heading} ±")))
         };
@@ -202,6 +211,18 @@ impl Table {
         write().map_err(fail)?;
         let bytes = writer.into_inner().map_err(|error| fail(error.into_error().into()))?;
         String::from_utf8(bytes).map_err(|error| fail(std::io::Error::other(error).into()))
+    }
+}
+
+fn in_json(cell: &Cell) -> Value {
+    match cell {
+        Cell::Missing(_) => Value::Null,
+        Cell::Count(count) => json!(count),
+        Cell::Text(text) | Cell::Code(text) | Cell::Verdict(_, text) => json!(text),
+        other => match other.value() {
+            Some(value) if value.is_finite() => json!(value),
+            _ => json!(other.show()),
+        },
     }
 }
 

@@ -1,20 +1,20 @@
 //! Are the published equations right? A figure over time and one over the mesh, a line per pairing of law and continuity.
 
 use crate::questions::answers::audit::{AuditFinding, PairingFinding};
+use crate::questions::sentence;
+use crate::questions::words;
 use crate::render::RenderError;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure, Section};
 use crate::report::answers::Question;
-use crate::report::blocks::labels;
-use crate::report::templates;
 
 const QUESTION: Question = Question { heading: "Are the published equations right?", id: "audit" };
 
 /// Which equations agree, the figures, and the boundary condition that the paper does not name.
 pub fn section(audit: &AuditFinding) -> Result<Section, RenderError> {
     let figures = vec![over_time(audit), over_mesh(audit)];
-    let blocks = vec![Block::Figures(figures), Block::Paragraph(templates::sentence("mapping-back", audit)?)];
-    Ok(QUESTION.answered(&templates::sentence("audit", audit)?, [audit.study.as_str()], blocks))
+    let blocks = vec![Block::Figures(figures), Block::Paragraph(sentence::sentence("mapping-back", audit)?)];
+    Ok(QUESTION.answered(&sentence::sentence("audit", audit)?, [audit.study.as_str()], blocks))
 }
 
 /// Law and continuity of a pairing, in words.
@@ -41,7 +41,7 @@ fn over_mesh(audit: &AuditFinding) -> Figure {
     let points = || audit.pairings.iter().flat_map(|pairing| &pairing.pressure);
     let mut chart = Chart::new(
         "Pressure against Xie & Leo, over the mesh",
-        ChartAxis::log10("cell size h (m)").with_ticks(labels::ticks(points().map(|(size, _)| *size))),
+        ChartAxis::log10("cell size h (m)").with_ticks(words::ticks(points().map(|(size, _)| *size))),
         ChartAxis::log10("relative L_2 error of the pressure at the points (–)"),
     );
     chart.size = Size::PANEL;

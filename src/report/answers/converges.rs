@@ -3,12 +3,13 @@
 use crate::case::contender::PAPERS;
 use crate::case::grouping::distinct;
 use crate::questions::answers::converges::{ColumnFinding, ConvergesFinding, MethodOrders, OrderFinding};
+use crate::questions::sentence;
+use crate::questions::words;
 use crate::render::page::{Block, Figure, Section};
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::answers::{Question, short};
-use crate::report::blocks::{labels, refinement};
-use crate::report::templates;
+use crate::report::blocks::refinement;
 use oedometer_convergence::Class;
 
 const QUESTION: Question = Question { heading: "Does the method converge, and to what?", id: "converges" };
@@ -25,7 +26,7 @@ pub fn section(found: &ConvergesFinding) -> Result<Section, RenderError> {
     let small = found.columns.iter().find(|column| column.final_strain.is_none());
     blocks.extend(small.and_then(figure).map(Block::Figure));
     let studies = found.columns.iter().map(|column| column.study.as_str());
-    Ok(QUESTION.answered(&templates::sentence("converges", found)?, studies, blocks))
+    Ok(QUESTION.answered(&sentence::sentence("converges", found)?, studies, blocks))
 }
 
 fn strain_of(column: &ColumnFinding) -> &'static str {
@@ -86,7 +87,7 @@ fn table(found: &ConvergesFinding) -> Table {
     );
     let more = ranked.len().saturating_sub(MOST_METHODS);
     let others = if more > 0 { format!("{more} more: on the pages of the studies") } else { String::new() };
-    let notes = [norms, labels::class_meanings(&rows), others].into_iter().filter(|note| !note.is_empty());
+    let notes = [norms, words::class_meanings(&rows), others].into_iter().filter(|note| !note.is_empty());
     let shown = ranked.iter().take(MOST_METHODS).flat_map(|name| {
         found.columns.iter().filter_map(|column| method_of(column, name)).flat_map(|method| &method.orders)
     });
@@ -99,7 +100,7 @@ fn table(found: &ConvergesFinding) -> Table {
 
 /// Order and error in a few characters.
 fn order_cell(order: &OrderFinding) -> Cell {
-    let words = labels::order_and_error(order.class, order.order, order.error);
+    let words = words::order_and_error(order.class, order.order, order.error);
     match order.class {
         Class::Locked => Cell::Verdict(Mood::Fail, words),
         Class::NotEvaluable => Cell::missing("fewer than three meshes have this error"),

@@ -1,11 +1,11 @@
 //! One set of material points, or two? A row per situation and method.
 
 use crate::questions::answers::double_point::{DoublePointFinding, DoublePointSituation};
+use crate::questions::sentence;
 use crate::render::RenderError;
 use crate::render::page::{Block, Section};
 use crate::render::table::{Cell, Table, columns};
 use crate::report::answers::{Question, short};
-use crate::report::templates;
 
 const QUESTION: Question = Question { heading: "One set of material points, or two?", id: "double-point" };
 
@@ -13,7 +13,7 @@ const QUESTION: Question = Question { heading: "One set of material points, or t
 pub fn section(found: &DoublePointFinding) -> Result<Section, RenderError> {
     let table = Block::Table(short(table(found), "in `findings.json`"));
     let studies = found.studies.iter().map(String::as_str);
-    Ok(QUESTION.answered(&templates::sentence("double-point", found)?, studies, vec![table]))
+    Ok(QUESTION.answered(&sentence::sentence("double-point", found)?, studies, vec![table]))
 }
 
 fn table(found: &DoublePointFinding) -> Table {

@@ -6,26 +6,26 @@
 mod audit;
 mod converges;
 mod double_point;
-pub(crate) mod locking;
 mod paper;
 pub(crate) mod race;
 
 pub use race::matrix_page;
 
-use crate::case::grouping::distinct;
 use crate::history::comparison::StudyComparison;
 use crate::questions::answers::cost::CostFinding;
 use crate::questions::answers::time_step::TimeStepFinding;
 use crate::questions::answers::{ReportFindings, VerdictFinding};
+use crate::questions::finding::{Finding, Place};
+use crate::questions::sentence;
 use crate::questions::study_findings::AllStudies;
 use crate::record::provenance::Provenance;
 use crate::render::RenderError;
-use crate::render::page::{Block, Callout, Figure, Page, Section, slug};
+use crate::render::page::{Block, Callout, Figure, Page, Section};
 use crate::render::table::{Mood, Table};
 use crate::report::blocks::answers as study_answers;
 use crate::report::blocks::runs::cost;
 use crate::report::history_tables::comparison_tables;
-use crate::report::templates;
+use crate::report::sections::{links_to, section};
 use oedometer_soil::wording::count_of;
 use serde::Serialize;
 
@@ -96,11 +96,6 @@ fn program_of(origin: &Provenance) -> String {
     )
 }
 
-/// The page of a study, from the answer page.
-fn page_of(study: &str) -> String {
-    format!("studies/{}.html", slug(study))
-}
-
 /// A question of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Question {
@@ -134,10 +129,9 @@ fn short(mut table: Table, elsewhere: &str) -> Table {
     if more > 0 { table.note(format!("{more} more: {elsewhere}")) } else { table }
 }
 
-/// Links to the pages of studies, each once, in running text.
-fn links_to<'a>(studies: impl IntoIterator<Item = &'a str>) -> String {
-    let links = distinct(studies).into_iter().map(|study| format!("[`{study}`]({})", page_of(study)));
-    links.collect::<Vec<_>>().join(", ")
+/// The answer to a question.
+fn found<'f>(findings: &'f ReportFindings, question: &str) -> Option<&'f Finding> {
+    findings.findings.iter().find(|finding| finding.question.id == question)
 }
 
 /// The answer page.
@@ -152,7 +146,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
         findings.cost.as_ref().map(cost_section).transpose()?,
         findings.paper.as_ref().map(paper::section).transpose()?,
         answers.changes.map(changes_section).transpose()?,
-        findings.locking.as_ref().map(locking::section).transpose()?,
+        found(findings, "locking").map(|finding| section(finding, Place::Report)).transpose()?,
         findings.converges.as_ref().map(converges::section).transpose()?,
         findings.time_step.as_ref().map(time_step_section).transpose()?,
         findings.audit.as_ref().map(audit::section).transpose()?,
@@ -197,17 +191,17 @@ const FEW_STUDIES: usize = 6;
 fn verdict(verdict: &VerdictFinding) -> Result<Callout, RenderError> {
     let passes = verdict.failing.is_empty();
     let mood = if verdict.expectations == 0 && passes { Mood::Note } else { Mood::of(passes) };
-    Ok((mood, templates::sentence("verdict", verdict)?))
+    Ok((mood, sentence::sentence("verdict", verdict)?))
 }
 
 /// The cheapest run within each tolerance, all timed runs in a figure, and other programs.
 fn cost_section(cost: &CostFinding) -> Result<Section, RenderError> {
     let question = Question { heading: "What does accuracy cost?", id: "cost" };
-    let sentence = templates::sentence("cost", cost)?;
+    let sentence = sentence::sentence("cost", cost)?;
     let (chart, caption) = (cost::chart_of(&cost.wall_time), cost::caption(&cost.wall_time)?);
     let mut blocks = vec![Block::Figure(Figure::new("readme-cost", chart, caption))];
     if let Some(peers) = &cost.peers {
-        blocks.push(Block::Paragraph(templates::sentence("peers", peers)?));
+        blocks.push(Block::Paragraph(sentence::sentence("peers", peers)?));
     }
     Ok(question.answered(&sentence, [cost.study.as_str()], blocks))
 }
@@ -215,7 +209,7 @@ fn cost_section(cost: &CostFinding) -> Result<Section, RenderError> {
 /// The order in the step, and what the step leaves of the error.
 fn time_step_section(found: &TimeStepFinding) -> Result<Section, RenderError> {
     let question = Question { heading: "What does the time step change?", id: "time-step" };
-    Ok(question.answered(&templates::sentence("time-step", found)?, [found.study.as_str()], Vec::new()))
+    Ok(question.answered(&sentence::sentence("time-step", found)?, [found.study.as_str()], Vec::new()))
 }
 
 /// How many studies changed.
@@ -229,7 +223,7 @@ struct Changes {
 fn changes_section(changes: &[StudyComparison]) -> Result<Section, RenderError> {
     let question = Question { heading: "What changed?", id: "changes" };
     let worse = changes.iter().filter(|one| one.is_regression()).count();
-    let sentence = templates::sentence("changes", &Changes { changed: changes.len(), worse })?;
+    let sentence = sentence::sentence("changes", &Changes { changed: changes.len(), worse })?;
     let tables = comparison_tables(changes, ["the golden values", "this report"]);
     let tables = if changes.is_empty() { Vec::new() } else { tables };
     let block = |table| Block::Table(short(table, "listed by `oedometer compare` and `oedometer check`"));
@@ -243,6 +237,7 @@ mod tests {
     use crate::case::planned::Tier;
     use crate::golden::GoldenFile;
     use crate::history::state::StudyState;
+    use crate::judge::study_check::CaseNote;
     use crate::questions::study_results::StudyResults;
     use crate::record::Record;
     use crate::render::table::{Cell, columns};
@@ -304,7 +299,8 @@ mod tests {
         let of = |all: &[(&(Study, Vec<Record>), usize)]| {
             let results = |((study, records), wrong): &(&'_ (Study, Vec<Record>), usize)| {
                 let mut one = StudyResults::new(study, records, Tier::Full);
-                one.unsound = vec![("a case".to_owned(), "why".to_owned()); *wrong];
+                let (case, sentence) = ("a case".to_owned(), "why".to_owned());
+                one.check.unsound = vec![CaseNote { case, sentence }; *wrong];
                 let findings = ReportFindings::new(&[one]).expect("sound cases");
                 let (mood, text) = verdict(&findings.verdict).expect("a verdict");
                 format!("{mood:?} {text}")

@@ -1,13 +1,13 @@
 //! Does it reproduce the paper? Figs 3a, 3b, 4a and 4b of Zheng et al. (2021), on the paper's axes.
 
 use crate::questions::answers::paper::{PaperCurves, PaperFinding};
+use crate::questions::sentence;
+use crate::questions::words;
 use crate::render::RenderError;
 use crate::render::chart::{Size, Style};
 use crate::render::page::{Block, Figure, Section};
 use crate::report::answers::Question;
 use crate::report::blocks::fields::theory_lines;
-use crate::report::blocks::labels;
-use crate::report::templates;
 
 const QUESTION: Question = Question { heading: "Does it reproduce the paper?", id: "paper" };
 
@@ -29,10 +29,10 @@ pub fn section(paper: &PaperFinding) -> Result<Section, RenderError> {
     }
     let mut blocks = vec![Block::Figures(figures)];
     if let Some(printed) = &paper.printed {
-        blocks.push(Block::Paragraph(templates::sentence("printed-equations", printed)?));
+        blocks.push(Block::Paragraph(sentence::sentence("printed-equations", printed)?));
     }
     let studies = paper.figures.iter().map(|figure| figure.study.as_str());
-    Ok(QUESTION.answered(&templates::sentence("paper", paper)?, studies, blocks))
+    Ok(QUESTION.answered(&sentence::sentence("paper", paper)?, studies, blocks))
 }
 
 /// A figure of the report as one of the four.
@@ -42,7 +42,7 @@ fn quarter(mut figure: Figure, number: &str, theory: &str) -> Figure {
         chart.title = format!("Fig. {number}: {}", chart.title);
         chart.size = QUARTER;
         for series in chart.series.iter_mut().filter(|series| series.style == Style::Theory) {
-            series.name = labels::theory(theory);
+            series.name = words::theory(theory);
         }
     })
 }

@@ -14,9 +14,10 @@ use crate::render::chart::{Chart, ChartAxis, Naming, Series, Style, slots};
 use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::answers::{Question, page_of};
-use crate::report::blocks::labels::capitalised;
-use crate::report::templates;
+use crate::report::answers::Question;
+use crate::report::sections::page_of;
+use crate::questions::words::capitalised;
+use crate::questions::sentence;
 
 const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
@@ -25,7 +26,7 @@ const PAGE: &str = "race.html";
 
 /// The sentences at the head of the page.
 pub(crate) fn lead(findings: &RaceFindings) -> Result<String, RenderError> {
-    templates::sentence("race-answers", &facts(findings))
+    sentence::sentence("race-answers", &facts(findings))
 }
 
 /// The problems one by one, as a figure and a table for each read-out.
@@ -173,7 +174,7 @@ pub fn matrix_page(findings: &RaceFindings) -> Page {
             "matrix",
             vec![
                 Block::Table(budget_table(findings)),
-                Block::Paragraph(templates::sentence("race-rules", &()).unwrap_or_default()),
+                Block::Paragraph(sentence::sentence("race-rules", &()).unwrap_or_default()),
                 by_read_out(&|one| vec![Block::Table(matrix(&findings.situations, one))]),
             ],
         ),

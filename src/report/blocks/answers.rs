@@ -1,14 +1,13 @@
 //! What a study answers by itself: its setting and what comes within a bound at the head of its page; settlements by date and
 //! who locks as its first sections.
 
+use crate::questions::finding::Place;
 use crate::questions::findings::QuantityWithin;
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::Block;
-use crate::render::table::Table;
-use crate::report::answers::locking;
-use crate::report::tables::settlement;
-use crate::report::templates;
+use crate::report::sections;
 use serde::Serialize;
 
 /// Setting and answers as paragraphs; the race answers elsewhere.
@@ -17,7 +16,7 @@ use serde::Serialize;
 /// If a template cannot be filled.
 pub fn lead(study: &StudyFindings) -> Result<String, RenderError> {
     let mut lead = match &study.plain.blocks.setting {
-        Some(setting) => templates::sentence("setting", setting)? + "\n\n",
+        Some(setting) => sentence::sentence("setting", setting)? + "\n\n",
         None => String::new(),
     };
     lead += &within(&study.answers.within)?;
@@ -35,25 +34,18 @@ struct Quantities<'a> {
 /// # Errors
 /// If the template cannot be filled.
 pub fn within(quantities: &[QuantityWithin]) -> Result<String, RenderError> {
-    templates::sentence("within", &Quantities { quantities })
+    sentence::sentence("within", &Quantities { quantities })
 }
 
-/// Settlements by date, and who locks: what the answers on top of the page are read off from.
+/// The answers of the study, each below its question.
 ///
 /// # Errors
 /// If a template cannot be filled.
 pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     let mut blocks = Vec::new();
-    if !study.answers.settlements.is_empty() {
-        blocks.push(Block::Heading("Settlement by date".to_owned()));
-    }
-    for (title, table) in settlement::tables_of(&study.answers.settlements) {
-        blocks.push(Block::Table(Table { title, ..table }));
-    }
-    if let Some(found) = &study.answers.locking {
-        blocks.push(Block::Heading("Who locks?".to_owned()));
-        blocks.push(Block::Paragraph(templates::sentence("locking", found)?));
-        blocks.push(Block::Table(locking::table(found)));
+    for finding in &study.plain.findings {
+        blocks.push(Block::Heading(finding.question.heading.to_owned()));
+        blocks.extend(sections::blocks(finding, Place::Study)?);
     }
     Ok(blocks)
 }
@@ -118,7 +110,7 @@ mod tests {
 
     fn setting_of(records: &[Record]) -> String {
         let setting = SettingFinding::new(records);
-        setting.map_or(String::new(), |setting| templates::sentence("setting", &setting).expect("filled"))
+        setting.map_or(String::new(), |setting| sentence::sentence("setting", &setting).expect("filled"))
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! The expectations of a study on its page: the verdict in its box, those that are not met, and all with their reasons.
 
 use crate::judge::verdict::Judgement;
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::page::{Block, Callout};
 use crate::render::table::Mood;
 use crate::report::checks::verdicts::judgements_table;
-use crate::report::templates;
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
@@ -61,7 +61,7 @@ pub fn all(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     let mut blocks = vec![Block::Heading("Expectations".to_owned())];
     let proposed = &study.plain.proposals;
     if !proposed.is_empty() {
-        blocks.push(Block::Paragraph(templates::sentence("proposed", &())?));
+        blocks.push(Block::Paragraph(sentence::sentence("proposed", &())?));
         let whole = Block::Code(proposed.join("\n"));
         blocks.push(if proposed.len() > MOST_OPEN {
             Block::Details { summary: format!("The {} expectations", proposed.len()), blocks: vec![whole] }

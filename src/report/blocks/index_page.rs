@@ -120,6 +120,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::solved;
     use crate::case::Tier;
+    use crate::judge::study_check::CaseNote;
     use crate::questions::study_results::StudyResults;
     use crate::study::check::Study;
 
@@ -135,7 +136,8 @@ mod tests {
                     .to_owned() + &bounds.iter().map(expect).collect::<String>();
             let (study, records) = solved("s", &text);
             let mut results = StudyResults::new(&study, &records, Tier::Full);
-            results.unsound = vec![("a case".to_owned(), "why".to_owned()); wrong];
+            let (case, sentence) = ("a case".to_owned(), "why".to_owned());
+            results.check.unsound = vec![CaseNote { case, sentence }; wrong];
             met_cell(&results.findings().expect("sound cases"))
         };
         for (bounds, wrong, mood, words) in [

@@ -3,6 +3,7 @@
 use crate::questions::blocks::soil_map::MapFinding;
 use crate::questions::blocks::stability::StabilityFinding;
 use crate::questions::comparison::stability_map::{MapScale, StabilityMap};
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::RenderError;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
@@ -10,7 +11,6 @@ use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, columns};
 use crate::report::blocks::figure_of;
 use crate::report::tables::runs;
-use crate::report::templates;
 use std::collections::BTreeMap;
 
 /// Map and table of a study that varies conductivity and stiffness; empty for others.
@@ -24,7 +24,7 @@ pub fn cheapest_methods(study: &StudyFindings) -> Result<Vec<Block>, RenderError
     let mut figures = Vec::new();
     match cheapest.series.as_slice() {
         // A map of one colour is a sentence.
-        [_] => blocks.push(Block::Paragraph(templates::sentence("cheapest", map)?)),
+        [_] => blocks.push(Block::Paragraph(sentence::sentence("cheapest", map)?)),
         _ => figures.push(figure_of(&study.name, "cheapest method", cheapest, CAPTION)),
     }
     let broken = broken(map);
@@ -153,7 +153,7 @@ fn stability_figure(study: &str, map: &StabilityMap) -> Result<Figure, RenderErr
             Series::new(format!("{}, {what}", curve.name), points).style(style).slot(slot)
         }));
     }
-    Ok(figure_of(study, &map.shared, chart, templates::sentence("critical-steps", map)?))
+    Ok(figure_of(study, &map.shared, chart, sentence::sentence("critical-steps", map)?))
 }
 
 fn axis_of(map: &StabilityMap) -> ChartAxis {

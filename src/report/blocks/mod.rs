@@ -4,7 +4,6 @@ pub(crate) mod answers;
 mod expectations;
 pub(crate) mod fields;
 pub mod index_page;
-pub(crate) mod labels;
 mod maps;
 pub mod race;
 pub(crate) mod refinement;

@@ -7,11 +7,12 @@ use crate::questions::blocks::refinement::{
     LevelFound, LevelKey, OrderFound, OrdersRow, OrdersTable, RefinementFinding,
 };
 use crate::questions::study_findings::StudyFindings;
+use crate::questions::words;
 use crate::render::chart::{Chart, ChartAxis, Rule, Series, Size, SlopeTriangle};
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::blocks::{figure_of, labels};
+use crate::report::blocks::figure_of;
 use crate::study::expectation::Axis;
 
 /// Floors that are listed below a table before the rest is only counted.
@@ -35,7 +36,7 @@ fn along(study: &str, found: &RefinementFinding) -> Result<Vec<Block>, RenderErr
     let mut blocks = vec![Block::Heading(heading(found.axis).to_owned()), Block::Figures(figures.collect())];
     blocks.extend(found.other_model.iter().map(|one| Block::Figure(figure(study, one))));
     if let Some(series) = &found.drawn {
-        blocks.push(Block::Paragraph(labels::drawn(series)?));
+        blocks.push(Block::Paragraph(words::drawn(series)?));
     }
     let mut tables = found.tables.iter().map(|table| Block::Table(orders_table(table)));
     blocks.extend(tables.next());
@@ -58,17 +59,17 @@ fn heading(axis: Axis) -> &'static str {
 /// One error of all paths over an axis.
 pub fn figure(study: &str, found: &ErrorFigure) -> Figure {
     let ErrorFigure { axis, quantity, sample, reference, .. } = found;
-    let ticks = labels::ticks(found.sizes.iter().copied());
+    let ticks = words::ticks(found.sizes.iter().copied());
     let mut chart = Chart::new(
-        format!("Error of the {}", labels::measured(*quantity, *sample)),
-        ChartAxis::log10(labels::axis(*axis)).with_ticks(ticks),
-        ChartAxis::log10(labels::error_axis(*quantity)),
+        format!("Error of the {}", words::measured(*quantity, *sample)),
+        ChartAxis::log10(words::axis(*axis)).with_ticks(ticks),
+        ChartAxis::log10(words::error_axis(*quantity)),
     );
     chart.subtitle = Some(format!(
         "T_v = {}, against {}{}",
         number::time_factor(found.time_factor),
-        labels::solution(reference),
-        labels::subtitle_end(&found.shared)
+        words::solution(reference),
+        words::subtitle_end(&found.shared)
     ));
     chart.size = Size::PANEL;
     let names: Vec<String> = found.lines.iter().map(|line| name_of(line, found)).collect();
@@ -92,7 +93,7 @@ fn name_of(line: &ErrorLine, found: &ErrorFigure) -> String {
     if line.sample == found.sample {
         line.label.clone()
     } else {
-        format!("{}, {}", line.label, labels::sample(line.sample))
+        format!("{}, {}", line.label, words::sample(line.sample))
     }
 }
 
@@ -151,7 +152,7 @@ fn orders_table(found: &OrdersTable) -> Table {
     }
     let floors = found.rows.iter().filter_map(|row| {
         let (floor, advice) = row.floor.as_ref()?;
-        let measured = labels::measured(row.quantity, row.sample);
+        let measured = words::measured(row.quantity, row.sample);
         Some(format!("{}, {measured}: floor {floor:.1e}; {advice}", row.label))
     });
     let mut notes: Vec<String> = floors.collect();
@@ -167,14 +168,14 @@ fn orders_table(found: &OrdersTable) -> Table {
     if !found.shared.is_empty() {
         notes.insert(0, format!("all with {}", found.shared));
     }
-    let reference = labels::solution(&found.reference);
+    let reference = words::solution(&found.reference);
     let title = format!("T_v = {}, against {reference}", number::time_factor(found.time_factor));
     let rows = found.rows.iter().map(|row| orders_row(row, found.has_orders));
     Table::of(title, columns, rows).notes(notes)
 }
 
 fn orders_row(found: &OrdersRow, has_orders: bool) -> Vec<Cell> {
-    let measured = labels::measured(found.quantity, found.sample);
+    let measured = words::measured(found.quantity, found.sample);
     let mut row = vec![Cell::Code(found.label.clone()), measured.into()];
     row.extend(found.errors.iter().map(|error| match error {
         LevelFound::Measured(error) => Cell::Error(error.0),

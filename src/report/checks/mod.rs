@@ -240,7 +240,6 @@ mod tests {
     use crate::golden::compare::{Difference, DifferenceGroup};
     use crate::golden::inputs::InputChange;
     use crate::judge::study_check::CaseNote;
-    use crate::questions::findings::study_answers::StudyAnswers;
 
     /// Golden values of one kind of change.
     pub(super) fn group(change: Change) -> DifferenceGroup {
@@ -287,7 +286,6 @@ mod tests {
             taken_over: Vec::new(),
             warnings: vec!["slow".to_owned()],
             diagnoses: Vec::new(),
-            answers: StudyAnswers::default(),
         }
     }
 

@@ -4,26 +4,25 @@ use crate::campaign::taken_over::TakenOver;
 use crate::golden::compare::{CaseChange, Change, Difference};
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Judgement, VerdictOutcome};
+use crate::questions::finding::{Finding, Part};
 use crate::questions::findings::study_answers::StudyAnswers;
+use crate::questions::sentence;
 use crate::render::marked_text::paragraphs;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
-use crate::report::answers::locking;
 use crate::report::blocks::answers::within;
 use crate::report::checks::{TITLES, failures_of};
 use crate::report::tables::convergence;
 use crate::report::tables::golden_changes::{self, judgement_of, summary};
-use crate::report::tables::{settlement, uncertainties};
-use crate::report::templates;
+use crate::report::tables::uncertainties;
 use oedometer_soil::wording::count_of;
 use std::fmt::Write;
 
-/// A study's check as text, what failed in lines of a terminal's width. `file` is the study's own. A study that is checked
-/// alone shows its errors over the meshes, too.
+/// A study's check as text, what failed in lines of a terminal's width, with what it answers by itself. `file` is the study's own.
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result<String, RenderError> {
+pub fn text_of(check: &StudyCheck, file: Option<&str>, answers: &str) -> Result<String, RenderError> {
     let mut text = String::new();
     if let Some(why) = why_it_fails(check) {
         text += &wrapped(&format!("✗ {}: {why}", check.study), "", "  ");
@@ -38,9 +37,7 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
     text += &text_of_inputs(check);
     text += &text_of_failures(check);
     text += &text_of_changes(check);
-    if is_alone {
-        text += &text_of_answers(&check.answers)?;
-    }
+    text += answers;
     if let Some(table) = uncertainties::table_of(&check.judgements) {
         text += &items_of(&table);
     }
@@ -54,11 +51,11 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, is_alone: bool) -> Result
     Ok(text)
 }
 
-/// Errors over the meshes with their rates, what it takes to come within a bound, settlements by date, and who locks.
+/// Errors over the meshes with their rates, what it takes to come within a bound, and the answers of the questions.
 ///
 /// # Errors
 /// If a table cannot be written.
-pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
+pub fn text_of_answers(answers: &StudyAnswers, findings: &[Finding]) -> Result<String, RenderError> {
     let mut text = String::new();
     for table in &answers.convergence {
         let heading = wrapped(&convergence::heading(table), "", "  ");
@@ -70,12 +67,26 @@ pub fn text_of_answers(answers: &StudyAnswers) -> Result<String, RenderError> {
         let _ = write!(text, "\n{heading}\n{}", convergence::table_of_finest(finest).to_text()?);
     }
     text += &plain_paragraphs(&within(&answers.within)?);
-    for (heading, table) in settlement::tables_of(&answers.settlements) {
-        let _ = write!(text, "\n{}\n{}", wrapped(&heading, "", "  "), table.to_text()?);
+    for finding in findings {
+        text += &plain_paragraphs(&finding.sentence()?);
+        text += &text_of_parts(finding, &finding.parts)?;
     }
-    if let Some(locking) = &answers.locking {
-        text += &plain_paragraphs(&templates::sentence("locking", locking)?);
-        let _ = write!(text, "\n{}", locking::table(locking).to_text()?);
+    Ok(text)
+}
+
+/// The tables and sentences of an answer; figures and details stand on pages alone.
+fn text_of_parts(finding: &Finding, parts: &[Part]) -> Result<String, RenderError> {
+    let mut text = String::new();
+    for part in parts {
+        match part {
+            Part::Sentence(template) => text += &plain_paragraphs(&finding.words(template)?),
+            Part::Table(table) => text += &format!("\n{}", table.to_text()?),
+            Part::Views(views) => {
+                let first = views.first().map(|(_, parts)| text_of_parts(finding, parts)).transpose()?;
+                text += &first.unwrap_or_default();
+            }
+            Part::Figures(_) | Part::Details(..) => {}
+        }
     }
     Ok(text)
 }
@@ -125,7 +136,7 @@ pub fn markdown_of(
             let _ = write!(text, "\n{}\n", table.to_markdown()?);
         }
         if !check.proposals.is_empty() {
-            let proposed = templates::sentence("proposed", &())?;
+            let proposed = sentence::sentence("proposed", &())?;
             let _ = write!(text, "\n{proposed}\n\n```toml\n{}```\n", check.proposals.join("\n"));
         }
         for warning in &check.warnings {
@@ -368,7 +379,7 @@ fn text_of_proposals(check: &StudyCheck, file: Option<&str>) -> Result<String, R
     if check.proposals.is_empty() {
         return Ok(String::new());
     }
-    let mut text = format!("\n{}\n", wrapped(&templates::sentence("proposed", &())?, "", ""));
+    let mut text = format!("\n{}\n", wrapped(&sentence::sentence("proposed", &())?, "", ""));
     text += &check.proposals.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join("\n");
     let rest = check.proposals.len().saturating_sub(MOST);
     if rest > 0 {

@@ -2,9 +2,9 @@
 
 use crate::case::Quantity;
 use crate::questions::findings::convergence::{ConvergenceColumn, ConvergenceTable, FinestMeshes};
+use crate::questions::words;
 use crate::render::number;
 use crate::render::table::{Cell, Table, TableColumn};
-use crate::report::blocks::labels;
 use oedometer_soil::wording::clock_time;
 
 /// Meshes that a class needs.
@@ -14,7 +14,7 @@ const MESHES_OF_A_CLASS: usize = 3;
 pub fn table_of(found: &ConvergenceTable) -> Table {
     let mut columns = vec![TableColumn::text("cells")];
     for column in &found.columns {
-        columns.push(TableColumn::number(labels::quantity(column.quantity)));
+        columns.push(TableColumn::number(words::quantity(column.quantity)));
         columns.push(TableColumn::number("rate"));
     }
     let mut rows: Vec<Vec<Cell>> = Vec::new();
@@ -43,7 +43,7 @@ pub fn table_of_finest(found: &FinestMeshes) -> Table {
         }
     }
     let mut columns = vec![TableColumn::text("series"), TableColumn::number("cells")];
-    columns.extend(quantities.iter().map(|quantity| TableColumn::number(labels::quantity(*quantity))));
+    columns.extend(quantities.iter().map(|quantity| TableColumn::number(words::quantity(*quantity))));
     let row = |(label, table): &(String, ConvergenceTable)| {
         let cells = table.cells.last().map_or(String::new(), usize::to_string);
         let of = |quantity: &Quantity| {
@@ -75,14 +75,14 @@ pub fn heading_of_finest(found: &FinestMeshes) -> String {
     let reference = found.series.first().map_or("", |(_, table)| table.reference.as_str());
     format!(
         "finest mesh of each series, with the rate to it in brackets, at the last output, against {}{shared}",
-        labels::solution(reference)
+        words::solution(reference)
     )
 }
 
 /// What the runs share, and at which time they are compared with what.
 pub fn heading(found: &ConvergenceTable) -> String {
     let (time, clock) = (number::time_factor(found.time_factor), clock_time(found.seconds));
-    format!("{}, T_v = {time} ({clock}), against {}", found.runs, labels::solution(&found.reference))
+    format!("{}, T_v = {time} ({clock}), against {}", found.runs, words::solution(&found.reference))
 }
 
 /// The class of each series in words.
@@ -91,7 +91,7 @@ pub fn classes(found: &ConvergenceTable) -> String {
         return format!("class: {MESHES_OF_A_CLASS} meshes are needed for one");
     }
     let class =
-        |column: &ConvergenceColumn| format!("{} {}", labels::quantity(column.quantity), column.class.name());
+        |column: &ConvergenceColumn| format!("{} {}", words::quantity(column.quantity), column.class.name());
     format!("class: {}", found.columns.iter().map(class).collect::<Vec<_>>().join(", "))
 }
 

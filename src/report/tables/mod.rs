@@ -6,5 +6,4 @@ pub mod golden_changes;
 pub mod measures;
 pub mod runs;
 pub mod scores;
-pub mod settlement;
 pub mod uncertainties;

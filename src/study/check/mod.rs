@@ -65,6 +65,8 @@ pub struct Study {
     pub solvers: Vec<ExternalSolver>,
     /// Whether those may be started: no file can say so of itself, only whoever calls this program.
     pub may_start_solvers: bool,
+    /// Whether some of its outputs are asked for as times.
+    pub has_dates: bool,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
     /// Whether all contenders of the race are among its methods.
@@ -208,6 +210,7 @@ impl Checker<'_> {
             base.column.load = load_of(strain, &base);
         }
         base.column.soils = self.soils(&file, &base);
+        let has_dates = file.output.times.is_some() || file.sweep.iter().any(|table| table.times.is_some());
         let outputs = self.outputs(&file.output.time_factors, &file.output.times);
         let outputs = outputs
             .unwrap_or_else(|| Outputs::at_factors(scene.default_time_factors(&base.column, &base.material)));
@@ -299,6 +302,7 @@ impl Checker<'_> {
             case_seconds,
             solvers: std::mem::take(&mut self.solvers),
             may_start_solvers: false,
+            has_dates,
             timing_repeats: timing_repeats.unwrap_or(0),
             is_race: self.is_race,
             not_applicable: std::mem::take(&mut self.not_applicable),

@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let file = typed_name(&study.name, &chosen);
             StudyResults::new(study, &report.records, tier_of(study, report))
                 .from_file(file)
-                .with_taken_over(TakenOver::sentences(&report.taken_over))
+                .with_taken_over(&report.taken_over)
         })
         .collect::<Vec<_>>();
     let making = Making {
@@ -107,7 +107,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let all = AllStudies::new(&results)?;
     let written = write_files(&arguments.out, (&results, &all), changes.as_deref(), making, start)?;
     if let [study] = all.studies.as_slice() {
-        print_data(text_of_answers(&study.answers)?.trim_start_matches('\n'))?;
+        print_data(text_of_answers(&study.answers, &study.plain.findings)?.trim_start_matches('\n'))?;
     }
     say!("the report is {}", written.display());
     let is_whole = reports.iter().all(|report| report.errors.is_empty());

@@ -4,13 +4,13 @@
 use crate::case::grouping::grouped;
 use crate::questions::blocks::fields::{FieldFinding, LoadCurves};
 use crate::questions::findings::{StiffnessFinding, StiffnessValue, Swept};
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::chart::{Chart, ChartAxis, ColourField, Rule, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::table::{Cell, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::blocks::figure_of;
-use crate::report::templates;
 
 /// Loads, fields and sweeps of a study in the plane; empty for a column.
 ///
@@ -76,7 +76,7 @@ fn sweep_blocks(study: &str, found: &[StiffnessFinding]) -> Result<Vec<Block>, R
             continue;
         }
         blocks.push(Block::Heading(words_of(swept).0.to_owned()));
-        blocks.push(Block::Paragraph(templates::sentence("sweep", last[0])?));
+        blocks.push(Block::Paragraph(sentence::sentence("sweep", last[0])?));
         let figures = Showing::ALL.map(|showing| sweep_figure(study, last, showing));
         blocks.push(Block::Figures(figures.into()));
         let tables = times

@@ -3,12 +3,13 @@
 use crate::case::quantity::Sample;
 use crate::questions::answers::QUOTED_CELLS;
 use crate::questions::blocks::profiles::{Consolidation, Isochrone, Isochrones};
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
+use crate::questions::words;
 use crate::render::chart::{Chart, ChartAxis, Series, Size, Style};
 use crate::render::page::{Block, Figure};
 use crate::render::{RenderError, number};
-use crate::report::blocks::{figure_of, labels};
-use crate::report::templates;
+use crate::report::blocks::figure_of;
 
 /// Profiles of a column; empty where there are none.
 ///
@@ -25,7 +26,7 @@ pub fn blocks(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     figures.extend(profiles.consolidation.as_ref().map(|curves| consolidation(&study.name, curves)));
     let mut blocks = vec![Block::Heading(heading), Block::Figures(figures)];
     if let Some(sampling) = &profiles.sampling {
-        blocks.push(Block::Paragraph(templates::sentence("sampling", sampling)?));
+        blocks.push(Block::Paragraph(sentence::sentence("sampling", sampling)?));
     }
     Ok(blocks)
 }
@@ -59,7 +60,7 @@ pub fn isochrones(study: &str, found: &Isochrones) -> Figure {
         ChartAxis::linear(depth_name(&found.reference)).between(0.0, 1.0).inverted(),
     );
     chart.size = Size::PANEL;
-    let reference = labels::theory(&found.reference);
+    let reference = words::theory(&found.reference);
     for (slot, curve) in found.curves.iter().enumerate() {
         let theory = curve.theory.clone();
         chart.series.push(if has_waves {
@@ -100,7 +101,7 @@ pub fn consolidation(study: &str, found: &Consolidation) -> Figure {
             .inverted(),
     );
     chart.size = Size::PANEL;
-    chart.series.push(Series::theory(labels::theory(&found.reference), found.theory.clone()));
+    chart.series.push(Series::theory(words::theory(&found.reference), found.theory.clone()));
     for (slot, run) in found.runs.iter().enumerate() {
         let series = Series::new(run.method.as_str(), run.points.clone());
         chart.series.push(series.style(Style::Markers).slot(slot));

@@ -2,6 +2,7 @@
 
 use crate::case::grouping::distinct;
 use crate::questions::blocks::checks::{EndFinding, GroupFinding, MeasureFinding, WorstCheck};
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
 use crate::render::page::Block;
 use crate::render::table::{Cell, Mood, Table, TableColumn, columns};
@@ -9,7 +10,6 @@ use crate::render::{RenderError, number};
 use crate::report::blocks::maps;
 use crate::report::tables::measures::bound_cell;
 use crate::report::tables::{runs, uncertainties};
-use crate::report::templates;
 use std::collections::HashMap;
 
 /// Tables of all runs under their heading.
@@ -63,7 +63,7 @@ pub fn balances(study: &StudyFindings) -> Result<Vec<Block>, RenderError> {
     if study.is_stability_alone {
         return Ok(Vec::new());
     }
-    let note = templates::sentence("balances", &())?;
+    let note = sentence::sentence("balances", &())?;
     let table = worst_checks(&found.checks, &found.groups).note(note);
     Ok(vec![Block::Details {
         summary: "Start checks, balances and dimensionless groups".to_owned(),

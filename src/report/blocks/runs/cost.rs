@@ -5,13 +5,14 @@ use crate::case::IntegratorKind;
 use crate::case::grouping::distinct;
 use crate::questions::blocks::timing::TimingFinding;
 use crate::questions::blocks::work::{NamedLine, PeerRow, PeersFinding, WallTimeFinding, WorkFinding};
+use crate::questions::sentence;
 use crate::questions::study_findings::StudyFindings;
+use crate::questions::words;
 use crate::render::chart::{Chart, ChartAxis, Naming, PointName, Series, Size, slots};
 use crate::render::page::Block;
 use crate::render::table::{Cell, Table, columns};
 use crate::render::{RenderError, number};
-use crate::report::blocks::{figure_of, labels};
-use crate::report::templates;
+use crate::report::blocks::figure_of;
 
 /// Error over point updates and over wall time, with the runs that had the machine to themselves.
 ///
@@ -46,18 +47,18 @@ pub fn work_blocks(
         let mut chart = Chart::new(
             "Error against work",
             ChartAxis::log10("point updates (points × steps)"),
-            ChartAxis::log10(labels::error_axis(found.quantity)),
+            ChartAxis::log10(words::error_axis(found.quantity)),
         );
-        let words = labels::measured(found.quantity, found.sample);
-        let (time, end) = (number::time_factor(found.time_factor), labels::subtitle_end(&found.shared));
+        let words = words::measured(found.quantity, found.sample);
+        let (time, end) = (number::time_factor(found.time_factor), words::subtitle_end(&found.shared));
         chart.subtitle = Some(format!("{words}, T_v = {time}{end}"));
         let line = |line: &NamedLine| Series::new(line.name.clone(), line.points.clone());
         chart.series.extend(found.lines.iter().map(line));
-        let caption = templates::sentence("work", found)?;
+        let caption = sentence::sentence("work", found)?;
         blocks.push(Block::Heading("Error against work".to_owned()));
         blocks.push(Block::Figure(figure_of(study, "work", chart, caption)));
         if let Some(series) = &found.drawn {
-            blocks.push(Block::Paragraph(labels::drawn(series)?));
+            blocks.push(Block::Paragraph(words::drawn(series)?));
         }
     }
     if !timing.is_empty() {
@@ -71,16 +72,16 @@ fn timing_table(timing: &[TimingFinding], measured: &WorkFinding) -> Table {
         vec![
             Cell::Code(run.case.clone()),
             Cell::of(run.error, Cell::Error, "no error was measured"),
-            labels::counted(run.steps),
-            labels::counted(run.point_updates),
+            words::counted(run.steps),
+            words::counted(run.point_updates),
             Cell::Seconds(run.median),
             format!("{:.3} … {:.3} s, {} runs", run.least, run.most, run.runs).into(),
-            Cell::of(run.nanoseconds_per_update, Cell::Number, labels::NOT_COUNTED),
+            Cell::of(run.nanoseconds_per_update, Cell::Number, words::NOT_COUNTED),
         ]
     });
     let title = format!(
         "Cost, with the error of the {} at T_v = {}",
-        labels::measured(measured.quantity, measured.sample),
+        words::measured(measured.quantity, measured.sample),
         number::time_factor(measured.time_factor)
     );
     let header =
@@ -152,7 +153,7 @@ fn add_named(chart: &mut Chart, series: Series) {
 /// # Errors
 /// If the template cannot be filled.
 pub fn caption(found: &WallTimeFinding) -> Result<String, RenderError> {
-    templates::sentence("wall-time", found)
+    sentence::sentence("wall-time", found)
 }
 
 fn cheapest_table(found: &WallTimeFinding) -> Table {
@@ -164,8 +165,8 @@ fn cheapest_table(found: &WallTimeFinding) -> Table {
                 Cell::Error(run.error),
                 Cell::Number(1e3 * run.seconds),
                 Cell::Number(1e3 * run.deviation),
-                labels::counted(run.steps),
-                labels::counted(run.point_updates),
+                words::counted(run.steps),
+                words::counted(run.point_updates),
             ]
         }));
         row.resize(7, Cell::missing("no timed run is within the tolerance"));

@@ -2,9 +2,9 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::questions::blocks::drawn::DrawnSeries;
+use crate::questions::sentence;
 use crate::render::table::Cell;
 use crate::render::{RenderError, number};
-use crate::report::templates;
 use crate::study::expectation::{Axis, NEXT_FINER};
 use oedometer_convergence::Class;
 
@@ -150,7 +150,7 @@ pub fn error_axis(of: Quantity) -> String {
 /// # Errors
 /// If the template cannot be filled.
 pub fn drawn(series: &DrawnSeries) -> Result<String, RenderError> {
-    templates::sentence("drawn", series)
+    sentence::sentence("drawn", series)
 }
 
 #[cfg(test)]

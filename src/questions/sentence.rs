@@ -1,15 +1,17 @@
-//! Sentences from templates: files in `templates/`, filled with findings. Findings hold numbers and names, templates words.
+//! Sentences from templates: files beside the questions and in `templates/`, filled with facts. Facts are numbers and names,
+//! templates words.
 
 use crate::case::Quantity;
+use crate::questions::words;
+use crate::render::marked_text::paragraphs;
 use crate::render::{RenderError, number};
-use crate::report::blocks::labels;
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior, Value};
 use oedometer_soil::wording::{clock_time, count_of, duration, typed};
 use serde::Serialize;
 
 /// The templates by their names.
-const TEMPLATES: [(&str, &str); 25] = [
+const TEMPLATES: [(&str, &str); 24] = [
     ("audit", include_str!("../../templates/audit.md")),
     ("balances", include_str!("../../templates/balances.md")),
     ("changes", include_str!("../../templates/changes.md")),
@@ -19,7 +21,6 @@ const TEMPLATES: [(&str, &str); 25] = [
     ("critical-steps", include_str!("../../templates/critical-steps.md")),
     ("double-point", include_str!("../../templates/double-point.md")),
     ("drawn", include_str!("../../templates/drawn.md")),
-    ("locking", include_str!("../../templates/locking.md")),
     ("mapping-back", include_str!("../../templates/mapping-back.md")),
     ("paper", include_str!("../../templates/paper.md")),
     ("peers", include_str!("../../templates/peers.md")),
@@ -44,7 +45,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("amount", |value: f64, unit: String| number::with_unit(value, &unit));
     environment.add_filter("bound", |bound: f64| format!("{} %", number::number(100.0 * bound)));
     environment.add_filter("capital_quantity", |quantity: Serde<Quantity>| {
-        labels::capitalised(labels::quantity(quantity.0))
+        words::capitalised(words::quantity(quantity.0))
     });
     environment.add_filter("count", |count: usize, singular: String, plural: String| {
         count_of(count, &singular, &plural)
@@ -55,6 +56,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
     environment.add_filter("error_percent", number::percent);
     environment.add_filter("fine_percent", |share: f64| format!("{:.2} %", 100.0 * share));
     environment.add_filter("millimetres", |metres: f64| number::with_unit(1e3 * metres, "mm"));
+    environment.add_filter("names", |names: Vec<String>, most: Option<usize>| in_words(&names, most));
     environment.add_filter("number", number::number);
     environment.add_filter("order", number::order);
     environment.add_filter("percent", number::rounded_percent);
@@ -64,7 +66,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, RenderError> {
         let sign = if share < 0.0 { "−" } else { "+" };
         format!("{sign}{:.1} %", 100.0 * share.abs())
     });
-    environment.add_filter("solution", |reference: String| labels::solution(&reference));
+    environment.add_filter("solution", |reference: String| words::solution(&reference));
     environment.add_filter("step", |label: String| {
         let seconds = label.strip_prefix("seconds=").and_then(|text| text.parse().ok());
         seconds.map_or(label, |seconds| format!("Δt = {} s", number::number(seconds)))
@@ -86,6 +88,22 @@ pub(crate) fn render(
     Ok(environment.get_template(name)?.render(Value::from(Serde(findings)))?.trim().to_owned())
 }
 
+/// A template of a question, filled with its facts: one line a paragraph.
+pub(crate) fn filled(template: &str, facts: &serde_json::Value) -> Result<String, RenderError> {
+    let text = environment()?.render_str(template, Value::from(Serde(facts)))?;
+    Ok(paragraphs(&text).join("\n\n"))
+}
+
+/// Names in a sentence, as code: all of them, or so many and the number of the others.
+fn in_words(names: &[String], most: Option<usize>) -> String {
+    let shown = &names[..most.unwrap_or(names.len()).min(names.len())];
+    let list = shown.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match names.len() - shown.len() {
+        0 => list,
+        others => format!("{list} and {}", count_of(others, "other", "others")),
+    }
+}
+
 /// A template that needs no more than the shared filters.
 pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, RenderError> {
     render(&environment()?, name, findings)
@@ -94,14 +112,15 @@ pub(crate) fn sentence(name: &str, findings: &impl Serialize) -> Result<String, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::questions::list::QUESTIONS;
     use regex_lite::Regex;
 
     #[test]
     fn a_template_without_its_finding_is_an_error() {
-        let environment = environment().expect("templates of this program");
+        let environment = every_filter();
         // What needs no finding says the same on every page.
         let fixed = ["balances", "mapping-back", "proposed", "race-rules", "work"];
-        let filled = TEMPLATES.map(|(name, _)| name).into_iter().filter(|name| !fixed.contains(name));
+        let filled = every_template().into_iter().map(|(name, _)| name).filter(|name| !fixed.contains(name));
         for name in filled.chain(["no such template"]) {
             let told = render(&environment, name, &()).expect_err(name).to_string();
             assert!(told.starts_with("a sentence of the page cannot be written: "), "{told}");
@@ -120,8 +139,18 @@ mod tests {
         serde_json::from_str(include_str!("../../templates/examples.json")).expect("examples")
     }
 
+    /// Every template by its name, those of the questions among them.
+    fn every_template() -> Vec<(&'static str, &'static str)> {
+        TEMPLATES.into_iter().chain(QUESTIONS.iter().map(|one| (one.id, one.template))).collect()
+    }
+
+    /// All templates and their filters.
     fn every_filter() -> Environment<'static> {
-        environment().expect("templates of this program")
+        let mut environment = environment().expect("templates of this program");
+        for question in QUESTIONS {
+            environment.add_template(question.id, question.template).expect(question.id);
+        }
+        environment
     }
 
     #[test]
@@ -129,6 +158,7 @@ mod tests {
         let environment = every_filter();
         for (place, Example { template, findings, sentence: wanted }) in examples().into_iter().enumerate() {
             let told = render(&environment, &template, &findings).expect(&template);
+            let told = paragraphs(&told).join("\n\n");
             assert_eq!(told, wanted, "example {}", place + 1);
         }
     }
@@ -183,15 +213,48 @@ mod tests {
     #[test]
     fn an_example_takes_every_branch_of_every_template() {
         let untaken: Vec<String> =
-            TEMPLATES.into_iter().flat_map(|(name, text)| untaken(name, text)).collect();
+            every_template().into_iter().flat_map(|(name, text)| untaken(name, text)).collect();
         assert!(untaken.is_empty(), "{}", untaken.join("\n"));
         let all = examples();
         let is_lacking = |(name, _): &(&str, &str)| all.iter().all(|example| example.template != *name);
-        let lacking: Vec<_> = TEMPLATES.into_iter().filter(is_lacking).map(|(name, _)| name).collect();
+        let lacking: Vec<_> = every_template().into_iter().filter(is_lacking).map(|(name, _)| name).collect();
         assert!(lacking.is_empty(), "without an example: {lacking:?}");
         let (text, marks) = marked("{% if a %}x{% elif b %}y{% endif %}{%- for c in d -%}z{% endfor %}");
         let whole =
             "{% if a %}⟦1⟧x{% elif b %}⟦2⟧y{% else %}⟦3⟧{% endif %}{%- for c in d -%}⟦4⟧z{% endfor %}";
         assert_eq!((text.as_str(), marks), (whole, 4));
+    }
+
+    #[test]
+    fn a_list_of_names_ends_with_the_number_of_those_that_are_left_out() {
+        let names = ["a", "b", "c"].map(str::to_owned);
+        for (most, told) in
+            [(None, "`a`, `b`, `c`"), (Some(3), "`a`, `b`, `c`"), (Some(2), "`a`, `b` and 1 other")]
+        {
+            assert_eq!(in_words(&names, most), told);
+        }
+    }
+
+    /// What is wrong with the template of a question: long lines, many conditions, and digits that are no fact.
+    fn complaints(template: &str) -> Vec<String> {
+        let tags = Regex::new(r"(?s)\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}").expect("a pattern");
+        let words = tags.replace_all(template, "");
+        // Names that have a digit.
+        let words = ["L_2", "L2"].iter().fold(words.into_owned(), |words, name| words.replace(name, ""));
+        let long = template.lines().filter(|line| line.chars().count() > 120).map(str::to_owned);
+        let numbers = words.lines().filter(|line| line.contains(|c: char| c.is_ascii_digit()));
+        let many = (template.matches("{% if").count() > 3).then(|| "more than three conditions".to_owned());
+        long.chain(numbers.map(str::to_owned)).chain(many).collect()
+    }
+
+    #[test]
+    fn templates_of_questions_are_short_and_have_no_number_of_their_own() {
+        for question in QUESTIONS {
+            assert_eq!(complaints(question.template), [""; 0], "{}", question.id);
+        }
+        let planted = format!("at 12 cells {{{{ cells }}}}\n{}", "x".repeat(121));
+        assert_eq!(complaints(&planted).len(), 2);
+        assert_eq!(complaints(&"{% if a %}{% endif %}".repeat(4)).len(), 1);
+        assert_eq!(complaints("{{ a[0]|order }} of L_2"), [""; 0]);
     }
 }

@@ -1,0 +1,56 @@
+//! The questions in the order of a reader, and their answers.
+
+use crate::questions::finding::{Finding, Place, Question};
+use crate::questions::locking::LOCKING;
+use crate::questions::settlement::SETTLEMENT;
+use crate::questions::study_results::StudyResults;
+use oedometer_exact::ExactError;
+use rayon::prelude::*;
+use schemars::{Schema, SchemaGenerator, json_schema};
+use serde_json::json;
+
+/// Every question, in the order of a page.
+pub static QUESTIONS: &[&Question] = &[&SETTLEMENT, &LOCKING];
+
+/// What studies answer at a place, in the order of the questions.
+///
+/// # Errors
+/// When a reference refuses a case: that of the first question, on any number of threads.
+pub fn answers(studies: &[StudyResults<'_>], place: Place) -> Result<Vec<Finding>, ExactError> {
+    let asked: Vec<_> = QUESTIONS
+        .par_iter()
+        .filter(|question| question.stands_at(place))
+        .map(|question| (question.ask)(studies))
+        .collect();
+    asked.into_iter().filter_map(Result::transpose).collect()
+}
+
+/// What `findings.json` has of the answers.
+pub fn schema(generator: &mut SchemaGenerator) -> Schema {
+    let table = json!({
+        "type": "object",
+        "properties": {
+            "file": { "type": ["string", "null"], "description": "Name of its file." },
+            "title": { "type": "string", "description": "What it is of." },
+            "columns": { "type": "array", "items": { "type": "string" }, "description": "Headings." },
+            "rows": { "type": "array", "items": { "type": "array" }, "description": "Numbers, words, or null where there is nothing." },
+        },
+        "required": ["file", "title", "columns", "rows"],
+    });
+    let of_question = |question: &&Question| {
+        let facts = (question.facts)(generator);
+        json_schema!({
+            "type": "object",
+            "properties": {
+                "question": { "const": question.id, "description": question.heading },
+                "studies": { "type": "array", "items": { "type": "string" }, "description": "Studies that show it." },
+                "answer": { "type": "string", "description": "The answer in words." },
+                "facts": facts,
+                "tables": { "type": "array", "items": table, "description": "What shows it." },
+            },
+            "required": ["question", "studies", "answer", "facts", "tables"],
+        })
+    };
+    let answers: Vec<Schema> = QUESTIONS.iter().map(of_question).collect();
+    json_schema!({ "type": "array", "items": { "anyOf": answers } })
+}

@@ -1,0 +1,219 @@
+//! Who locks? The errors of every method over Poisson's ratio, where a study sweeps it in the plane.
+
+use crate::questions::comparison::stiffness_sweep::{KEPT, StiffnessSweep, SweepRow, SweptStiffness};
+use crate::questions::finding::{Finding, Part, Place, Question, best};
+use crate::questions::study_results::StudyResults;
+use crate::render::number;
+use crate::render::table::{Cell, Mood, Table, columns};
+use oedometer_exact::ExactError;
+use oedometer_soil::wording::typed;
+use std::cmp::Reverse;
+
+/// Who locks?
+pub static LOCKING: Question = Question {
+    id: "locking",
+    heading: "Who locks?",
+    template: include_str!("locking.md"),
+    places: &[Place::Terminal, Place::Study, Place::Report],
+    facts: |schemas| schemas.subschema_for::<Facts>(),
+    ask,
+};
+
+/// Every number and name of the sentence.
+#[derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+struct Facts {
+    /// Cells over the height.
+    cells: usize,
+    /// Time factor, the last of the outputs.
+    time_factor: f64,
+    /// A result is kept where displacement and pressure are off by less than this.
+    kept_within: f64,
+    /// Largest Poisson's ratio.
+    largest_ratio: f64,
+    /// Number of methods.
+    methods: usize,
+    /// Number of those that keep their result at every ratio.
+    kept: usize,
+    /// Their names.
+    kept_methods: Vec<String>,
+}
+
+/// The study that sweeps Poisson's ratio with most methods, the first of equals, answers.
+fn ask(studies: &[StudyResults<'_>]) -> Result<Option<Finding>, ExactError> {
+    let most = best(studies, |one| {
+        if !one.study.scene.shows_locking() {
+            return Ok(None);
+        }
+        let sweep = StiffnessSweep::of(one.study, one.records, SweptStiffness::Skeleton)?;
+        Ok(sweep.map(|sweep| (sweep.rows.len(), sweep)))
+    })?;
+    Ok(most.and_then(|(one, sweep)| answer(&one.study.name, &sweep)))
+}
+
+/// The answer of one sweep at its last output; methods that keep their result stand first.
+fn answer(study: &str, sweep: &StiffnessSweep) -> Option<Finding> {
+    let (time_factor, largest_ratio) = (*sweep.time_factors.last()?, *sweep.values.last()?);
+    let mut rows: Vec<&SweepRow> = sweep.at(time_factor).collect();
+    rows.sort_by_key(|row| Reverse(row.lost_from().unwrap_or(usize::MAX)));
+    let kept = rows.iter().filter(|row| keeps(row));
+    let kept_methods: Vec<String> = kept.map(|row| row.method.to_string()).collect();
+    let (cells, methods, kept) = (sweep.cells, rows.len(), kept_methods.len());
+    let facts = Facts { cells, time_factor, kept_within: KEPT, largest_ratio, methods, kept, kept_methods };
+    Some(LOCKING.answer([study], &facts).with(Part::Table(table(&rows, &sweep.values))))
+}
+
+/// Whether a method ran at the largest ratio and lost its result at none.
+fn keeps(row: &SweepRow) -> bool {
+    let ran = row.found.last().is_some_and(|_| row.errors(row.found.len() - 1).iter().all(Option::is_some));
+    ran && row.lost_from().is_none() && row.failed_from().is_none()
+}
+
+/// The errors of all methods at the smallest and the largest ratio.
+fn table(rows: &[&SweepRow], ratios: &[f64]) -> Table {
+    let last = ratios.len() - 1;
+    let [least, most] = [0, last].map(|place| typed(ratios[place]));
+    let limit = number::number(100.0 * KEPT);
+    let header = format!(
+        "method | above {limit} % | > displacement, ν = {least} | > ν = {most} | > pressure, ν = {least} | > ν = {most}"
+    );
+    let cells = rows.iter().map(|row| {
+        let ([u_least, p_least], [u_most, p_most]) = (row.errors(0), row.errors(last));
+        let errors = [u_least, u_most, p_least, p_most];
+        let errors = errors.map(|error| Cell::of(error, Cell::Error, "no result"));
+        [Cell::Code(row.method.to_string()), loss(row, ratios)].into_iter().chain(errors).collect()
+    });
+    Table::of("Errors over Poisson's ratio", columns(&header), cells).file("locking").note(format!(
+        "relative L2 errors of the nodal displacement and of the pressure at the points; above {limit} %: either of them"
+    ))
+}
+
+/// What becomes of a result, in a few words.
+fn loss(row: &SweepRow, ratios: &[f64]) -> Cell {
+    let at = |place: usize| typed(ratios[place]);
+    match (row.lost_from(), row.failed_from()) {
+        (Some(place), _) => Cell::Verdict(Mood::Fail, format!("from ν = {}", at(place))),
+        (None, Some((place, how))) => {
+            Cell::Verdict(Mood::Fail, format!("failed at ν = {}: {how}", at(place)))
+        }
+        (None, None) if keeps(row) => Cell::Verdict(Mood::Pass, "never".to_owned()),
+        (None, None) => Cell::missing("not run at the largest ratio"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::runner::solved;
+    use crate::case::SolverName;
+    use crate::case::planned::Tier;
+    use oedometer_mpm::method::Method;
+
+    /// Oscillation does not count.
+    fn row(name: &str, errors: [[Option<f64>; 2]; 3]) -> SweepRow {
+        SweepRow {
+            method: SolverName::Own(Method::named(name).expect("a method")),
+            time_factor: 0.1,
+            found: errors.map(|[displacement, pressure]| [displacement, pressure, Some(9.0)]).to_vec(),
+            failed: vec![None; 3],
+        }
+    }
+
+    fn found(rows: Vec<SweepRow>) -> Finding {
+        let sweep = StiffnessSweep {
+            stiffness: SweptStiffness::Skeleton,
+            cells: 4,
+            values: vec![0.2, 0.4, 0.49],
+            time_factors: vec![0.1],
+            rows,
+        };
+        answer("s", &sweep).expect("methods")
+    }
+
+    #[test]
+    fn a_result_is_lost_with_either_quantity_from_the_first_ratio_on() {
+        let (kept, lost) = (Some(0.05), Some(0.2));
+        let sound = [[kept; 2]; 3];
+        assert_eq!(row("MPM", sound).lost_from(), None);
+        assert_eq!(row("MPM", [[Some(0.099), Some(0.0)]; 3]).lost_from(), None);
+        for bad in [
+            [lost, kept],
+            [kept, lost],
+            [lost, lost],
+            [None, kept],
+            [kept, None],
+            [Some(f64::NAN), kept],
+            [kept, Some(f64::NAN)],
+            [Some(KEPT), kept],
+            [kept, Some(KEPT)],
+        ] {
+            for place in 0..3 {
+                let mut errors = sound;
+                errors[place] = bad;
+                assert_eq!(row("MPM", errors).lost_from(), Some(place), "{errors:?}");
+                errors[2] = [lost; 2];
+                assert_eq!(row("MPM", errors).lost_from(), Some(place), "{errors:?}");
+            }
+        }
+        let mut failed = row("B2", [[kept, kept], [kept, kept], [None, None]]);
+        failed.failed[2] = Some("unstable at step 3".to_owned());
+        let found = found(vec![
+            row("MPM", [[kept, kept], [kept, Some(0.25)], [Some(3.2), kept]]),
+            row("GIMP", sound),
+            row("GIMP-SRI", [[kept, kept], [kept, kept], [Some(4.6), Some(0.1)]]),
+            row("VP", [[kept, kept], [Some(0.5), kept], [kept, kept]]),
+            failed,
+            row("GIMP-mean", [[kept, kept], [kept, kept], [None, None]]),
+        ]);
+        let shown: Vec<[String; 2]> =
+            found.tables()[0].rows.iter().map(|row| [row[0].show(), row[1].show()]).collect();
+        let wanted = [
+            ["GIMP", "✓ never"],
+            ["B2", "✗ failed at ν = 0.49: unstable at step 3"],
+            ["GIMP-mean", "–"],
+            ["GIMP-SRI", "✗ from ν = 0.49"],
+            ["MPM", "✗ from ν = 0.4"],
+            ["VP", "✗ from ν = 0.4"],
+        ];
+        assert_eq!(shown, wanted, "those that keep it first");
+        assert_eq!(
+            found.sentence().expect("a sentence"),
+            "1 of 6 methods on 4 cells keeps displacement and pressure within 10 % up to ν = 0.49 at T_v = 0.1: `GIMP`."
+        );
+    }
+
+    #[test]
+    fn every_error_stands_under_its_quantity_and_ratio() {
+        let errors = [[0.01, 0.02], [0.03, 0.04], [0.05, 0.06]].map(|both| both.map(Some));
+        let found = found(vec![row("MPM", errors), row("GIMP", [[Some(0.01), None]; 3])]);
+        let rows = &found.tables()[0].rows;
+        assert_eq!(rows[0][2..], [0.01, 0.05, 0.02, 0.06].map(Cell::Error));
+        assert_eq!(rows[1][4], Cell::missing("no result"));
+    }
+
+    #[test]
+    fn of_several_studies_the_one_with_most_methods_answers_and_at_its_last_time() {
+        let study = |name: &str, methods: &str| {
+            let text = format!(
+                "title = 't'\nscene = 'cosine-layer'\noutput.time_factors = [0.1, 0.2]\n[[sweep]]\nmethod = {methods}\n\
+                 integrator = ['implicit']\ncells = [2]\npoissons_ratio = [0.25, 0.3, 0.4]\ntime_step = [{{ growth = 0.5 }}]\n"
+            );
+            solved(name, &text)
+        };
+        let all = [
+            study("one", "['GIMP']"),
+            study("two", "['GIMP', 'GIMP-SRI']"),
+            study("as-many", "['MPM', 'GIMP']"),
+        ];
+        for places in [&[0, 1, 2][..], &[1, 0], &[1, 2, 0]] {
+            let results: Vec<StudyResults<'_>> = places
+                .iter()
+                .map(|place| StudyResults::new(&all[*place].0, &all[*place].1, Tier::Full))
+                .collect();
+            let found = ask(&results).expect("sound cases").expect("who locks");
+            let facts: Facts = serde_json::from_value(found.facts).expect("facts");
+            assert_eq!((found.studies, facts.methods, facts.cells), (vec!["two".to_owned()], 2, 2));
+            assert_eq!(facts.time_factor, 0.2);
+        }
+        assert!(ask(&[]).expect("no case").is_none());
+    }
+}
