@@ -9,6 +9,7 @@ pub mod job_list;
 pub mod output;
 pub mod place;
 pub mod progress;
+pub mod running;
 pub mod slurm;
 pub mod study_files;
 pub mod trust;

@@ -10,6 +10,8 @@ use crate::study::shipped::{name_of, shipped_names, shipped_study};
 use oedometer_formats::input_file::read_text;
 use std::path::{Path, PathBuf};
 
+/// Folder of results where none is named.
+pub const DEFAULT_RESULTS: &str = "out";
 /// Name of the folder of the golden values.
 pub const GOLDEN: &str = "golden";
 /// Name of the folder of a project's studies.
@@ -184,6 +186,65 @@ pub fn chosen_as<'a>(study: &str, chosen: &'a [PathBuf]) -> Option<&'a Path> {
 /// Whether a chosen study comes from inside the program.
 pub fn is_shipped(study: &str, chosen: &[PathBuf]) -> bool {
     chosen_as(study, chosen).is_some_and(|path| !path.is_file() && shipped_study(study).is_some())
+}
+
+/// The repository around the current folder, and the path of its golden values from the root.
+pub fn repository_with(golden: Option<&Path>, studies: &[String]) -> anyhow::Result<(Repository, String)> {
+    let here = std::env::current_dir()?;
+    let repository = Repository::around(&here).map_err(|error| Ended::usage(error.to_string()))?;
+    let root = repository.root().canonicalize()?;
+    let given = match golden {
+        Some(folder) => folder.to_owned(),
+        None => Some(folder_of_golden(None))
+            .filter(|folder| folder.is_dir())
+            .map_or_else(|| only_golden_folder(&repository, &root, studies), Ok)?,
+    };
+    let whole = here.canonicalize()?.join(given);
+    let whole = whole.canonicalize().unwrap_or(whole);
+    let inside = whole.strip_prefix(&root).map_err(|_| {
+        Ended::usage(format!("{} lies outside the repository {}", whole.display(), root.display()))
+    })?;
+    let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
+    if repository.is_dirty(&["--", &folder]) {
+        say!("{folder}/ has uncommitted changes, which no revision has");
+    }
+    Ok((repository, folder))
+}
+
+/// The one folder of golden values in a repository that has none here or above: `accept` writes beside a study.
+///
+/// # Errors
+/// When there are several.
+fn only_golden_folder(repository: &Repository, root: &Path, studies: &[String]) -> anyhow::Result<PathBuf> {
+    let pattern = format!("**/{GOLDEN}/*.csv");
+    let listed = repository.run(&[
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+        "--",
+        &format!(":(glob){pattern}"),
+    ])?;
+    let is_named = |path: &&Path| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        studies.is_empty() || studies.iter().any(|study| *study == name)
+    };
+    let files = listed.split_terminator('\0').map(Path::new).filter(is_named);
+    let folders: BTreeSet<&Path> = files.filter_map(Path::parent).collect();
+    match folders.iter().collect::<Vec<_>>()[..] {
+        [] => Ok(folder_of_golden(None)),
+        [only] => Ok(root.join(only)),
+        ref several => {
+            let several: Vec<String> =
+                several.iter().map(|folder| format!("--golden {}", root.join(folder).display())).collect();
+            Err(Ended::usage(format!(
+                "golden values lie in {} folders: give one of them, {}",
+                several.len(),
+                several.join(" or ")
+            )))
+        }
+    }
 }
 
 #[cfg(test)]

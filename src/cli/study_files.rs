@@ -106,6 +106,40 @@ fn read_stream(path: &Path) -> std::io::Result<String> {
     Ok(text)
 }
 
+/// Reads and checks study files; what is odd about them goes to standard error.
+pub fn load(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
+    let studies = checked(paths)?;
+    studies.iter().for_each(tell_warnings);
+    Ok(studies)
+}
+
+/// The same after a run: warnings about a study with results in a folder were printed then.
+pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<Study>> {
+    let studies = checked(paths)?;
+    studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);
+    Ok(studies)
+}
+
+/// Studies that can run, with the mappings of their solvers.
+fn checked(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
+    let sources = read_all(paths)?;
+    let of = |source: &StudySource| {
+        let study = Study::check_for(source, Purpose::Solving)?;
+        for solver in &study.solvers {
+            mapping_of(solver, Axes::of(study.scene)).map_err(|error| Ended::usage(error.to_string()))?;
+        }
+        Ok(study)
+    };
+    sources.iter().map(of).collect()
+}
+
+/// What is odd about a study, on standard error.
+pub fn tell_warnings(study: &Study) {
+    for warning in &study.warnings {
+        say!("{warning}");
+    }
+}
+
 /// Cases up to which a study is small: its records are held in memory while it runs, and all its tables are written, by
 /// every share too. Of more cases the tables of profiles and of settlement are long.
 const MOST_CASES_OF_SMALL: usize = 64;

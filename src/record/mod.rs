@@ -8,6 +8,7 @@ pub mod csv;
 pub mod field_files;
 pub mod named_cases;
 pub mod pack;
+pub mod printed;
 pub mod provenance;
 pub mod race_errors;
 pub mod reached;

@@ -110,45 +110,6 @@ pub(crate) fn markdown_target(target: &str) -> Cow<'_, str> {
     }
 }
 
-/// Text for LaTeX with real subscripts and superscripts.
-pub(crate) fn latex_text(text: &str) -> String {
-    let piece = |run: ScriptRun| match run.level {
-        ScriptLevel::Base => latex(&run.text),
-        ScriptLevel::Sub => format!("\\textsubscript{{{}}}", latex(&run.text)),
-        ScriptLevel::Super => format!("\\textsuperscript{{{}}}", latex(&run.text)),
-    };
-    runs(text).into_iter().map(piece).collect()
-}
-
-/// Text for LaTeX without scripts: commands are escaped, symbols become mathematics.
-pub(crate) fn latex(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars().filter(|c| !c.is_control()) {
-        match c {
-            c if is_unseen(c) => out.push('?'),
-            '\\' => out.push_str("\\textbackslash{}"),
-            '~' => out.push_str("\\textasciitilde{}"),
-            '^' => out.push_str("\\textasciicircum{}"),
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
-                out.push('\\');
-                out.push(c);
-            }
-            '−' => out.push_str("$-$"),
-            '±' => out.push_str("$\\pm$"),
-            '×' => out.push_str("$\\times$"),
-            '≤' => out.push_str("$\\le$"),
-            '…' => out.push_str("\\ldots{}"),
-            'σ' => out.push_str("$\\sigma$"),
-            'ν' => out.push_str("$\\nu$"),
-            'Δ' => out.push_str("$\\Delta$"),
-            '′' => out.push_str("$'$"),
-            '\u{2011}' => out.push('-'),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,7 +120,6 @@ mod tests {
             html("<a href=\"x\">T_v & 10⁻³"),
             "&lt;a href=&quot;x&quot;&gt;T<sub>v</sub> &amp; 10<sup>−3</sup>"
         );
-        assert_eq!(latex_text("T_v = 0.1 & h²"), "T\\textsubscript{v} = 0.1 \\& h\\textsuperscript{2}");
         assert_eq!(plain_html("a\u{0}'b"), "a\u{fffd}&#39;b");
         assert_eq!(markdown("a|b *c* <i> T_v _x_"), "a\\|b \\*c\\* &lt;i&gt; T_v \\_x\\_");
         assert_eq!(markdown("a\u{1b}[2J\u{202e}b"), "a\u{fffd}\\[2J\u{fffd}b");
@@ -188,7 +148,7 @@ mod tests {
         {
             let text = format!("a{unseen}[31m\n\tb");
             assert_eq!(document(&text), "a\u{fffd}[31m\n\tb", "{unseen:?}");
-            let shown = [one_line(&text), html(&text), plain_html(&text), markdown(&text), latex(&text)];
+            let shown = [one_line(&text), html(&text), plain_html(&text), markdown(&text)];
             assert!(shown.iter().all(|shown| !shown.contains(unseen)), "{unseen:?}: {shown:?}");
         }
         let plain = "T_v = 0.1 − σ′ über 水 👩\u{200d}🔬\n\t";
@@ -197,12 +157,6 @@ mod tests {
         for unseen in ['\u{61c}', '\u{200e}', '\u{202a}', '\u{2069}', '\u{feff}', '\u{e0000}', '\u{e007f}'] {
             assert_eq!(document(&format!("a{unseen}b")), "a\u{fffd}b", "{unseen:?}");
         }
-        assert_eq!(
-            latex("\\~^{#$%−±×≤…"),
-            r"\textbackslash{}\textasciitilde{}\textasciicircum{}\{\#\$\%$-$$\pm$$\times$$\le$\ldots{}"
-        );
-        assert_eq!(latex("σνΔ′\u{2011}\u{202e}"), r"$\sigma$$\nu$$\Delta$$'$-?");
-        assert_eq!(latex_text("E₀"), r"E\textsubscript{0}");
         assert_eq!(markdown("a\\b~c$d`e+ -"), r"a\\b\~c\$d\`e+ -");
     }
 

@@ -1,14 +1,11 @@
-//! Results over time as tables and pages: two states of studies, and golden values over commits.
+//! Results over time as tables: two states of studies, and golden values over commits.
 
 use crate::golden::compare::{Change, Difference};
-use crate::history::comparison::{Arrow, Seconds, StudyComparison, Trend};
+use crate::history::comparison::{Seconds, StudyComparison, Trend};
 use crate::history::timeline::{Step, Timeline};
-use crate::render::chart::{Chart, ChartAxis, Series, Style};
 use crate::render::number;
-use crate::render::page::{Block, Figure, Page, Section};
 use crate::render::table::{Cell, Mood, Table, columns};
 use crate::report::tables::golden_changes::{input_cells, summary};
-use oedometer_soil::elementary;
 use oedometer_soil::wording::{count_of, short};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -268,129 +265,6 @@ pub(crate) fn timeline_summary(lines: &[Timeline]) -> Table {
     .note("Indices: geometric mean of the errors, and of the work, over those of the first golden file.")
 }
 
-/// Arrows of one study drawn before the rest is only in the table.
-const MOST_ARROWS: usize = 40;
-
-/// Studies whose figures a comparison shows unasked, what got worse first.
-const MOST_FIGURES: usize = 6;
-
-/// Two states as a page: the studies that differ, each case of them as an arrow in the plane of cost and error, then
-/// what differs in detail. What got worse comes first.
-pub(crate) fn comparison_page(found: &[StudyComparison], names: [&str; 2]) -> Page {
-    let mut tables = comparison_tables(found, names).into_iter();
-    let summary = tables.next().map(Block::Table);
-    let mut figures = worst_first(found).into_iter().filter(|one| differs(one)).filter_map(arrows_of);
-    let worst: Vec<Figure> = figures.by_ref().take(MOST_FIGURES).collect();
-    let rest: Vec<Block> = figures.map(Block::Figure).collect();
-    let mut drawn = vec![Block::Figures(worst)];
-    if !rest.is_empty() {
-        let summary = count_of(rest.len(), "more study", "more studies");
-        drawn.push(Block::Details { summary, blocks: rest });
-    }
-    let details = tables.map(|table| {
-        let rows = count_of(table.rows.len(), "row", "rows");
-        Block::Details { summary: format!("{}, {rows}", table.title), blocks: vec![Block::Table(table)] }
-    });
-    let mut sections = vec![
-        Section::new("What changed", "changes", summary.into_iter().collect()),
-        Section::new("Error and cost of each case", "arrows", drawn),
-        Section::new("In detail", "details", details.collect()),
-    ];
-    sections.retain(|section| {
-        let is_empty = |block: &Block| matches!(block, Block::Figures(figures) if figures.is_empty());
-        !section.blocks.iter().all(is_empty)
-    });
-    let worse = found.iter().filter(|one| one.is_regression()).count();
-    Page {
-        title: format!("{} → {}", names[0], names[1]),
-        lead: format!("{worse} of {} studies got worse.", found.len()),
-        sections,
-        is_wide: true,
-        filter: Some("study".to_owned()),
-        ..Page::default()
-    }
-}
-
-/// The cases of a study that moved, each a line from its state before to a marker at its state after.
-fn arrows_of(one: &StudyComparison) -> Option<Figure> {
-    // What is no longer than its own marker is in the tables only.
-    let is_long = |before: f64, after: f64| elementary::ln(after / before).abs() > 1e-3;
-    let is_drawable = |arrow: &&Arrow| {
-        let [before, after] = [arrow.before, arrow.after];
-        [before.0, before.1, after.0, after.1].iter().all(|value| *value > 0.0 && value.is_finite())
-            && (is_long(before.0, after.0) || is_long(before.1, after.1))
-    };
-    let arrows: Vec<&Arrow> = one.arrows.iter().filter(is_drawable).take(MOST_ARROWS).collect();
-    if arrows.is_empty() {
-        return None;
-    }
-    let mut chart = Chart::new(
-        format!("{}: cases that moved", one.study),
-        ChartAxis::log10("point updates (–)"),
-        ChartAxis::log10("error of the pressure at the last output (–)"),
-    );
-    for arrow in &arrows {
-        chart.series.push(Series::new("", vec![arrow.before, arrow.after]).style(Style::Line).slot(0));
-    }
-    let ends = arrows.iter().map(|arrow| arrow.after).collect();
-    let starts = arrows.iter().map(|arrow| arrow.before).collect();
-    chart.series.push(Series::new("before", starts).style(Style::Markers).slot(1));
-    chart.series.push(Series::new("after", ends).style(Style::Markers).slot(2));
-    let caption = format!(
-        "{} of {} cases moved; to the left is cheaper, down is better.",
-        arrows.len(),
-        one.arrows.len()
-    );
-    Some(Figure::new(format!("arrows-{}", one.study), chart, caption))
-}
-
-/// Golden values over time as a page: the studies with links to their commits, and a figure where values moved.
-pub(crate) fn timeline_page(lines: &[Timeline]) -> Page {
-    let mut table = timeline_summary(lines);
-    for row in &mut table.rows {
-        if let Some(Cell::Code(study)) = row.first().cloned() {
-            row[0] = Cell::Link { target: format!("#{study}"), words: study };
-        }
-    }
-    let summary = Section::new("Studies", "studies", vec![Block::Table(table)]);
-    let of_study = |line: &Timeline| {
-        let mut blocks = Vec::new();
-        if line.steps.iter().skip(1).any(|step| step.moved > 0) {
-            blocks.push(Block::Figure(timeline_figure(line)));
-        }
-        blocks.push(Block::Table(timeline_table(std::slice::from_ref(line))));
-        Section::new(&line.study, &line.study, blocks)
-    };
-    Page {
-        title: "Golden values over time".to_owned(),
-        lead: "Errors and work of each study over the commits that changed its golden values.".to_owned(),
-        sections: std::iter::once(summary).chain(lines.iter().map(of_study)).collect(),
-        is_wide: true,
-        filter: Some("study".to_owned()),
-        ..Page::default()
-    }
-}
-
-/// Error and work of a study over the commits of its golden file.
-fn timeline_figure(line: &Timeline) -> Figure {
-    let points = |index: fn(&Step) -> f64| {
-        line.steps.iter().enumerate().map(|(at, step)| (at as f64 + 1.0, index(step))).collect::<Vec<_>>()
-    };
-    let chart = Chart::new(
-        format!("{}: golden values over commits", line.study),
-        ChartAxis::linear("commit that changed the golden values (number)"),
-        ChartAxis::log10("index, 1 at the first commit (–)"),
-    )
-    .with(Series::new("errors", points(|step| step.error_index)).style(Style::LineAndMarkers))
-    .with(Series::new("work", points(|step| step.work_index)).style(Style::LineAndMarkers));
-    let steps = line.steps.iter().enumerate().skip(1).filter(|(_, step)| step.moved > 0);
-    let told: Vec<String> = steps
-        .map(|(at, step)| format!("{}: `{}` {}", at + 1, step.commit.short(), step.commit.subject))
-        .collect();
-    let caption = format!("Values moved at {}.", told.join("; "));
-    Figure::new(format!("history-{}", line.study), chart, caption)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -449,18 +323,6 @@ mod tests {
         assert_eq!(rows(&comparison_tables(&found[..3], ["A", "B"])[0]).len(), 3, "few have a row each");
     }
 
-    #[test]
-    fn arrows_are_drawn_of_what_moved_visibly() {
-        let page = comparison_page(&[study("worse", 0.2, Some(0.3))], ["A", "B"]);
-        assert_eq!(page.lead, "1 of 1 studies got worse.");
-        let sections: Vec<&str> = page.sections.iter().map(|section| section.id.as_str()).collect();
-        assert_eq!(
-            sections,
-            ["changes", "details"],
-            "without point updates there is no plane of cost and error"
-        );
-    }
-
     fn step(number: usize, moved: usize, unpaired: usize) -> Step {
         let at = number as f64;
         let (accuracy, cost) = [(Trend::Same, Trend::Improved), (Trend::Mixed, Trend::Regressed)][number % 2];
@@ -512,95 +374,6 @@ mod tests {
             csv(&timeline_summary(&all)),
             ["a,,\"case 0, case 1, case 2\",4,3,2.0,1.0,42345678,reason 4", "b,,,1,0,0.5,0.25,,"]
         );
-        let page = timeline_page(&all);
-        let Block::Table(studies) = &page.sections[0].blocks[0] else { panic!("a table first") };
-        let link = |study: &str| Cell::Link { words: study.to_owned(), target: format!("#{study}") };
-        assert_eq!([&studies.rows[0][0], &studies.rows[1][0]], [&link("a"), &link("b")]);
-        let ids: Vec<&str> = page.sections.iter().map(|section| section.id.as_str()).collect();
-        assert_eq!(ids, ["studies", "a", "b", "c"]);
-        let [Block::Figure(figure), Block::Table(own)] = &page.sections[1].blocks[..] else { panic!("both") };
-        assert_eq!(csv(own), rows[..4]);
-        assert_eq!(figure.caption, "Values moved at 2: `22345678` Subject 2; 3: `32345678` Subject 3.");
-        let drawn: Vec<_> =
-            figure.chart.series.iter().map(|one| (one.name.as_str(), one.points.as_slice())).collect();
-        let errors = [(1.0, 0.5), (2.0, 1.0), (3.0, 1.5), (4.0, 2.0)];
-        assert_eq!(drawn, [("errors", &errors[..]), ("work", &errors.map(|(at, index)| (at, 0.5 * index)))]);
-        assert!(matches!(page.sections[2].blocks[..], [Block::Table(_)]), "nothing moved, nothing is drawn");
-    }
-
-    /// A study whose cases go from one point of cost and error to another.
-    fn moving(name: &str, arrows: &[[(f64, f64); 2]]) -> StudyComparison {
-        let arrow = |[before, after]: &[(f64, f64); 2]| Arrow {
-            case: "c".to_owned(),
-            before: *before,
-            after: *after,
-        };
-        StudyComparison { arrows: arrows.iter().map(arrow).collect(), ..study(name, 0.2, Some(0.3)) }
-    }
-
-    #[test]
-    fn a_case_is_an_arrow_where_its_cost_or_its_error_moved_visibly_and_both_can_be_drawn() {
-        let start = (100.0, 0.2);
-        for (end, is_drawn) in [
-            (start, false),
-            ((100.05, 0.2), false),
-            ((100.0, 0.20005), false),
-            ((100.2, 0.2), true),
-            ((100.0, 0.1), true),
-            ((50.0, 0.2), true),
-            ((0.0, 0.2), false),
-            ((100.0, f64::NAN), false),
-            ((f64::INFINITY, 0.2), false),
-            ((100.0, -0.1), false),
-        ] {
-            for pair in [[start, end], [end, start]] {
-                let figure = arrows_of(&moving("s", &[pair]));
-                assert_eq!(figure.is_some(), is_drawn, "{pair:?}");
-                let Some(figure) = figure else { continue };
-                let told: Vec<_> = figure
-                    .chart
-                    .series
-                    .iter()
-                    .map(|one| (one.name.as_str(), one.points.as_slice()))
-                    .collect();
-                assert_eq!(told, [("", &pair[..]), ("before", &pair[..1]), ("after", &pair[1..])]);
-            }
-        }
-        let moved = [start, (100.0, 0.1)];
-        let caption = |arrows: &[_]| arrows_of(&moving("s", arrows)).expect("one moved").caption;
-        assert_eq!(
-            caption(&[moved, [start; 2], moved]),
-            "2 of 3 cases moved; to the left is cheaper, down is better."
-        );
-        assert!(
-            caption(&[moved; MOST_ARROWS + 1]).starts_with("40 of 41 cases moved"),
-            "the others are in the tables"
-        );
-        // Six figures stand open, the worst first.
-        let page = |studies: usize| {
-            let name = |number: usize| format!("s{number}");
-            let all: Vec<_> = (0..studies).map(|number| moving(&name(number), &[moved])).collect();
-            comparison_page(&all, ["A", "B"])
-        };
-        let of = |page: &Page| {
-            let drawn =
-                page.sections.iter().find(|section| section.id == "arrows").expect("drawn").blocks.clone();
-            let Block::Figures(open) = &drawn[0] else { panic!("{drawn:?}") };
-            let names: Vec<String> = open.iter().map(|figure| figure.name.clone()).collect();
-            let rest = drawn.get(1).map(|block| match block {
-                Block::Details { summary, blocks } => (summary.clone(), blocks.len()),
-                other => panic!("{other:?}"),
-            });
-            (names, rest)
-        };
-        let six: Vec<String> = (0..6).map(|number| format!("arrows-s{number}")).collect();
-        assert_eq!(of(&page(6)), (six.clone(), None));
-        assert_eq!(of(&page(7)), (six.clone(), Some(("1 more study".to_owned(), 1))));
-        assert_eq!(of(&page(9)), (six, Some(("3 more studies".to_owned(), 3))));
-        let page = page(2);
-        assert_eq!((page.title.as_str(), page.lead.as_str()), ("A → B", "2 of 2 studies got worse."));
-        let Some(Block::Details { summary, .. }) = page.sections[2].blocks.first() else { panic!("details") };
-        assert_eq!(summary, "what moved, 2 rows");
     }
 
     #[test]

@@ -113,6 +113,12 @@ fn lies_in(name: &str, place: &str) -> bool {
     name.strip_prefix(place).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
+/// Whether both are of commands of the command line, and not of the same one.
+fn is_of_another_command(from: &str, to: &str) -> bool {
+    let command = |name: &str| Some(name.strip_prefix("cli/commands/")?.split('/').next()?.to_owned());
+    command(from).zip(command(to)).is_some_and(|(from, to)| from != to)
+}
+
 /// Sources without a floor, arrows up, and circles, but for licensed ones; and licences that nothing needs.
 fn complaints(order: &Order, sources: &Sources) -> Vec<String> {
     let floors: Vec<&str> = order.floors.split_whitespace().collect();
@@ -141,6 +147,9 @@ fn complaints(order: &Order, sources: &Sources) -> Vec<String> {
             if !order.licensed.contains(&(from, to)) {
                 complaints.push(format!("{from} → {to}"));
             }
+        }
+        for to in to.iter().filter(|to| is_of_another_command(from, to)) {
+            complaints.push(format!("{from} is a command and uses another, {to}"));
         }
         if is_in_circle(from) {
             circles.retain(|licence| !lies_in(from, licence));
@@ -218,6 +227,12 @@ fn a_planted_arrow_or_circle_is_named() {
         (CONVERGENCE, "class", "use crate::class::classify::classify;", "class is in a circle"),
         (HARNESS, "record", "fn f() { crate::judge::explanation::explain() }", "record → judge/explanation"),
         (HARNESS, "render/page", "use crate::judge::verdict::Verdict;", "render/page → judge/verdict"),
+        (
+            HARNESS,
+            "cli/commands/plan",
+            "use crate::cli::commands::run::Engine;",
+            "cli/commands/plan is a command and uses another, cli/commands/run",
+        ),
         (HARNESS, "race/finish", "use crate::race::situation::Entry;", "race/finish is in a circle"),
     ] {
         let mut planted = sources(&order);

@@ -3,7 +3,9 @@
 use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, first_that_ends_all, jobs_of, load_after_run};
+use crate::cli::place::DEFAULT_RESULTS;
+use crate::cli::running::{first_that_ends_all, jobs_of};
+use crate::cli::study_files::load_after_run;
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{
     TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, write_document,
@@ -130,7 +132,7 @@ fn reports_of(
         }
     };
     let records = (!arguments.fresh).then_some(arguments.records.as_path());
-    let reports = run_all(studies, jobs_of(arguments.jobs), records, &thin_alone)?;
+    let reports = run_ci_tier(studies, jobs_of(arguments.jobs), records, &thin_alone)?;
     let taken: usize = reports.iter().map(|report| report.resumed - report.taken_over.len()).sum();
     if taken > 0 {
         let all: usize = studies.iter().map(|study| study.cases(Tier::Ci).len()).sum();
@@ -159,60 +161,6 @@ fn results_of<'a>(
         }
     }
     (results, tally)
-}
-
-/// Runs the CI tier of studies and keeps nothing; the records of each study.
-///
-/// # Errors
-/// When a case has no record, or the run was interrupted.
-pub fn run_quietly(studies: &[Study], jobs: usize) -> anyhow::Result<Vec<Vec<Record>>> {
-    let of_study = |(study, report): (&Study, RunReport)| match report.errors.into_iter().next() {
-        Some(error) => Err(anyhow::Error::from(error).context(study.name.clone())),
-        None => Ok(report.records),
-    };
-    studies.iter().zip(run_all(studies, jobs, None, &|_, _| {})?).map(of_study).collect()
-}
-
-/// Runs the CI tier of studies and stores nothing; errors are in the reports. What this build solved already is taken
-/// from a folder of results, and what other programs did where the study declares by what they are known.
-fn run_all(
-    studies: &[Study],
-    jobs: usize,
-    records: Option<&Path>,
-    thin: &(dyn Fn(&Study, &mut Record) + Sync),
-) -> anyhow::Result<Vec<RunReport>> {
-    let name = match studies {
-        [study] => study.name.as_str(),
-        _ => "check",
-    };
-    let bar = StudyBar::new(name);
-    let store_of = |study: &Study| Some(RecordStore::new(records?, &study.name));
-    let stores: Vec<Option<RecordStore>> = studies.iter().map(store_of).collect();
-    let selected: Vec<Selected<'_>> = (studies.iter().zip(&stores))
-        .map(|(study, store)| Selected { study, store: store.as_ref(), is_kept: false })
-        .collect();
-    let options = RunOptions { resume: true, ..RunOptions::whole(Tier::Ci, jobs) };
-    let mut reports = run_studies_thinned(&selected, &options, thin, &|progress| bar.tell(progress));
-    bar.finish();
-    if let Some(error) = reports.iter_mut().find_map(first_that_ends_all) {
-        return Err(error.into());
-    }
-    refuse_unfinished(&reports)?;
-    Ok(reports)
-}
-
-/// Refuses to judge the results of an interrupted run.
-///
-/// # Errors
-/// A sentence with the number of cases that are missing.
-pub fn refuse_unfinished(reports: &[RunReport]) -> anyhow::Result<()> {
-    let left: usize = reports.iter().map(|report| report.tally.left).sum();
-    if left == 0 {
-        return Ok(());
-    }
-    let cases = count_of(left, "case was", "cases were");
-    let sentence = format!("{cases} not run, for this run was interrupted: nothing was judged");
-    Err(Ended::with(Exit::IncompleteMerge, sentence))
 }
 
 /// The worst end of checks, in the order verdict, case, golden, pass.

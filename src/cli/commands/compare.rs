@@ -1,16 +1,13 @@
 //! `oedometer compare`: two states of studies beside each other, accuracy and cost apart.
 
-use crate::cli::commands::run::load;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
-use crate::cli::place::{GOLDEN, folder_of_golden};
+use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say};
+use crate::cli::place::repository_with;
+use crate::cli::study_files::load;
 use crate::cli::trust::TrustArguments;
 use crate::history::comparison::{StudyComparison, compare_states};
-use crate::history::repository::Repository;
 use crate::history::state::{self, State, with_command};
-use crate::render::page::render_html;
-use crate::report::history_tables::{comparison_page, comparison_rows, comparison_tables};
-use std::collections::BTreeSet;
+use crate::report::history_tables::{comparison_rows, comparison_tables};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `compare`.
@@ -36,9 +33,6 @@ pub struct Arguments {
     /// Folder of the golden values in the repository [default: `golden` here or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Write a page with figures
-    #[arg(long, value_name = "FILE.html")]
-    page: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -72,9 +66,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         TableFormat::Csv => print_tables(&[comparison_rows(&found, names)], TableFormat::Csv)?,
         format => print_tables(&comparison_tables(&found, names), format)?,
     }
-    if let Some(page) = &arguments.page {
-        write_document(page, &render_html(&comparison_page(&found, names))?)?;
-    }
     let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
     say!("{} of {} studies got worse", regressed.len(), found.len());
     Ok(if regressed.is_empty() { Exit::Pass } else { Exit::VerdictFailed })
@@ -105,63 +96,4 @@ pub fn state_of(named: &str, golden: Option<&Path>, studies: &[String]) -> anyho
     }
     let (repository, folder) = repository_with(golden, studies)?;
     State::of_revision(&repository, named, &folder).map_err(|error| usage(&error))
-}
-
-/// The one folder of golden values in a repository that has none here or above: `accept` writes beside a study.
-///
-/// # Errors
-/// When there are several.
-fn only_golden_folder(repository: &Repository, root: &Path, studies: &[String]) -> anyhow::Result<PathBuf> {
-    let pattern = format!("**/{GOLDEN}/*.csv");
-    let listed = repository.run(&[
-        "ls-files",
-        "-z",
-        "--cached",
-        "--others",
-        "--exclude-standard",
-        "--",
-        &format!(":(glob){pattern}"),
-    ])?;
-    let is_named = |path: &&Path| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        studies.is_empty() || studies.iter().any(|study| *study == name)
-    };
-    let files = listed.split_terminator('\0').map(Path::new).filter(is_named);
-    let folders: BTreeSet<&Path> = files.filter_map(Path::parent).collect();
-    match folders.iter().collect::<Vec<_>>()[..] {
-        [] => Ok(folder_of_golden(None)),
-        [only] => Ok(root.join(only)),
-        ref several => {
-            let several: Vec<String> =
-                several.iter().map(|folder| format!("--golden {}", root.join(folder).display())).collect();
-            Err(Ended::usage(format!(
-                "golden values lie in {} folders: give one of them, {}",
-                several.len(),
-                several.join(" or ")
-            )))
-        }
-    }
-}
-
-/// The repository around the current folder, and the path of its golden values from the root.
-pub fn repository_with(golden: Option<&Path>, studies: &[String]) -> anyhow::Result<(Repository, String)> {
-    let here = std::env::current_dir()?;
-    let repository = Repository::around(&here).map_err(|error| Ended::usage(error.to_string()))?;
-    let root = repository.root().canonicalize()?;
-    let given = match golden {
-        Some(folder) => folder.to_owned(),
-        None => Some(folder_of_golden(None))
-            .filter(|folder| folder.is_dir())
-            .map_or_else(|| only_golden_folder(&repository, &root, studies), Ok)?,
-    };
-    let whole = here.canonicalize()?.join(given);
-    let whole = whole.canonicalize().unwrap_or(whole);
-    let inside = whole.strip_prefix(&root).map_err(|_| {
-        Ended::usage(format!("{} lies outside the repository {}", whole.display(), root.display()))
-    })?;
-    let folder = inside.to_string_lossy().trim_end_matches('/').replace('\\', "/");
-    if repository.is_dirty(&["--", &folder]) {
-        say!("{folder}/ has uncommitted changes, which no revision has");
-    }
-    Ok((repository, folder))
 }

@@ -1,11 +1,10 @@
 //! `oedometer history`: golden values over the commits that changed them; nothing is run.
 
-use crate::cli::commands::compare::repository_with;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say, write_document};
+use crate::cli::output::{TableFormat, json_of, print_data, print_tables, say};
+use crate::cli::place::repository_with;
 use crate::history::timeline::timelines;
-use crate::render::page::render_html;
-use crate::report::history_tables::{timeline_page, timeline_summary, timeline_table};
+use crate::report::history_tables::{timeline_summary, timeline_table};
 use std::path::PathBuf;
 
 /// Files that cannot be read, named before the rest is counted.
@@ -20,9 +19,6 @@ pub struct Arguments {
     /// Folder of the golden values in the repository [default: `golden` here or above]
     #[arg(long, value_name = "DIR")]
     golden: Option<PathBuf>,
-    /// Write a page with figures
-    #[arg(long, value_name = "FILE.html")]
-    page: Option<PathBuf>,
     /// Output format; csv and json have every commit of every study
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]
     format: TableFormat,
@@ -54,9 +50,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             print_tables(&[timeline_summary(&lines)], arguments.format)?;
         }
         format => print_tables(&[timeline_table(&lines)], format)?,
-    }
-    if let Some(page) = &arguments.page {
-        write_document(page, &render_html(&timeline_page(&lines))?)?;
     }
     Ok(Exit::Pass)
 }

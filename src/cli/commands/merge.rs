@@ -3,7 +3,8 @@
 use crate::campaign::refinement;
 use crate::case::Case;
 use crate::case::planned::Tier;
-use crate::cli::commands::run::{DEFAULT_RESULTS, load};
+use crate::cli::place::DEFAULT_RESULTS;
+use crate::cli::study_files::load;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
 use crate::cli::place::{chosen_as, studies_of_this_project};

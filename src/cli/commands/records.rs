@@ -4,26 +4,11 @@ use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, print_tables, print_with, say};
 use crate::record::csv::long_tables::LongTable;
 use crate::record::store::RecordStore;
-use crate::record::{Record, WallSample};
+use crate::record::Record;
+use crate::record::printed::PrintedRecord;
 use crate::render::table::{Align, Cell, Table, TableColumn};
 use std::io::{self, Write};
 use std::path::PathBuf;
-
-/// A record as it is printed: with its wall times, which are kept beside it.
-#[derive(serde::Serialize, schemars::JsonSchema)]
-pub struct PrintedRecord<'a> {
-    #[serde(flatten)]
-    record: &'a Record,
-    /// Wall times, all of them.
-    wall: &'a [WallSample],
-}
-
-impl<'a> PrintedRecord<'a> {
-    /// A record as it is printed.
-    pub fn of(record: &'a Record) -> Self {
-        Self { record, wall: &record.wall }
-    }
-}
 
 /// A row of the list.
 #[derive(serde::Serialize)]

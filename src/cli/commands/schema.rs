@@ -1,12 +1,12 @@
 //! `oedometer schema`: JSON Schemas of study files, records, mappings, cases and findings.
 
-use crate::cli::commands::records::PrintedRecord;
 use crate::cli::exit::Exit;
 use crate::cli::output::{json_of, print_data};
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::Mapping;
 use crate::questions::answers::ReportFindings;
 use crate::questions::findings::Findings;
+use crate::record::printed::PrintedRecord;
 use crate::study::file::StudyFile;
 use crate::study::reading::{each_part, plain_schema_of, schema_of as schema_of_toml};
 use serde_json::{Value, json};

@@ -6,9 +6,9 @@ use crate::campaign::runner::LongestCase;
 use crate::case::Case;
 use crate::case::outcome::{Course, Solver};
 use crate::case::planned::{PlannedCase, Tier};
-use crate::cli::commands::run::tell_warnings;
+use crate::cli::study_files::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
-use crate::cli::output::{csv_of, json_of, print_data, say};
+use crate::cli::output::{SolveFormat, csv_of, json_of, print_data, say};
 use crate::cli::progress::note_on_solve;
 use crate::judge::soundness;
 use crate::measure::record::record_of;
@@ -30,17 +30,6 @@ use oedometer_problem::outcome::{Counters, Failure, StepSizes};
 use oedometer_scenes::SceneKind;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
-
-/// Output format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SolveFormat {
-    /// For people
-    Table,
-    /// One row per measure or case
-    Csv,
-    /// Everything
-    Json,
-}
 
 /// Arguments of `solve`.
 #[derive(Debug, clap::Args)]

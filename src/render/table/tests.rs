@@ -79,7 +79,7 @@ fn as_csv() {
 fn a_ragged_row_is_refused_by_every_writer() {
     let mut table = sample();
     table.rows[1].pop();
-    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv, Table::to_latex] {
+    for write in [Table::to_text, Table::to_markdown, Table::to_html, Table::to_csv] {
         let told = write(&table).err().map(|e| e.to_string()).unwrap_or_default();
         assert_eq!(told, "table `Pore pressure, T_v = 0.1`: row 2 has 7 cells for 8 columns");
     }
@@ -127,17 +127,4 @@ fn a_terminal_is_never_steered() {
     table.rows.push(vec!["\u{1b}]0;x\u{7}\r\n".into()]);
     let text = written(table.to_text());
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
-}
-
-#[test]
-fn a_table_for_a_paper_has_its_rules_its_powers_and_no_bare_specials() {
-    let row =
-        vec![Cell::Code("a_b".into()), Cell::Error(3.62e-3), Cell::Percent(0.05), Cell::missing("no run")];
-    let latex = Table::of("T", columns("m | > e | > share | > x"), [row]).to_latex().expect("a table");
-    assert!(latex.contains("\\begin{tabular}{lrrr}\n\\toprule\n"), "{latex}");
-    assert!(
-        latex.contains("\\texttt{a\\_b} & $3.62\\cdot10^{-3}$ & 5.00 \\% & –\\textsuperscript{a} \\\\"),
-        "{latex}"
-    );
-    assert!(latex.contains("\\bottomrule\n\\end{tabular}\n% (a) no run"), "{latex}");
 }

@@ -2,7 +2,7 @@
 
 use crate::case::method_words::method_words;
 use crate::render::escape::{
-    csv_field, html, latex, latex_text, markdown, markdown_target, one_line, plain_html,
+    csv_field, html, markdown, markdown_target, one_line, plain_html,
 };
 use crate::render::marked_text::{html_code, html_with_code, markdown_with_code};
 use crate::render::table::{Align, Cell, Table, TableColumn, marked};
@@ -128,35 +128,6 @@ impl Table {
         Ok(out)
     }
 
-    /// For LaTeX with `booktabs`; title and notes are comments, so that the author writes the caption.
-    ///
-    /// # Errors
-    /// If a row has too few or too many cells.
-    pub fn to_latex(&self) -> Result<String, RenderError> {
-        self.check()?;
-        let footnotes = self.footnotes();
-        // A comment ends with its line.
-        let comment = |text: &str| text.replace(char::is_control, " ");
-        let mut out = String::new();
-        if !self.title.is_empty() {
-            let _ = writeln!(out, "% {}", comment(&self.title));
-        }
-        let aligned = self.columns.iter().map(|column| if column.align == Align::Left { 'l' } else { 'r' });
-        let _ = writeln!(out, "\\begin{{tabular}}{{{}}}\n\\toprule", aligned.collect::<String>());
-        let heads: Vec<String> = self.columns.iter().map(|column| latex_text(&column.heading())).collect();
-        let _ = writeln!(out, "{} \\\\\n\\midrule", heads.join(" & "));
-        for row in &self.rows {
-            let cells: Vec<String> = row.iter().map(|cell| in_latex(cell, &footnotes)).collect();
-            let _ = writeln!(out, "{} \\\\", cells.join(" & "));
-        }
-        out.push_str("\\bottomrule\n\\end{tabular}\n");
-        for (mark, note) in self.lines_below() {
-            let mark = mark.map_or(String::new(), |mark| format!("({mark}) "));
-            let _ = writeln!(out, "% {mark}{}", comment(note));
-        }
-        Ok(out)
-    }
-
     /// For machines: numbers with all digits, shares as fractions, times in seconds, an empty field for a missing value,
     /// and a column of its own for the half-width of an order. Words that a spreadsheet would take for a formula stand
     /// behind an apostrophe.
@@ -265,23 +236,6 @@ fn in_html(cell: &Cell, footnotes: &[&str]) -> String {
         }
         // The minus of a number, not the one in its exponent.
         (_, (text, _)) => text.strip_prefix('-').map_or_else(|| plain_html(&text), |rest| format!("−{rest}")),
-    }
-}
-
-/// A cell of LaTeX; numbers in powers of ten are mathematics, such as `$3.62\cdot10^{-3}$`.
-fn in_latex(cell: &Cell, footnotes: &[&str]) -> String {
-    let (text, mark) = marked(cell, footnotes);
-    match cell {
-        Cell::Code(name) => format!("\\texttt{{{}}}", latex(name)),
-        Cell::Verdict(_, text) => latex_text(text),
-        Cell::Error(value) | Cell::Number(value) if value.is_finite() => match text.split_once('e') {
-            Some((digits, exponent)) => format!("${digits}\\cdot10^{{{exponent}}}$"),
-            None => format!("${text}$"),
-        },
-        _ => {
-            let mark = mark.map_or(String::new(), |mark| format!("\\textsuperscript{{{mark}}}"));
-            format!("{}{mark}", latex_text(&text))
-        }
     }
 }
 

@@ -4,8 +4,10 @@ use crate::campaign::runner::{RunOptions, RunReport, Tally};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::Case;
 use crate::case::planned::Tier;
-use crate::cli::commands::check::refuse_unfinished;
-use crate::cli::commands::run::{DEFAULT_RESULTS, jobs_of, load_after_run, run_and_store};
+use crate::cli::running::refuse_unfinished;
+use crate::cli::place::DEFAULT_RESULTS;
+use crate::cli::running::{jobs_of, run_and_store};
+use crate::cli::study_files::load_after_run;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{json_of, print_data, say};
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
@@ -308,7 +310,7 @@ fn write_page(path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(write_rebuildable(path, document(text).as_bytes())?)
 }
 
-/// Every figure of a page as SVG with its data as CSV, and every table as CSV and LaTeX.
+/// Every figure of a page as SVG with its data as CSV, and every table as CSV.
 fn write_exports(folder: &Path, page: &Page) -> anyhow::Result<()> {
     let figures = folder.join("figures");
     for figure in all_figures(page) {
@@ -318,7 +320,6 @@ fn write_exports(folder: &Path, page: &Page) -> anyhow::Result<()> {
     for (name, table) in tables(page) {
         let folder = folder.join("tables");
         write_page(&folder.join(format!("{name}.csv")), &table.to_csv()?)?;
-        write_page(&folder.join(format!("{name}.tex")), &table.to_latex()?)?;
     }
     Ok(())
 }
