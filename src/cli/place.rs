@@ -5,9 +5,12 @@
 
 use crate::case::contender::RACE;
 use crate::cli::exit::{Ended, Exit};
+use crate::cli::output::say;
 use crate::golden::{GoldenError, GoldenFile};
+use crate::history::repository::Repository;
 use crate::study::shipped::{name_of, shipped_names, shipped_study};
 use oedometer_formats::input_file::read_text;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Folder of results where none is named.

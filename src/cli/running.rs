@@ -201,4 +201,3 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
         );
     }
 }
-

@@ -106,7 +106,7 @@ mod tests {
     use crate::campaign::runner::solved;
     use crate::case::SolverName;
     use crate::case::planned::Tier;
-    use oedometer_mpm::method::Method;
+    use oedometer_problem::method::Method;
 
     /// Oscillation does not count.
     fn row(name: &str, errors: [[Option<f64>; 2]; 3]) -> SweepRow {

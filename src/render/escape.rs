@@ -1,6 +1,6 @@
 //! Text made safe for the document it goes into. Titles, names of files and headers of tables come from anywhere, so
 //! characters that control a terminal, or turn or break a line, are never passed on.
-use crate::render::script::{ScriptLevel, ScriptRun, runs};
+use crate::render::script::{ScriptLevel, runs};
 use std::borrow::Cow;
 
 /// Replaces a character that would not be seen.

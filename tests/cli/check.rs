@@ -462,7 +462,6 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     assert!(
         read("studies/index.html").contains("short.html") && read("studies/README.md").contains("short.md")
     );
-    assert!(read("studies/tables/short-table-1.tex").contains("\\toprule"));
     // Every file that a page leads to is there.
     for (folder, page) in [("", &html), ("studies/", &study)] {
         let targets = page.split("<a href=\"").skip(1).filter_map(|rest| rest.split('"').next());

@@ -1,12 +1,12 @@
 //! `oedometer accept`: the present values of a study become its golden values.
 
 use crate::case::planned::Tier;
-use crate::cli::running::run_quietly;
-use crate::cli::running::jobs_of;
-use crate::cli::study_files::load;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, is_on, print_tables, say};
 use crate::cli::place::{golden_folder, named};
+use crate::cli::running::jobs_of;
+use crate::cli::running::run_quietly;
+use crate::cli::study_files::load;
 use crate::cli::trust::TrustArguments;
 use crate::golden::tolerance::{LastDigit, spread_by_group};
 use crate::golden::{GoldenError, GoldenFile, values_of};

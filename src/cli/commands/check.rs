@@ -1,17 +1,16 @@
 //! `oedometer check`: the CI tier again, judged by its expectations and by its golden values.
 
-use crate::campaign::runner::{RunOptions, RunReport, Selected, Tally, run_studies_thinned};
+use crate::campaign::runner::{RunReport, Tally};
 use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
-use crate::cli::place::DEFAULT_RESULTS;
-use crate::cli::running::{first_that_ends_all, jobs_of};
-use crate::cli::study_files::load_after_run;
 use crate::cli::exit::{Ended, Exit, sentence};
 use crate::cli::output::{
     TableFormat, append, is_on, json_of, path_in, print_coloured, print_data, say, write_document,
 };
+use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
-use crate::cli::progress::StudyBar;
+use crate::cli::running::{jobs_of, run_ci_tier};
+use crate::cli::study_files::load_after_run;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;
@@ -24,13 +23,12 @@ use crate::questions::findings::study_answers::StudyAnswers;
 use crate::questions::list::answers;
 use crate::questions::study_results::StudyResults;
 use crate::record::Record;
-use crate::record::store::RecordStore;
 use crate::report::checks::verdicts::text_of_answers;
 use crate::report::checks::{annotations_of, junit, verdicts};
 use crate::study::check::Study;
 use oedometer_soil::wording::count_of;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
@@ -243,6 +241,7 @@ impl<'a> CheckJson<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::running::run_quietly;
     use crate::study::file::StudySource;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\nmethod = ['MPM']\n\
@@ -254,7 +253,7 @@ mod tests {
         let study = Study::check(&source).expect("sound");
         let records = run_quietly(std::slice::from_ref(&study), 1).expect("records").remove(0);
         let golden = GoldenFile::of("t", &records, "a reason");
-        [Ok(golden), GoldenFile::read(Path::new("no-such-folder"), "t")]
+        [Ok(golden), GoldenFile::read("no-such-folder".as_ref(), "t")]
             .map(|golden| StudyCheck::new(&study, &records, Tier::Ci, golden))
     }
 

@@ -2,9 +2,9 @@
 
 use crate::api::exact::{MOST_TAIL, Place, accuracy_of, degree_of, places_of};
 use crate::api::scene_of;
-use crate::cli::study_files::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{csv_of, json_of, print_data, say};
+use crate::cli::study_files::tell_warnings;
 use crate::study::overrides::{Asked, Assignments, numbers, times};
 use clap::ValueEnum;
 use oedometer_exact::Accuracy;

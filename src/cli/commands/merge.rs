@@ -3,11 +3,11 @@
 use crate::campaign::refinement;
 use crate::case::Case;
 use crate::case::planned::Tier;
-use crate::cli::place::DEFAULT_RESULTS;
-use crate::cli::study_files::load;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
+use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{chosen_as, studies_of_this_project};
+use crate::cli::study_files::load;
 use crate::cli::study_files::{tell_of_passed_over, write_tables};
 use crate::record::csv::TableForm;
 use crate::record::provenance::Origins;

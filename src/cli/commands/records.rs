@@ -2,10 +2,10 @@
 
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, print_tables, print_with, say};
-use crate::record::csv::long_tables::LongTable;
-use crate::record::store::RecordStore;
 use crate::record::Record;
+use crate::record::csv::long_tables::LongTable;
 use crate::record::printed::PrintedRecord;
+use crate::record::store::RecordStore;
 use crate::render::table::{Align, Cell, Table, TableColumn};
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -1,29 +1,20 @@
 //! `oedometer run`: runs the cases of study files and writes their records and one tidy CSV per study.
 
-use crate::campaign::case_runner::time_study;
-use crate::campaign::runner::{RunError, RunOptions, RunReport, Selected, Tally, run_studies};
+use crate::campaign::runner::{RunOptions, Tally};
 use crate::campaign::shares::{Parting, Shard};
 use crate::campaign::stop;
-use crate::campaign::taken_over::TakenOver;
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::say;
-use crate::cli::place::StudyArguments;
-use crate::cli::progress::StudyBar;
-use crate::cli::study_files::{is_compressed, is_small, tell_of_passed_over, write_tables};
+use crate::cli::place::{DEFAULT_RESULTS, StudyArguments};
+use crate::cli::running::{jobs_of, run_and_store};
+use crate::cli::slurm;
+use crate::cli::study_files::load;
 use crate::cli::trust::{self, TrustArguments};
-use crate::cli::{slurm, study_files};
-use crate::foreign::reading::mapping_of;
-use crate::import::mapping::Axes;
-use crate::judge::verdict::Absent;
 use crate::record::csv::TableForm;
-use crate::record::provenance::Provenance;
-use crate::record::store::RecordStore;
-use crate::study::check::{Purpose, Study};
-use crate::study::file::StudySource;
+use crate::study::check::Study;
 use clap::ValueEnum;
-use oedometer_soil::wording::count_of;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]

@@ -2,10 +2,10 @@
 
 use crate::campaign::runner::{RunOptions, run_study};
 use crate::case::planned::Tier;
-use crate::cli::running::jobs_of;
-use crate::cli::study_files::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{SolveFormat, csv_of, json_of, print_data};
+use crate::cli::running::jobs_of;
+use crate::cli::study_files::tell_warnings;
 use crate::questions::blocks::stability::critical_steps;
 use crate::record::{Probe, Record};
 use crate::report::tables::runs;

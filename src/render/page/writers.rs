@@ -187,8 +187,7 @@ fn html_table(table: &Table, out: &mut String, written: &mut Written<'_>) -> Res
     out.push_str(&shown.to_html()?);
     out.push_str(&rest.map(|rest| html_text(&rest)).unwrap_or_default());
     if let Some(file) = file {
-        let csv = format!("<a href=\"tables/{file}.csv\">CSV</a>");
-        let _ = writeln!(out, "<p class=\"files\">{csv} <a href=\"tables/{file}.tex\">LaTeX</a></p>");
+        let _ = writeln!(out, "<p class=\"files\"><a href=\"tables/{file}.csv\">CSV</a></p>");
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! A table as plain data, and its writers: text, Markdown, HTML, CSV and LaTeX.
+//! A table as plain data, and its writers: text, Markdown, HTML, CSV and JSON.
 
 mod writers;
 

@@ -1,9 +1,7 @@
 //! Writers of tables: text for a terminal, GitHub's Markdown, HTML, LaTeX and CSV.
 
 use crate::case::method_words::method_words;
-use crate::render::escape::{
-    csv_field, html, markdown, markdown_target, one_line, plain_html,
-};
+use crate::render::escape::{csv_field, html, markdown, markdown_target, one_line, plain_html};
 use crate::render::marked_text::{html_code, html_with_code, markdown_with_code};
 use crate::render::table::{Align, Cell, Table, TableColumn, marked};
 use crate::render::{RenderError, number};

@@ -3,9 +3,9 @@
 mod scored_files;
 
 use crate::case::{Case, Norm, Quantity};
-use crate::cli::study_files::tell_warnings;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, csv_of, json_of, print_data, print_tables, say, write_document};
+use crate::cli::study_files::tell_warnings;
 use crate::import::mapping::Axes;
 use crate::import::mapping::preset::convention_of;
 use crate::record::ERROR_COLUMNS;
