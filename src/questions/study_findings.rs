@@ -27,6 +27,8 @@ pub struct StudyFindings {
     pub summary: String,
     /// The command that runs it again.
     pub run_command: String,
+    /// Whether it has a page of its own.
+    pub has_page: bool,
     /// What it asks.
     pub question: StudyQuestion,
     /// Whether its page begins with a verdict: a situation of the race is judged by its answer.
@@ -115,6 +117,7 @@ impl StudyFindings {
             title: study.title.clone(),
             summary: study.summary.clone(),
             run_command: results.run_command(),
+            has_page: results.has_page,
             question: StudyQuestion::new(study),
             shows_verdict: !study.is_race || !check.judgements.is_empty() || !check.meets_all(),
             shows_sweeps: study.scene.has_plane_fields() && !study.is_race,

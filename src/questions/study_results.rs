@@ -24,6 +24,8 @@ pub struct StudyResults<'a> {
     pub check: StudyCheck,
     /// The file of the study, as it was given.
     pub file: String,
+    /// Whether it has a page of its own: a shipped study has one where it is asked for by name.
+    pub has_page: bool,
 }
 
 impl<'a> StudyResults<'a> {
@@ -43,13 +45,20 @@ impl<'a> StudyResults<'a> {
         let paths = StudyPaths::of(records);
         let check = StudyCheck::along(&paths, study, records, tier, golden);
         let file = format!("studies/{}.toml", study.name);
-        Self { study, records, paths, check, file }
+        Self { study, records, paths, check, file, has_page: true }
     }
 
     /// Adds the results that were not made for this page.
     #[must_use]
     pub fn with_taken_over(mut self, taken_over: &[TakenOver]) -> Self {
         self.check = self.check.with_taken_over(taken_over);
+        self
+    }
+
+    /// Sets whether the study has a page of its own.
+    #[must_use]
+    pub fn with_page(mut self, has_page: bool) -> Self {
+        self.has_page = has_page;
         self
     }
 

@@ -58,6 +58,9 @@ pub struct Arguments {
     /// Write annotations of study lines for GitHub to standard error; default in its workflows
     #[arg(long)]
     annotate: bool,
+    /// Print no more than the verdict on each study
+    #[arg(short, long, conflicts_with = "format")]
+    quiet: bool,
     #[command(flatten)]
     trust: TrustArguments,
     /// Output format
@@ -77,7 +80,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     // What a study answers by itself stands below the verdict on it alone; a reference that refuses a case is a failure there.
     let answers = match results.as_slice() {
-        [one] => {
+        [one] if !arguments.quiet => {
             let findings = answers(std::slice::from_ref(one), Place::Terminal).unwrap_or_default();
             text_of_answers(&StudyAnswers::new(one.study, one.records, &one.paths), &findings)?
         }
@@ -88,7 +91,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
     let mut refused = Vec::new();
-    refused.extend(print(&checks, files, &answers, arguments.format).err());
+    let printed = if arguments.quiet {
+        print_coloured(&checks.iter().map(verdicts::verdict_on).collect::<String>())
+    } else {
+        print(&checks, files, &answers, arguments.format)
+    };
+    refused.extend(printed.err());
     if let Some(path) = &arguments.junit {
         refused.extend(write_document(path, &junit(&checks)?).err());
     }

@@ -223,7 +223,12 @@ pub fn tables(page: &Page) -> Vec<(String, &Table)> {
         Block::Table(table) => Some(table),
         _ => None,
     });
-    tables.enumerate().map(|(place, table)| (table_file(name, place + 1, table), table)).collect()
+    let mut number = 0;
+    let named = tables.map(|table| {
+        number += usize::from(table.file.is_none());
+        (table_file(name, number, table), table)
+    });
+    named.collect()
 }
 
 /// Rows that a page shows of a table that also has a file, so that a study of ten thousand cases makes a page that
@@ -241,7 +246,7 @@ pub(crate) fn shown_rows<'a>(table: &'a Table, file: Option<&str>) -> (Cow<'a, T
     (Cow::Owned(shown), Some(rest))
 }
 
-/// The name of the file of a page's table: its own name, or its number, counted from one.
+/// The name of the file of a page's table: its own name, or its number among those without one.
 pub(crate) fn table_file(page: &str, number: usize, table: &Table) -> String {
     match &table.file {
         Some(name) => format!("{page}-{name}"),

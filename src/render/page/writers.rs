@@ -28,7 +28,7 @@ impl<'a> Written<'a> {
 
     /// The name of the file of the next table.
     fn next_table(&mut self, table: &Table) -> Option<String> {
-        self.tables += 1;
+        self.tables += usize::from(table.file.is_none());
         self.files.map(|page| table_file(page, self.tables, table))
     }
 }

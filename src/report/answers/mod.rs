@@ -159,7 +159,7 @@ pub fn answer_page(answers: &Answers<'_>) -> Result<Page, RenderError> {
         _ => String::new(),
     };
     let made = format!(
-        "**How was it made?** {}\n\n[All studies, with every table and figure](studies/index.html){few}",
+        "**How was it made?** {}\n\n[All studies](studies/index.html){few}",
         answers.making.words(answers.all)
     );
     let verdict = verdict(&findings.verdict)?;

@@ -62,7 +62,11 @@ fn words_of(question: StudyQuestion) -> &'static str {
 fn studies_table(studies: &[&StudyFindings]) -> Table {
     let rows = studies.iter().map(|one| {
         vec![
-            Cell::Link { words: one.title.clone(), target: format!("{}.html", slug(&one.name)) },
+            if one.has_page {
+                Cell::Link { words: one.title.clone(), target: format!("{}.html", slug(&one.name)) }
+            } else {
+                Cell::Text(one.title.clone())
+            },
             Cell::Count(one.plain.runs.len() as u64),
             met_cell(one),
             Cell::Code(one.run_command.clone()),

@@ -51,6 +51,17 @@ pub fn text_of(check: &StudyCheck, file: Option<&str>, answers: &str) -> Result<
     Ok(text)
 }
 
+/// The verdict on a study in one line: as expected, not as expected, or not compared with golden values.
+pub fn verdict_on(check: &StudyCheck) -> String {
+    let mood = match check.end() {
+        CheckEnd::Pass => Mood::Pass,
+        CheckEnd::Golden if check.groups.is_empty() && check.inputs.is_empty() => Mood::Note,
+        CheckEnd::HeldBack => Mood::Note,
+        _ => Mood::Fail,
+    };
+    wrapped(&format!("{} {}: {}", mood.mark(), check.study, headline(check)), "", "  ")
+}
+
 /// Errors over the meshes with their rates, what it takes to come within a bound, and the answers of the questions.
 ///
 /// # Errors

@@ -33,6 +33,8 @@ use crate::report::checks::verdicts::text_of_answers;
 use crate::questions::race_tables;
 use crate::questions::study_results::StudyResults;
 use crate::study::check::Study;
+use crate::study::shipped::shipped_study;
+use oedometer_formats::input_file::read_text;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -93,6 +95,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             let file = typed_name(&study.name, &chosen);
             StudyResults::new(study, &report.records, tier_of(study, report))
                 .from_file(file)
+                .with_page(has_page(&study.name, &chosen, arguments.studies.names_none()))
                 .with_taken_over(&report.taken_over)
         })
         .collect::<Vec<_>>();
@@ -128,6 +131,12 @@ fn selected(study: &Study) -> Study {
         selected.planned.iter_mut().for_each(|planned| planned.tier = Tier::Smoke);
     }
     selected
+}
+
+/// Whether a study has a page of its own: where it is named, and where it is not, byte for byte, one inside the program.
+fn has_page(study: &str, chosen: &[PathBuf], names_none: bool) -> bool {
+    let Some(shipped) = shipped_study(study).filter(|_| names_none) else { return true };
+    chosen_as(study, chosen).and_then(|file| read_text(file).ok()).is_some_and(|text| text != shipped.text)
 }
 
 /// What a study is called at the command line: its file, or its name where it came from inside the program.
@@ -247,6 +256,7 @@ fn write_files(
     // Collected before the first error is taken: the same error every time.
     all.studies
         .par_iter()
+        .filter(|study| study.has_page)
         .map(|study| write_study(&studies, study))
         .collect::<Vec<_>>()
         .into_iter()
@@ -262,12 +272,9 @@ fn write_files(
     making.seconds = start.elapsed().as_secs_f64();
     let answers = Answers { all, changes, making: &making, findings: &findings };
     let front = Page { files: Some("answers".to_owned()), ..answer_page(&answers)? };
-    write_both(out, "index", "README", &front)?;
-    write_page(&out.join("README.md"), &linked_to_files(&render_markdown(&front)?, out, results))?;
+    write_linked(out, ["index", "README"], &front, results)?;
     if let Some(race) = &findings.race {
-        let page = matrix_page(race);
-        write_both(out, "race", "race", &page)?;
-        write_page(&out.join("race.md"), &linked_to_files(&render_markdown(&page)?, out, results))?;
+        write_linked(out, ["race"; 2], &matrix_page(race), results)?;
     }
     Ok(out.join("index.html"))
 }
@@ -275,11 +282,31 @@ fn write_files(
 /// A page whose links to pages of studies lead to their files, where both are below the current folder.
 fn linked_to_files(page: &str, out: &Path, results: &[StudyResults<'_>]) -> String {
     results.iter().fold(page.to_owned(), |text, result| {
-        let Some(file) = path_from(out, &result.file) else { return text };
+        let listed = (!result.has_page).then(|| "studies/README.md".to_owned());
+        let Some(file) = path_from(out, &result.file).or(listed) else { return text };
         let name = slug(&result.study.name);
         let text = text.replace(&format!("](studies/{name}.md)"), &format!("]({file})"));
         text.replace(&format!("](studies/{name}.md#figure-{name}-race-all)"), &format!("]({file})"))
     })
+}
+
+/// A page of all studies: where a study has no page of its own, links lead to its file, or to the list of the studies.
+fn write_linked(
+    out: &Path,
+    [html, markdown]: [&str; 2],
+    page: &Page,
+    results: &[StudyResults<'_>],
+) -> anyhow::Result<()> {
+    write_both(out, html, markdown, page)?;
+    let without = results.iter().filter(|one| !one.has_page);
+    let linked = without.fold(render_html(page)?, |text, one| {
+        let file = path_from(out, &one.file).unwrap_or_else(|| "studies/index.html".to_owned());
+        let name = slug(&one.study.name);
+        let text = text.replace(&format!("\"studies/{name}.html\""), &format!("\"{file}\""));
+        text.replace(&format!("\"studies/{name}.html#figure-{name}-race-all\""), &format!("\"{file}\""))
+    });
+    write_page(&out.join(format!("{html}.html")), &linked)?;
+    write_page(&out.join(format!("{markdown}.md")), &linked_to_files(&render_markdown(page)?, out, results))
 }
 
 /// The pages of a study with their figures and tables.
