@@ -5,6 +5,8 @@ use crate::case::contender::CONTENDERS;
 use crate::questions::choice::{
     LARGEST_TAU, SHOWN, cheapest, dot_plot, facts, places_of, practice, reason_words, words_of,
 };
+use crate::questions::sentence;
+use crate::questions::words::capitalised;
 use crate::race::RaceFindings;
 use crate::race::finish::{Budget, RaceQuantity, Reason, Terms};
 use crate::race::group::{Group, races};
@@ -16,8 +18,6 @@ use crate::render::table::{Cell, Mood, Shade, Table, TableColumn, columns};
 use crate::render::{RenderError, number};
 use crate::report::answers::Question;
 use crate::report::sections::page_of;
-use crate::questions::words::capitalised;
-use crate::questions::sentence;
 
 const QUESTION: Question = Question { heading: "Which method should I take?", id: "choice" };
 
