@@ -6,6 +6,7 @@ use crate::case::Case;
 use crate::case::quantity::Sample;
 use crate::foreign::case_file::CaseFile;
 use crate::import::mapping::{Axes, Mapping};
+use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::{RawRow, SolvedBody};
 use crate::import::runs::Run;
 use crate::import::{SampledState, states_of};
@@ -70,7 +71,8 @@ pub fn score(
         let why = format!("the fields of `{scene}` depend on it: give `distance`, m from the {from}");
         return Err(ApiError::Unfit(why));
     }
-    let run = Run { files: vec!["arrays".into()], states: samples.states(case, &mapping)?, ..Run::default() };
+    let (states, contradictions) = samples.states(case, &mapping)?;
+    let run = Run { files: vec!["arrays".into()], states, contradictions, ..Run::default() };
     let comparison = asked.comparison(&mapping);
     let mut results = Results::of(vec![run], &comparison)?;
     results
@@ -137,8 +139,8 @@ fn asked(scene: &str, reference: Option<&str>, assignments: &[String]) -> Result
 }
 
 impl Samples<'_> {
-    /// The lists as states.
-    fn states(&self, case: &Case, mapping: &Mapping) -> Result<Vec<SampledState>, ApiError> {
+    /// The lists as states, and what of them contradicts itself.
+    fn states(&self, case: &Case, mapping: &Mapping) -> Result<(Vec<SampledState>, Vec<String>), ApiError> {
         self.check()?;
         let body = SolvedBody::of(case);
         let mut turned = *self;
@@ -151,10 +153,17 @@ impl Samples<'_> {
         turned.rows(body, mapping)
     }
 
-    /// The lists in the directions of a column, as states.
-    fn rows(&self, body: SolvedBody, mapping: &Mapping) -> Result<Vec<SampledState>, ApiError> {
+    /// The same of lists in the directions of a column.
+    fn rows(
+        &self,
+        body: SolvedBody,
+        mapping: &Mapping,
+    ) -> Result<(Vec<SampledState>, Vec<String>), ApiError> {
+        let mut origins = Origins::new(mapping);
+        let arrays = Path::new("arrays");
         let mut rows = Vec::with_capacity(self.time.len() * self.height.len());
         for (at, time) in self.time.iter().enumerate() {
+            let part = origins.add(arrays, arrays, PartKind::State(Some(at + 1)));
             for (place, height) in self.height.iter().enumerate() {
                 let index = at * self.height.len() + place;
                 let raw = RawRow {
@@ -170,6 +179,7 @@ impl Samples<'_> {
                     moved: None,
                     others: place as u64,
                     set: Default::default(),
+                    origin: Origin { part, line: 0 },
                 };
                 let refused = |why: String| {
                     ImportError::content(Path::new("arrays"), format!("[{at}][{place}]: {why}"))
@@ -177,14 +187,14 @@ impl Samples<'_> {
                 rows.push(raw.sample(mapping, body, &refused)?);
             }
         }
-        let mut states = states_of(&rows)?;
+        let (mut states, contradictions) = states_of(&rows, &origins)?;
         if !self.settlement.is_empty() {
             for state in &mut states {
                 let at = self.time.iter().position(|time| *time == state.time);
                 state.surface_displacement = at.map(|at| -self.settlement[at]);
             }
         }
-        Ok(states)
+        Ok((states, contradictions))
     }
 
     /// Refuses lists of the wrong length, numbers that are not finite, and a result without fields.

@@ -104,10 +104,7 @@ impl Whole<'_> {
         let repeated = |state: &SampledState| {
             let (repeated, all) = (state.repeated, state.initial_height.len());
             (repeated > 0).then(|| {
-                let at = state.repeated_at.map_or(String::new(), |[height, distance]| {
-                    let across = if distance.is_nan() { String::new() } else { format!(", x = {} m", short(distance)) };
-                    format!(", first at y = {} m{across}", short(height))
-                });
+                let at = state.repeated_at.as_ref().map_or(String::new(), |at| format!(", first at {at}"));
                 format!(
                     "{repeated} of {all} rows repeat the place of another with other values{at}: was this time written twice? \
                      Where they are samples side by side, keep the column that tells them apart"

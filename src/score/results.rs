@@ -265,8 +265,9 @@ impl Scored {
             absent.map(|one| Finding { name: Lack::QuantityMissing, sentence: shown(one).sentence(when) });
         let unended =
             self.run.unended.iter().map(|file| Finding { name: Lack::EndMissing, sentence: not_ended(file) });
-        let doubts = self.run.doubts.first().map(|doubt| {
-            let more = match self.run.doubts.len() {
+        let said_twice: Vec<&String> = self.run.contradictions.iter().chain(&self.run.doubts).collect();
+        let doubts = said_twice.first().map(|doubt| {
+            let more = match said_twice.len() {
                 1 => String::new(),
                 many => format!(" (and {} more)", many - 1),
             };

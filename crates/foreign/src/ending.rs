@@ -283,11 +283,7 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
         return Some(lack);
     }
     if state.repeated > 0 {
-        let at = state.repeated_at.map_or(String::new(), |[height, distance]| {
-            let across =
-                if distance.is_nan() { String::new() } else { format!(", x = {} m", short(distance)) };
-            format!(", the first at y = {} m{across}", short(height))
-        });
+        let at = state.repeated_at.as_ref().map_or(String::new(), |at| format!(", the first at {at}"));
         return Some(format!("{when}, {} samples are repeated with different values{at}", state.repeated));
     }
     if state.initial_height.is_empty() {

@@ -118,6 +118,9 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     let Some(run) = runs.into_iter().next() else {
         return Err(Unread::Unreadable("the files hold no state".to_owned()));
     };
+    if let Some(why) = run.contradictions.first() {
+        return Err(Unread::Unreadable(why.clone()));
+    }
     let sample = run.sample(mapping);
     if let Some(why) = unfit(case, sample, &run) {
         return Err(Unread::Unreadable(why));

@@ -207,6 +207,11 @@ impl States<'_> {
         self.groups.len()
     }
 
+    /// The rows of a state, where each row has its own time.
+    pub fn rows_of(&self, place: usize) -> &[usize] {
+        self.groups.get(place).map_or(&[], |(_, rows)| rows)
+    }
+
     /// A state and its time.
     pub fn state(&self, place: usize) -> Option<(f64, Frame)> {
         let (time, rows) = self.groups.get(place)?;

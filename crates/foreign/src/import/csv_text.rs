@@ -112,16 +112,24 @@ impl CsvText {
     }
 }
 
-/// The line, from 1, of a record that begins at a byte of a text or below the comments and blank lines there.
-pub fn line_of_record(text: &[u8], byte: u64, comment: Option<char>) -> u64 {
-    let (before, record) =
-        text.split_at(usize::try_from(byte).map_or(text.len(), |byte| byte.min(text.len())));
-    let above = before.split(|letter| *letter == b'\n').count();
-    let record = String::from_utf8_lossy(record);
-    let is_skipped = |line: &&str| {
-        line.trim().is_empty() || comment.is_some_and(|mark| line.trim_start().starts_with(mark))
+/// The first byte of a record that begins at a byte of a text or below the comments and blank lines there, and its line from 1;
+/// `known` is a byte above it with its line.
+pub fn line_of_record(text: &[u8], byte: u64, comment: Option<char>, known: (usize, u64)) -> (usize, u64) {
+    let (known, line) = known;
+    let mut at = usize::try_from(byte).map_or(text.len(), |byte| byte.clamp(known, text.len()));
+    let mut line = line + text[known..at].iter().filter(|letter| **letter == b'\n').count() as u64;
+    let is_skipped = |record: &[u8]| {
+        let record = record.trim_ascii();
+        record.is_empty()
+            || comment.and_then(|mark| u8::try_from(mark).ok()).is_some_and(|mark| record[0] == mark)
     };
-    (above + record.lines().take_while(is_skipped).count()) as u64
+    while let Some(end) = text[at..].iter().position(|letter| *letter == b'\n')
+        && is_skipped(&text[at..at + end])
+    {
+        at += end + 1;
+        line += 1;
+    }
+    (at, line)
 }
 
 /// Names in a line, if there are as many as columns, whatever separates them.
@@ -274,7 +282,7 @@ mod tests {
             })
             .collect();
         let byte = row.position().map_or(0, csv::Position::byte);
-        let line = line_of_record(&table.text, byte, table.comment);
+        let line = line_of_record(&table.text, byte, table.comment, (0, 1)).1;
         Ok(format!("{} = {} in line {line}", names.join(" "), numbers.join(" ")))
     }
 

@@ -2,6 +2,7 @@
 
 use crate::import::mapping::units::{StatedPlace, StressKind};
 use crate::import::mapping::{Column, DeclaredBy, Mapping};
+use crate::import::origins::Origin;
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
 use crate::import::samples::{PlaceSet, SampleRow};
 use crate::import::spelling::spellings;
@@ -439,13 +440,14 @@ impl<'a> FrameRows<'a> {
         Start { places, file: self.path.display().to_string() }
     }
 
-    /// Adds the rows of the state at a time, s.
+    /// Adds the rows of the state at a time, s; `origin` says where a row was read.
     ///
     /// # Errors
     /// What is missing, not finite or outside the body, with its file and row.
     pub fn take_rows(
         &self,
         time: f64,
+        origin: &dyn Fn(usize) -> Origin,
         start: Option<&Start>,
         rows: &mut Vec<SampleRow>,
     ) -> Result<(), ImportError> {
@@ -460,7 +462,7 @@ impl<'a> FrameRows<'a> {
                 let number = self.number(source, row);
                 if number.is_finite() { Ok(number) } else { Err(refused(format!("`{key}` is {number}"))) }
             };
-            let mut raw = RawRow::read(time, self.hash_of_place(row, step), |column| {
+            let mut raw = RawRow::read(time, self.hash_of_place(row, step), origin(row), |column| {
                 self.columns[column as usize].map(|source| number(source, column.name())).transpose()
             })?;
             raw.set = self.set;
@@ -665,7 +667,7 @@ mod tests {
         let frame = Frame { arrays, ..Frame::default() };
         let found = FrameRows::find(&frame, Path::new("f.npz"), &mapping, body).expect("its columns");
         let mut rows = Vec::new();
-        found.take_rows(1.0, None, &mut rows).expect("two rows");
+        found.take_rows(1.0, &|_| Origin::default(), None, &mut rows).expect("two rows");
         let told: Vec<[f64; 3]> =
             rows.iter().map(|row| [row.initial_height, row.pressure, row.volume]).collect();
         assert_eq!(told, [[0.25, 3.0, 0.5], [0.75, 5.0, 0.5]]);
@@ -700,7 +702,7 @@ mod tests {
             let rows = FrameRows::find(&frame, Path::new("f.vtu"), &mapping, body)
                 .map_err(|error| error.to_string())?;
             let mut all = Vec::new();
-            rows.take_rows(1.0, None, &mut all).map_err(|error| error.to_string())?;
+            rows.take_rows(1.0, &|_| Origin::default(), None, &mut all).map_err(|error| error.to_string())?;
             let [pressure, up, height] = [
                 all.iter().map(|row| row.pressure).sum::<f64>(),
                 all.iter().map(|row| row.displacement).sum::<f64>(),
@@ -796,7 +798,8 @@ mod tests {
             let beside = rows.beside().map_err(|error| error.to_string())?;
             let taken = |rows: Option<&FrameRows>| {
                 let mut all = Vec::new();
-                rows.map_or(Ok(()), |rows| rows.take_rows(1.0, None, &mut all)).expect("rows");
+                rows.map_or(Ok(()), |rows| rows.take_rows(1.0, &|_| Origin::default(), None, &mut all))
+                    .expect("rows");
                 let value = |row: &SampleRow| [row.pressure, row.displacement, row.effective_stress];
                 let value = |row: &SampleRow| value(row).into_iter().find(|value| !value.is_nan());
                 all.iter().map(|row| [row.initial_height, value(row).expect("a value"), row.volume]).collect()

@@ -3,10 +3,12 @@
 //! Programs differ in units, signs, the origin of their coordinates and where they write the time. A mapping file, a
 //! preset or the convention declares all of these; nothing is guessed from the numbers.
 
+mod contradictions;
 mod csv_text;
 mod expected;
 mod frame_rows;
 pub mod mapping;
+pub mod origins;
 pub mod raw_row;
 pub mod runs;
 mod samples;

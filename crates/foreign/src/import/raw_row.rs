@@ -4,6 +4,7 @@ use crate::import::mapping::units::{
     HorizontalSense, StatedPlace, StressKind, StressSign, StressUnit, VerticalSense,
 };
 use crate::import::mapping::{Column, Mapping};
+use crate::import::origins::Origin;
 use crate::import::samples::{PlaceSet, SampleRow};
 use oedometer_case::Case;
 use oedometer_formats::ImportError;
@@ -59,6 +60,8 @@ pub struct RawRow {
     pub others: u64,
     /// Its kind of places, if quantities have different places.
     pub set: PlaceSet,
+    /// Where it was read.
+    pub origin: Origin,
 }
 
 /// Whether a place is the requested one, up to the round-off of single precision.
@@ -74,6 +77,7 @@ impl RawRow {
     pub fn read(
         time: f64,
         others: u64,
+        origin: Origin,
         number: impl Fn(Column) -> Result<Option<f64>, ImportError>,
     ) -> Result<Self, ImportError> {
         Ok(Self {
@@ -88,6 +92,7 @@ impl RawRow {
             moved: None,
             others,
             set: PlaceSet::default(),
+            origin,
         })
     }
 
@@ -181,6 +186,7 @@ impl RawRow {
             horizontal_displacement: or_absent(horizontal),
             others: self.others,
             set: self.set,
+            origin: self.origin,
         })
     }
 }

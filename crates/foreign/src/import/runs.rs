@@ -3,6 +3,7 @@
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
 use crate::import::mapping::{Column, Mapping};
+use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::SolvedBody;
 use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::spelling::spellings;
@@ -39,6 +40,8 @@ pub struct Run {
     pub unended: Vec<PathBuf>,
     /// What files say in two ways: a header that does not fit its data.
     pub doubts: Vec<String>,
+    /// What states say in two ways: other values at one place and time, times that go back.
+    pub contradictions: Vec<String>,
     /// Width of a body whose files show it, m.
     pub width: Option<f64>,
     /// Quantities that are left out on purpose.
@@ -147,12 +150,14 @@ pub fn runs_of(given: &[Vec<PathBuf>], mapping: &Mapping, body: SolvedBody) -> R
 fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
     let mut rows = Vec::new();
     let mut unended = Vec::new();
+    let mut origins = Origins::new(mapping);
     for (place, path) in files.iter().enumerate() {
-        let is_ended = take_rows(path, place, mapping, body, &mut rows)?;
+        let is_ended = take_rows(path, place, mapping, body, &mut origins, &mut rows)?;
         unended.extend((!is_ended).then(|| path.clone()));
     }
-    let states = states_of(&rows)?;
-    let mut run = Run { files, expected: Expected::of_states(&states), states, unended, ..Run::default() };
+    let (states, contradictions) = states_of(&rows, &origins)?;
+    let expected = Expected::of_states(&states);
+    let mut run = Run { files, expected, states, unended, contradictions, ..Run::default() };
     if mapping.columns.t.is_none() {
         run.files_are_in_order(mapping)?;
     }
@@ -168,6 +173,7 @@ fn run_of_curve(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Res
     if let Some(series) = &mapping.settlement {
         let curve = Curve::read(series, run.files.first().map(PathBuf::as_path), mapping, body)?;
         run.states = curve.states();
+        run.contradictions.clone_from(&curve.contradictions);
         run.expected.settlement = true;
         run.unended.extend((!curve.is_ended).then(|| curve.file.clone()));
     }
@@ -197,18 +203,24 @@ fn runs_of_arrays(
             }
             read_states(&steps, Wanted(&names), &mut |step, mut frame| {
                 join(step, &mapping.join, Wanted(&names), &mut frame)?;
-                each_time(step, &frame, mapping, &mut |time, frame, count| {
+                each_time(step, &frame, mapping, &mut |listed, frame, count| {
                     let cells = cells_over_height(frame, mapping, body.height);
                     let is_one_of_many = steps.len() > 1 || count > 1;
                     let key = key_of(step, is_one_of_many, are_folders, frame, cells);
                     let place = readings.iter().position(|known| known.key == key).unwrap_or_else(|| {
                         let run = Run { cells, expected: Expected::promised(mapping), ..Run::default() };
-                        let reading =
-                            Reading { key, are_folders, run, start: None, rows: Vec::new(), steps: 0 };
-                        readings.push(reading);
+                        readings.push(Reading {
+                            key,
+                            are_folders,
+                            run,
+                            start: None,
+                            rows: Vec::new(),
+                            origins: Origins::new(mapping),
+                            steps: 0,
+                        });
                         readings.len() - 1
                     });
-                    readings[place].take(step, frame, time, mapping, body)?;
+                    readings[place].take(step, frame, listed, mapping, body)?;
                     readings[place].run.notes.append(&mut notes);
                     Ok(())
                 })
@@ -218,8 +230,17 @@ fn runs_of_arrays(
     readings.into_iter().map(|reading| reading.done(mapping, body)).collect()
 }
 
-/// What is done with a state: its time, its frame and how many there are.
-type TakeState<'a> = dyn FnMut(Option<f64>, &Frame, usize) -> Result<(), ImportError> + 'a;
+/// A state of a frame whose arrays run over times.
+struct Listed<'a> {
+    time: f64,
+    /// Its place among the times, from 1.
+    number: usize,
+    /// Its rows, where each has its own time.
+    rows: &'a [usize],
+}
+
+/// What is done with a state: its place in a list of times, its frame and how many there are.
+type TakeState<'a> = dyn FnMut(Option<Listed>, &Frame, usize) -> Result<(), ImportError> + 'a;
 
 /// Hands over the states of a frame, with their time where its arrays run over times, and how many there are.
 fn each_time(
@@ -244,7 +265,8 @@ fn each_time(
     let states = states_by_time(frame, &times, &used).map_err(refused)?;
     for place in 0..states.count() {
         if let Some((time, frame)) = states.state(place) {
-            take(Some(time), &frame, states.count())?;
+            let listed = Listed { time, number: place + 1, rows: states.rows_of(place) };
+            take(Some(listed), &frame, states.count())?;
         }
     }
     Ok(())
@@ -335,6 +357,7 @@ struct Reading {
     run: Run,
     start: Option<Start>,
     rows: Vec<SampleRow>,
+    origins: Origins,
     steps: usize,
 }
 
@@ -344,13 +367,14 @@ impl Reading {
         &mut self,
         step: &Step,
         frame: &Frame,
-        listed: Option<f64>,
+        listed: Option<Listed>,
         mapping: &Mapping,
         body: SolvedBody,
     ) -> Result<(), ImportError> {
         let columns = FrameRows::find(frame, &step.file, mapping, body)?;
         let beside = columns.beside()?;
-        let (time, from) = self.time_of(step, frame, listed, &columns, mapping, body)?;
+        let of_list = listed.as_ref().map(|listed| listed.time);
+        let (time, from) = self.time_of(step, frame, of_list, &columns, mapping, body)?;
         if self.steps == 0 {
             let cells =
                 self.run.cells.map_or(String::new(), |cells| format!("; {cells} cells over the height"));
@@ -376,9 +400,21 @@ impl Reading {
                 self.run.doubts.push(told);
             }
         }
+        let (records, kind) = match &listed {
+            Some(Listed { rows, .. }) if !rows.is_empty() => (*rows, PartKind::Records),
+            Some(Listed { number, .. }) => (&[][..], PartKind::State(Some(*number))),
+            None if matches!(step.kind, Kind::Hdf5 | Kind::Xdmf) => {
+                (&[][..], PartKind::State(Some(step.place + 1)))
+            }
+            None => (&[][..], PartKind::State(None)),
+        };
+        let part = self.origins.add(&step.file, &step.named, kind);
+        let line =
+            |row: usize| records.get(row).map_or(0, |record| u32::try_from(record + 1).unwrap_or(u32::MAX));
         for columns in std::iter::once(&columns).chain(&beside) {
             self.run.expected.add(columns.columns());
-            columns.take_rows(time, self.start.as_ref(), &mut self.rows)?;
+            let origin = |row: usize| Origin { part, line: line(row) };
+            columns.take_rows(time, &origin, self.start.as_ref(), &mut self.rows)?;
         }
         if !self.run.files.contains(&step.named) {
             self.run.files.push(step.named.clone());
@@ -429,8 +465,8 @@ impl Reading {
 
     /// The run, with its states by time.
     fn done(self, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
-        let Self { mut run, start, rows, .. } = self;
-        run.states = states_of(&rows)?;
+        let Self { mut run, start, rows, origins, .. } = self;
+        (run.states, run.contradictions) = states_of(&rows, &origins)?;
         run.note_repeated(rows.len());
         drop(rows);
         if start.is_some() && run.states.len() < 2 {
@@ -523,6 +559,7 @@ impl Run {
         let Some(series) = &mapping.settlement else { return Ok(()) };
         let curve = Curve::read(series, self.files.first().map(PathBuf::as_path), mapping, body)?;
         let matched = curve.attach(&mut self.states);
+        self.contradictions.extend(curve.contradictions);
         let file = curve.file;
         let is_told = curve.is_ended || self.unended.contains(&file);
         self.expected.settlement = matched > 0;
@@ -594,7 +631,9 @@ mod tests {
 
     fn reading() -> Reading {
         let key = (PathBuf::new(), String::new(), None, 0);
-        Reading { key, are_folders: false, run: Run::default(), start: None, rows: Vec::new(), steps: 0 }
+        let mapping = Mapping::convention(crate::import::mapping::Axes::Column).expect("a constant");
+        let (run, origins) = (Run::default(), Origins::new(&mapping));
+        Reading { key, are_folders: false, run, start: None, rows: Vec::new(), origins, steps: 0 }
     }
 
     const BODY: SolvedBody = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
@@ -606,18 +645,7 @@ mod tests {
             let mut reading = reading();
             for (time, pressures) in [(0.0, at_start), (1.0, [0.5, 0.0])] {
                 reading.rows.extend(pressures.into_iter().zip([0.0, 1.0]).map(|(pressure, height)| {
-                    SampleRow {
-                        time,
-                        initial_distance: f64::NAN,
-                        initial_height: height,
-                        volume: 1.0,
-                        pressure,
-                        effective_stress: f64::NAN,
-                        displacement: f64::NAN,
-                        horizontal_displacement: f64::NAN,
-                        others: 0,
-                        set: (0, None),
-                    }
+                    SampleRow { pressure, ..SampleRow::at(time, height, Origin::default()) }
                 }));
             }
             let run = reading.done(&mapping, BODY).expect("two states");

@@ -3,7 +3,9 @@
 //! Programs that write values per cell repeat a node for each cell beside it: equal values at one place are one sample, and
 //! unequal ones are told. Quantities may have places of their own: pressures at nodes, stresses at the centres of cells.
 
+use crate::import::contradictions::Course;
 use crate::import::mapping::Column;
+use crate::import::origins::{Origin, Origins};
 use oedometer_case::quantity::Sample;
 use oedometer_formats::ImportError;
 use std::collections::HashMap;
@@ -12,9 +14,9 @@ use std::path::Path;
 /// Rows whose times differ by less than this share are of one time.
 const SAME_TIME: f64 = 1e-9;
 /// Places closer than this share of the largest coordinate are one.
-const SAME_PLACE: f64 = 1e-9;
+pub(crate) const SAME_PLACE: f64 = 1e-9;
 /// Values closer than this share of the largest of their state are equal: round-off of single precision.
-const SAME_VALUE: f64 = 1e-6;
+pub(crate) const SAME_VALUE: f64 = 1e-6;
 
 /// Samples at one time: SI, heights from the base and distances from the scene's `x = 0`, pressure
 /// compression positive, stress tension positive, displacement upward and away from `x = 0`
@@ -41,8 +43,8 @@ pub struct SampledState {
     pub surface_displacement: Option<f64>,
     /// Number of rows at the place of another one that no other column distinguishes from it, with other values.
     pub repeated: usize,
-    /// Height and distance of the first of them, m; the distance is NaN in a column.
-    pub repeated_at: Option<[f64; 2]>,
+    /// Place of the first of them, with both values and where they were read.
+    pub repeated_at: Option<String>,
     /// Quantities of this time at other places.
     pub beside: Vec<Beside>,
 }
@@ -90,57 +92,101 @@ pub struct SampleRow {
     pub others: u64,
     /// Its kind of places, if quantities have different places.
     pub set: PlaceSet,
+    /// Where it was read.
+    pub origin: Origin,
 }
 
-/// The states of rows, by time; within a state by height and distance.
+impl SampleRow {
+    /// A row without quantities at a time, s, and a height, m, with the weight of all others.
+    pub fn at(time: f64, height: f64, origin: Origin) -> Self {
+        let absent = f64::NAN;
+        Self {
+            time,
+            initial_distance: absent,
+            initial_height: height,
+            volume: 1.0,
+            pressure: absent,
+            effective_stress: absent,
+            displacement: absent,
+            horizontal_displacement: absent,
+            others: 0,
+            set: PlaceSet::default(),
+            origin,
+        }
+    }
+
+    /// The columns of [`values`](Self::values).
+    pub const COLUMNS: [Column; 4] = [Column::Pressure, Column::EffectiveStress, Column::Up, Column::Along];
+
+    /// Its quantities.
+    pub fn values(&self) -> [f64; 4] {
+        [self.pressure, self.effective_stress, self.displacement, self.horizontal_displacement]
+    }
+}
+
+/// The states of rows in the order in which they were read, and what of them contradicts itself, a sentence each. States are by
+/// time; within a state samples are by height and distance.
 ///
 /// # Errors
 /// When only some rows of a state have a quantity, or only some states the horizontal displacement.
-pub fn states_of(rows: &[SampleRow]) -> Result<Vec<SampledState>, ImportError> {
+pub fn states_of(
+    rows: &[SampleRow],
+    origins: &Origins,
+) -> Result<(Vec<SampledState>, Vec<String>), ImportError> {
     let first = || rows.iter().filter(|row| row.set.0 == 0);
     let lacks_along = first().filter(|row| row.horizontal_displacement.is_nan()).count();
     if ![0, first().count()].contains(&lacks_along) {
         return Err(incomplete(Column::Along));
     }
-    let mut order: Vec<&SampleRow> = rows.iter().collect();
-    order.sort_by(|a, b| {
-        (a.time.total_cmp(&b.time))
-            .then(a.set.0.cmp(&b.set.0))
-            .then(a.initial_height.total_cmp(&b.initial_height))
-            .then(a.initial_distance.total_cmp(&b.initial_distance))
-            .then(a.others.cmp(&b.others))
-    });
+    let mut course = Course::new(rows, instants_of(rows), origins);
+    let contradictions = course.settle();
     let mut states = Vec::new();
-    let mut rest = order.as_slice();
-    while let Some(first) = rest.first() {
-        let is_same = |row: &SampleRow| row.time - first.time <= SAME_TIME * row.time;
-        let count = rest.iter().take_while(|row| is_same(row)).count().max(1);
-        let (of_time, after) = rest.split_at(count);
+    for instant in &course.instants {
+        let mut sets: Vec<&SampleRow> = instant.iter().map(|at| &rows[*at]).collect();
         // Times that differ by round-off may mix the sets.
-        let mut sets = of_time.to_vec();
         sets.sort_by_key(|row| row.set.0);
         let mut whole: Option<SampledState> = None;
         for set in sets.chunk_by(|a, b| a.set.0 == b.set.0) {
-            let state = state_of(set)?;
+            let state = state_of(set, origins)?;
             match &mut whole {
                 Some(whole) => whole.beside.push(Beside { sample: set[0].set.1, state }),
                 None => whole = Some(state),
             }
         }
         states.extend(whole);
-        rest = after;
     }
-    Ok(states)
+    Ok((states, contradictions))
 }
 
-/// Rows without those that repeat another one with equal values, and the places of those that repeat it with others.
-fn distinct<'a>(rows: &[&'a SampleRow]) -> (Vec<&'a SampleRow>, Vec<[f64; 2]>) {
-    let values =
-        |row: &SampleRow| [row.pressure, row.effective_stress, row.displacement, row.horizontal_displacement];
+/// The rows of each time, by their places in the list; times that differ by round-off are one.
+pub fn instants_of(rows: &[SampleRow]) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|a, b| {
+        let [a, b] = [&rows[*a], &rows[*b]];
+        (a.time.total_cmp(&b.time))
+            .then(a.set.0.cmp(&b.set.0))
+            .then(a.initial_height.total_cmp(&b.initial_height))
+            .then(a.initial_distance.total_cmp(&b.initial_distance))
+            .then(a.others.cmp(&b.others))
+    });
+    let mut instants = Vec::new();
+    let mut rest = order.as_slice();
+    while let Some(first) = rest.first() {
+        let is_same = |at: &usize| rows[*at].time - rows[*first].time <= SAME_TIME * rows[*at].time;
+        let count = rest.iter().take_while(|at| is_same(at)).count().max(1);
+        let (of_time, after) = rest.split_at(count);
+        instants.push(of_time.to_vec());
+        rest = after;
+    }
+    instants
+}
+
+/// Rows without those that repeat another one with equal values, and those that repeat it with others, each with the other.
+fn distinct<'a>(rows: &[&'a SampleRow]) -> (Vec<&'a SampleRow>, Vec<[&'a SampleRow; 2]>) {
     let largest = |value: &dyn Fn(&SampleRow) -> f64| {
         rows.iter().map(|row| value(row).abs()).filter(|size| size.is_finite()).fold(0.0, f64::max)
     };
-    let scales = [0, 1, 2, 3].map(|place| SAME_VALUE * largest(&|row| values(row)[place]));
+    let scales = [0, 1, 2, 3].map(|place| SAME_VALUE * largest(&|row| row.values()[place]));
     let extent = largest(&|row| row.initial_height).max(largest(&|row| row.initial_distance));
     let step = SAME_PLACE * extent;
     let rounded = |place: f64| if step > 0.0 { (place / step).round() + 0.0 } else { place + 0.0 };
@@ -148,7 +194,7 @@ fn distinct<'a>(rows: &[&'a SampleRow]) -> (Vec<&'a SampleRow>, Vec<[f64; 2]>) {
         (rounded(row.initial_height).to_bits(), rounded(row.initial_distance).to_bits(), row.others)
     };
     let are_equal = |a: &SampleRow, b: &SampleRow| {
-        let pairs = values(a).into_iter().zip(values(b)).zip(scales);
+        let pairs = a.values().into_iter().zip(b.values()).zip(scales);
         pairs.into_iter().all(|((a, b), scale)| (a - b).abs() <= scale || (a.is_nan() && b.is_nan()))
     };
     let mut known: HashMap<_, Vec<&SampleRow>> = HashMap::new();
@@ -158,16 +204,32 @@ fn distinct<'a>(rows: &[&'a SampleRow]) -> (Vec<&'a SampleRow>, Vec<[f64; 2]>) {
         if there.iter().any(|other| are_equal(other, row)) {
             continue;
         }
-        if !there.is_empty() {
-            repeated.push([row.initial_height, row.initial_distance]);
-        }
+        repeated.extend(there.first().map(|other| [*other, *row]));
         there.push(row);
         kept.push(*row);
     }
     (kept, repeated)
 }
 
-fn state_of(rows: &[&SampleRow]) -> Result<SampledState, ImportError> {
+/// The sentence on the first of rows that repeat another one with other values: the quantity that differs most, on its scale.
+fn repetition(repeated: &[[&SampleRow; 2]], rows: &[&SampleRow], origins: &Origins) -> Option<String> {
+    let [one, other] = *repeated.first()?;
+    let off = |quantity: &usize| {
+        let scale = rows
+            .iter()
+            .map(|row| row.values()[*quantity].abs())
+            .filter(|size| size.is_finite())
+            .fold(0.0, f64::max);
+        let off = (one.values()[*quantity] - other.values()[*quantity]).abs() / scale;
+        if off.is_nan() { 0.0 } else { off }
+    };
+    let most = (0..4).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let mut pair = [one, other];
+    pair.sort_by_key(|row| row.origin);
+    Some(origins.two_values(most, pair))
+}
+
+fn state_of(rows: &[&SampleRow], origins: &Origins) -> Result<SampledState, ImportError> {
     let (rows, repeated) = distinct(rows);
     let all = |value: fn(&SampleRow) -> f64| rows.iter().map(|row| value(row)).collect::<Vec<f64>>();
     let of = |column: Column, value: fn(&SampleRow) -> f64| {
@@ -189,7 +251,7 @@ fn state_of(rows: &[&SampleRow]) -> Result<SampledState, ImportError> {
         horizontal_displacement: of(Column::Along, |row| row.horizontal_displacement)?,
         surface_displacement: None,
         repeated: repeated.len(),
-        repeated_at: repeated.first().copied(),
+        repeated_at: repetition(&repeated, &rows, origins),
         beside: Vec::new(),
     })
 }
@@ -205,19 +267,18 @@ fn incomplete(column: Column) -> ImportError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::mapping::{Axes, Mapping};
+
+    fn states_of(rows: &[SampleRow]) -> Result<Vec<SampledState>, ImportError> {
+        let mapping = Mapping::convention(Axes::Column).expect("a constant");
+        super::states_of(rows, &Origins::new(&mapping)).map(|(states, _)| states)
+    }
 
     fn row(time: f64, height: f64, pressure: f64, along: f64) -> SampleRow {
         SampleRow {
-            time,
-            initial_distance: f64::NAN,
-            initial_height: height,
-            volume: 1.0,
             pressure,
-            effective_stress: f64::NAN,
-            displacement: f64::NAN,
             horizontal_displacement: along,
-            others: 0,
-            set: PlaceSet::default(),
+            ..SampleRow::at(time, height, Origin::default())
         }
     }
 
@@ -231,8 +292,8 @@ mod tests {
         ])
         .expect("alike");
         assert_eq!(
-            (found.len(), found[0].repeated, found[0].repeated_at.map(|at| at[0])),
-            (2, 1, Some(0.75))
+            (found.len(), found[0].repeated, found[0].repeated_at.as_deref()),
+            (2, 1, Some("y = 0.75 m: p is 2 Pa (row 0) and 3 Pa (row 0)"))
         );
         assert_eq!(
             found[0].initial_height,
@@ -278,6 +339,9 @@ mod tests {
         assert_eq!(state.initial_distance, [1.0, 0.0, 1.0, 2.0, 1.0]);
         assert_eq!(state.initial_height, [0.25, 0.5, 0.5, 0.5, 0.75]);
         assert_eq!(state.effective_stress, [10.0, 0.0, 10.0, 20.0, 10.0]);
+        let place_of = |state: &SampledState| {
+            Some(state.repeated_at.as_ref()?.split(':').next().unwrap_or_default().to_owned())
+        };
         // Equal values are one sample; others are told, where no column tells the rows apart.
         let with =
             |distance: f64, pressure: f64, others: u64| SampleRow { pressure, ..at(distance, 0.5, others) };
@@ -294,9 +358,9 @@ mod tests {
             (vec![with(0.0, 2.0, 0), with(-0.0, 2.0, 0)], 1, None),
         ] {
             let state = &states_of(&rows).expect("alike")[0];
-            let place = repeated.map(|_| [0.5, 1.0]);
+            let place = repeated.map(|_| "y = 0.5 m, x = 1 m".to_owned());
             assert_eq!(
-                (state.pressure.len(), state.repeated, state.repeated_at),
+                (state.pressure.len(), state.repeated, place_of(state)),
                 (left, repeated.unwrap_or(0), place),
                 "{rows:?}"
             );
@@ -305,11 +369,11 @@ mod tests {
         let several =
             [at(3.0, 0.75, 0), with(2.0, 5.0, 0), with(2.0, 6.0, 0), with(1.0, 5.0, 0), with(1.0, 6.0, 0)];
         let state = &states_of(&several).expect("alike")[0];
-        assert_eq!((state.repeated, state.repeated_at), (2, Some([0.5, 1.0])));
+        assert_eq!((state.repeated, place_of(state)), (2, Some("y = 0.5 m, x = 1 m".to_owned())));
         assert_eq!(states_of(&[]).expect("nothing"), []);
         // Beyond a thousandth of a millionth of it is another time.
         for (off, states) in [(0.9e-9, 1), (1.1e-9, 2)] {
-            let found = states_of(&[row(1000.0 * (1.0 + off), 0.5, 1.0, nan), row(1000.0, 0.5, 1.0, nan)]);
+            let found = states_of(&[row(1000.0 * (1.0 + off), 0.5, 2.0, nan), row(1000.0, 0.5, 1.0, nan)]);
             assert_eq!(found.expect("alike").len(), states, "{off}");
         }
         let lacking = |change: fn(&mut SampleRow)| {

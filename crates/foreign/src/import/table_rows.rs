@@ -4,10 +4,12 @@ use crate::import::csv_text::{CsvText, line_of_record, number_of};
 use crate::import::expected::left_out;
 use crate::import::mapping::units::{SettlementSeries, VerticalSense};
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
+use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
-use crate::import::samples::{SampleRow, SampledState};
+use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::step_times::declared_time;
 use oedometer_formats::{ImportError, excerpt};
+use oedometer_soil::wording::typed;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -23,6 +25,8 @@ struct Table<'a> {
     header: csv::StringRecord,
     reader: csv::Reader<Cursor<Vec<u8>>>,
     line: csv::StringRecord,
+    /// Its first byte below comments and blank lines, and its number.
+    at: (usize, u64),
     comment: Option<char>,
     has_decimal_comma: bool,
     is_ended: bool,
@@ -50,6 +54,7 @@ impl<'a> Table<'a> {
             header,
             reader,
             line: csv::StringRecord::new(),
+            at: (0, 1),
             comment,
             has_decimal_comma,
             is_ended,
@@ -90,20 +95,29 @@ impl<'a> Table<'a> {
     }
 
     fn error_in_line(&self, reason: String) -> ImportError {
-        let byte = self.line.position().map_or(0, csv::Position::byte);
-        let line = line_of_record(self.reader.get_ref().get_ref(), byte, self.comment);
-        ImportError::line(self.path, line, reason)
+        ImportError::line(self.path, self.at.1, reason)
     }
 
     /// Goes to the next line; false at the end.
     fn next(&mut self) -> Result<bool, ImportError> {
-        self.reader.read_record(&mut self.line).map_err(|error| match error.kind() {
+        let is_there = self.reader.read_record(&mut self.line).map_err(|error| match error.kind() {
             csv::ErrorKind::UnequalLengths { pos: Some(place), expected_len, len } => {
-                let line = line_of_record(self.reader.get_ref().get_ref(), place.byte(), self.comment);
+                let line =
+                    line_of_record(self.reader.get_ref().get_ref(), place.byte(), self.comment, (0, 1)).1;
                 ImportError::line(self.path, line, uneven(*len, *expected_len))
             }
             _ => ImportError::content(self.path, error.to_string()),
-        })
+        })?;
+        let byte = self.line.position().filter(|_| is_there).map(csv::Position::byte);
+        if let Some(byte) = byte {
+            self.at = line_of_record(self.reader.get_ref().get_ref(), byte, self.comment, self.at);
+        }
+        Ok(is_there)
+    }
+
+    /// Where the line is, in a part of a result.
+    fn origin(&self, part: u32) -> Origin {
+        Origin { part, line: u32::try_from(self.at.1).unwrap_or(u32::MAX) }
     }
 
     /// The number in a column of the line.
@@ -237,8 +251,10 @@ pub fn take_rows(
     place: usize,
     mapping: &Mapping,
     body: SolvedBody,
+    origins: &mut Origins,
     rows: &mut Vec<SampleRow>,
 ) -> Result<bool, ImportError> {
+    let part = origins.add(path, path, PartKind::Lines);
     let mut table = Table::open(path, &mapping.csv)?;
     let mut places = Places::of(&table, mapping)?;
     let time_column = places.columns[Column::Time as usize];
@@ -266,14 +282,14 @@ pub fn take_rows(
         };
         let seconds = time_of_file.map_or_else(of_line, Ok)?;
         if !places.wide.is_empty() {
-            take_wide(&table, &places.wide, seconds, mapping, body, rows)?;
+            take_wide(&table, &places.wide, seconds, part, mapping, body, rows)?;
             continue;
         }
         let mut others = DefaultHasher::new();
         for place in &places.others {
             table.line.get(*place).hash(&mut others);
         }
-        let row = RawRow::read(seconds, others.finish(), |column| {
+        let row = RawRow::read(seconds, others.finish(), table.origin(part), |column| {
             places.columns[column as usize].map(|place| table.number(place)).transpose()
         })?;
         rows.push(row.sample(mapping, body, &|reason| table.error_in_line(reason))?);
@@ -286,6 +302,7 @@ fn take_wide(
     table: &Table,
     sets: &[Wide],
     seconds: f64,
+    part: u32,
     mapping: &Mapping,
     body: SolvedBody,
     rows: &mut Vec<SampleRow>,
@@ -304,6 +321,7 @@ fn take_wide(
                 displacement: of(Column::Up)?,
                 horizontal_displacement: of(Column::Along)?,
                 set: (number, None),
+                origin: table.origin(part),
                 ..RawRow::default()
             };
             rows.push(row.sample(mapping, body, &|reason| table.error_in_line(reason))?);
@@ -315,6 +333,8 @@ fn take_wide(
 /// A settlement curve: times, s, with the displacement of the surface, m.
 pub struct Curve {
     points: Vec<(f64, f64)>,
+    /// What of it contradicts itself, a sentence each.
+    pub contradictions: Vec<String>,
     /// Its file.
     pub file: PathBuf,
     /// Whether the last line of the file ends.
@@ -344,19 +364,25 @@ impl Curve {
         let (time, settlement) = (place(&series.t)?, place(&series.s)?);
         let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
         let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
-        let mut points = Vec::new();
+        let mut origins = Origins::of_curve(mapping);
+        let part = origins.add(&file, &file, PartKind::Lines);
+        let mut rows = Vec::new();
         while table.next()? {
             let seconds = mapping.units.time.seconds(table.number(time)?, body.seconds_per_time_factor);
             if seconds < 0.0 {
                 return Err(table.error_in_line("the time is negative".to_owned()));
             }
-            points.push((seconds, table.number(settlement)? * upward));
+            rows.push(SampleRow {
+                displacement: table.number(settlement)? * upward,
+                ..SampleRow::at(seconds, body.height, table.origin(part))
+            });
         }
-        if points.is_empty() {
+        if rows.is_empty() {
             return Err(table.error("there are no rows".to_owned()));
         }
+        let (points, contradictions) = points_of(&rows, &origins)?;
         let is_ended = table.is_ended;
-        Ok(Self { points, file, is_ended })
+        Ok(Self { points, contradictions, file, is_ended })
     }
 
     /// Gives each state the displacement of the surface at the nearest time of the curve; returns how many states got one.
@@ -374,15 +400,27 @@ impl Curve {
 
     /// The states of a result that is nothing but the curve, by time.
     pub fn states(&self) -> Vec<SampledState> {
-        let mut points = self.points.clone();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let state = |(time, displacement): (f64, f64)| SampledState {
             time,
             surface_displacement: Some(displacement),
             ..SampledState::default()
         };
-        points.into_iter().map(state).collect()
+        self.points.iter().copied().map(state).collect()
     }
+}
+
+/// The times and displacements of a curve, and what of it contradicts itself.
+fn points_of(rows: &[SampleRow], origins: &Origins) -> Result<(Vec<(f64, f64)>, Vec<String>), ImportError> {
+    let (states, mut contradictions) = states_of(rows, origins)?;
+    let repeated = states.iter().filter_map(|state| {
+        let values = state.repeated_at.as_ref()?;
+        Some(format!(
+            "at t = {} s it has two values, at {values}: keep the run that counts",
+            typed(state.time)
+        ))
+    });
+    contradictions.splice(0..0, repeated);
+    Ok((states.iter().map(|state| (state.time, state.displacement[0])).collect(), contradictions))
 }
 
 /// A sentence about a table whose last line does not end.

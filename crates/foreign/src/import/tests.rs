@@ -97,8 +97,11 @@ fn a_repeated_row_is_told_from_a_second_column_of_samples() {
     let state = &states(CONVENTION, text).expect("rows")[0];
     assert_eq!(state.repeated, 1, "rows 1 and 2 differ in a column without meaning");
     assert_eq!(
-        (state.pressure.len(), state.repeated_at.map(|at| at[0])),
-        (4, Some(0.5)),
+        (
+            state.pressure.len(),
+            state.repeated_at.as_ref().is_some_and(|at| at.starts_with("y = 0.5 m: p is 3 Pa ("))
+        ),
+        (4, true),
         "equal values count once"
     );
 }
@@ -370,4 +373,102 @@ fn what_is_left_out_is_in_no_state_and_expected_of_none() {
         let bare = run.expected.absent(&[SampledState::default()]).len();
         assert_eq!(bare, left.iter().filter(|is_left| **is_left).count(), "{quantity:?}");
     }
+}
+
+/// What a table with a settlement curve in it contradicts, as told.
+fn contradictions(mapping: &str, text: &str) -> (usize, Vec<String>) {
+    let source = StudySource { name: "map.toml".to_owned(), text: mapping.to_owned() };
+    let mapping = Mapping::read(&source).expect("a mapping");
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.csv");
+    std::fs::write(&path, text).expect("a file");
+    let body = SolvedBody { height: 4.0, length: None, seconds_per_time_factor: 1.0 };
+    let run = runs_of(&[vec![path]], &mapping, body).expect("a run").remove(0);
+    let plain = |told: &String| told.replace(&format!("{}/", folder.path().display()), "");
+    (run.states.len(), run.contradictions.iter().map(plain).collect())
+}
+
+#[test]
+fn states_of_one_time_must_agree_and_times_must_not_go_back() {
+    let table = |blocks: &[(f64, f64)]| -> String {
+        let rows = blocks.iter().flat_map(|(time, factor)| {
+            [0.5, 1.5, 2.5, 3.5].map(|y: f64| format!("{time:e},{y},{},0\n", factor * (16.0 - y * y)))
+        });
+        "t,y,p,u_y\n".to_owned() + &rows.collect::<String>()
+    };
+    let twice = "two states stand at one time, t = 2 s and 2.000000004 s, and contradict each other at y = 0.5 m: p is 15.75 Pa \
+                 (a.csv:6) and 12.6 Pa (a.csv:18): keep the run that counts";
+    for (blocks, states, told) in [
+        (&[(1.0, 1.0), (2.0, 1.0), (3.0, 0.9)][..], 3, None),
+        // Another run, at times of its own; the last digit of a time decides nothing.
+        (&[(1.0, 1.0), (2.0, 1.0), (3.0, 0.9), (1.0, 1.0), (2.0 * (1.0 + 2e-9), 0.8)], 4, Some(twice)),
+        (&[(1.0, 1.0), (2.0, 1.0), (2.001, 0.9), (9.0, 0.8)], 4, Some("t = 2 s and 2.001 s")),
+        // The same state again is one state; what a thousandth of the time explains is none.
+        (&[(1.0, 1.0), (2.0, 1.0), (3.0, 0.9), (2.0 * (1.0 + 2e-9), 1.0)], 3, None),
+        (&[(1.0, 1.0), (2.0, 1.0), (2.001, 0.996), (9.0, 0.8)], 4, None),
+        // Steps that are as small all through are steps.
+        (&[(100.0, 1.0), (100.05, 0.7), (100.1, 0.4), (100.15, 0.1)], 4, None),
+        // A restart goes back; a table in falling order does not.
+        (
+            &[(1.0, 1.0), (2.0, 0.9), (3.0, 0.8), (2.5, 0.85), (3.5, 0.7)],
+            5,
+            Some("t = 2.5 s (a.csv:14) comes after t = 3 s (a.csv:10)"),
+        ),
+        (&[(3.0, 0.8), (2.0, 0.9), (1.0, 1.0)], 3, None),
+    ] {
+        let (found, sentences) = contradictions(CONVENTION, &table(blocks));
+        assert_eq!(found, states, "{blocks:?}");
+        let agrees =
+            sentences.first().map_or(told.is_none(), |first| told.is_some_and(|told| first.contains(told)));
+        assert!(agrees, "{blocks:?}: {sentences:?}");
+    }
+}
+
+#[test]
+fn runs_at_places_of_their_own_are_told_and_columns_place_by_place_are_not() {
+    let row = |time: f64, y: f64, factor: f64| format!("{time},{y},{},0\n", factor * (16.0 - y * y) / time);
+    let head = "t,y,p,u_y\n";
+    let run = |places: &[f64], factor: f64| -> String {
+        [1.0, 2.0].iter().flat_map(|time| places.iter().map(|y| row(*time, *y, factor))).collect()
+    };
+    let (one, other) = ([0.5, 1.2, 1.7, 2.4, 2.9, 3.5], [0.6, 1.1, 1.8, 2.3, 3.0, 3.4]);
+    for (rows, told) in [
+        (run(&one, 1.0) + &run(&other, 1.0), false),
+        (run(&one, 1.0) + &run(&other, 0.8), true),
+        (run(&other, 0.8) + &run(&one, 1.0), true),
+        // Halves of the height are parts of one run, and so are columns written place by place.
+        (run(&one[..3], 1.0) + &run(&one[3..], 1.0), false),
+        (one.iter().flat_map(|y| [1.0, 2.0, 3.0].map(|time| row(time, *y, 1.0))).collect(), false),
+    ] {
+        let (_, sentences) = contradictions(CONVENTION, &(head.to_owned() + &rows));
+        let is_told = sentences.first().is_some_and(|first| first.contains("it holds two runs: p is"));
+        assert!(is_told == told && sentences.is_empty() != told, "{rows}: {sentences:?}");
+    }
+    // Probes and curves.
+    let wide = "[columns]\nt = 'time'\nu_y = ''\np = { p0 = 0.0, p1 = 2.0 }\n";
+    let curve = "[columns]\np = ''\nu_y = ''\n[settlement]\nt = 'time'\ns = 'p0'\n";
+    for (rows, told) in [
+        ("1,5,4\n2,4,3\n3,3,2\n", None),
+        ("1,5,4\n2,4,3\n3,3,2\n2,4,3\n", None),
+        ("1,5,4\n2,4,3\n3,3,2\n2.5,3.5,2\n4,3,1\n", Some(("go back", "go back"))),
+        (
+            "1,5,4\n2,4,3\n3,3,2\n2.000001,3,3\n",
+            Some(("p is 4 Pa (a.csv:3) and 3 Pa (a.csv:5)", "s is -4 m (a.csv:3) and -3 m (a.csv:5)")),
+        ),
+    ] {
+        for (mapping, is_curve) in [(wide, false), (curve, true)] {
+            let (_, sentences) = contradictions(mapping, &format!("time,p0,p1\n{rows}"));
+            let wanted = told.map(|(probes, curve)| if is_curve { curve } else { probes });
+            let agrees = sentences
+                .first()
+                .map_or(wanted.is_none(), |first| wanted.is_some_and(|told| first.contains(told)));
+            assert!(agrees, "{mapping} {rows}: {sentences:?}");
+        }
+    }
+    let (_, sentences) = contradictions(curve, "time,p0,p1\n1,5,4\n2,4,3\n2,3,3\n");
+    assert!(
+        sentences[0]
+            .contains("at t = 2 s it has two values, at y = 4 m: s is -4 m (a.csv:3) and -3 m (a.csv:4)"),
+        "{sentences:?}"
+    );
 }
