@@ -111,7 +111,7 @@ fn studies_in(folder: &Path) -> Vec<PathBuf> {
         .unwrap_or_default();
     found.sort_by_cached_key(|file| {
         let told = file.display().to_string();
-        (order.iter().position(|name| name == name_of(&told)).unwrap_or(order.len()), told)
+        (order.iter().position(|name| *name == name_of(&told)).unwrap_or(order.len()), told)
     });
     found
 }
@@ -310,7 +310,7 @@ mod tests {
         std::fs::write(at.join("bytes.toml"), b"\xff").expect("a file");
         std::fs::create_dir(at.join("folder.toml")).expect("a folder");
         let names = |found: Vec<PathBuf>| -> Vec<String> {
-            found.iter().map(|path| name_of(&path.to_string_lossy()).to_owned()).collect()
+            found.iter().map(|path| name_of(&path.to_string_lossy())).collect()
         };
         let here = ["terzaghi-mesh", "at-rest", "aa", "bytes", "folder", "zz"];
         assert_eq!(names(studies_in(at)), here);

@@ -31,7 +31,7 @@ pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
     let sources = paths.iter().map(|path| read(path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
     for (number, source) in sources.iter().enumerate() {
         let name = name_of(&source.name);
-        if let Some(why) = refused_name(name) {
+        if let Some(why) = refused_name(&name) {
             let file = &source.name;
             return Err(Ended::usage(format!("the study {file} cannot be called `{name}`: {why}")));
         }

@@ -303,8 +303,26 @@ pub fn numbers(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
     entries(name, typed)?.into_iter().map(|entry| number(entry).map_err(OverrideError::Typed)).collect()
 }
 
-/// Times of a comma-separated list, s: plain numbers, or numbers with a unit of time.
+/// Times of a comma-separated list, s: plain numbers, or numbers with a unit of time. A comma between digits before a unit may
+/// begin a fraction, so that nothing is assumed.
 pub fn times(name: &str, typed: &str) -> Result<Vec<f64>, OverrideError> {
+    let begins_with_digit = |text: &str| text.starts_with(|letter: char| letter.is_ascii_digit());
+    let parts: Vec<&str> = typed.split(',').collect();
+    let joined = parts.windows(2).find(|pair| {
+        pair[0].ends_with(|letter: char| letter.is_ascii_digit())
+            && begins_with_digit(pair[1])
+            && has_unit(pair[1])
+    });
+    if let Some([whole, rest]) = joined {
+        let unit = rest.trim_start_matches(|letter: char| !letter.is_alphabetic()).trim();
+        let whole = whole.trim();
+        return Err(OverrideError::Typed(format!(
+            "`{whole},{rest}` in `{name} {typed}` may be one time or two: write a decimal point, {whole}.{}, or a unit behind \
+             each, {whole} {unit}, {}",
+            rest.trim(),
+            rest.trim()
+        )));
+    }
     let time = |entry: &str| {
         let parsed = entry.parse().or_else(|_| in_si(entry, "s"));
         parsed.map_err(|told| refused_quantity(&format!("{name} {typed}"), told))
@@ -504,6 +522,16 @@ mod tests {
         let told = "`1 d` in `--time-factor 1 d` is not a number; a time is given by `--time 1 d`";
         assert_eq!(numbers("--time-factor", "1 d").map_err(|error| error.to_string()), Err(told.to_owned()));
         assert_eq!(times("--time", "5, 2 min,1d").expect("times"), [5.0, 120.0, 86_400.0]);
+        for (typed, right) in [
+            ("1,5 years", "1.5 years, or a unit behind each, 1 years, 5 years"),
+            ("1,5a", "1.5a"),
+            ("2 d, 1,5 days", "1.5 days"),
+            ("10,20,30 min", "may be one time or two"),
+        ] {
+            let told = times("--time", typed).expect_err(typed).to_string();
+            assert!(told.contains(right), "{told}");
+        }
+        assert_eq!(times("--time", "1,5").expect("two plain times"), [1.0, 5.0]);
         for typed in ["05", "5 kPa", "soon", ""] {
             assert!(times("--time", typed).is_err(), "{typed}");
         }

@@ -43,14 +43,17 @@ pub fn shipped_study(name: &str) -> Option<StudySource> {
 
 /// The names of the shipped studies.
 pub fn shipped_names() -> Vec<String> {
-    shipped_studies().iter().map(|source| name_of(&source.name).to_owned()).collect()
+    shipped_studies().iter().map(|source| name_of(&source.name)).collect()
 }
 
 /// Names and titles of the shipped studies. Only the line of the title is read: nothing is checked.
 pub fn shipped_titles() -> impl Iterator<Item = (&'static str, String)> {
     SHIPPED.iter().map(|(name, text)| {
         let title = text.lines().find_map(|line| toml::from_str::<Titled>(line).ok());
-        (name_of(name), title.map_or(String::new(), |titled| titled.title))
+        (
+            name.trim_start_matches("studies/").trim_end_matches(".toml"),
+            title.map_or(String::new(), |titled| titled.title),
+        )
     })
 }
 
@@ -72,10 +75,15 @@ const LONGEST: usize = 100;
 /// Names of parts of the report, the golden values and the tables.
 const TAKEN: [&str; 6] = ["findings", "survival", "how", "profiles", "history", "columns"];
 
-/// Name of a study by its file: without folders and extension.
-pub fn name_of(file: &str) -> &str {
+/// Name of a study by its file: without folders and extension, in lower case, with `-` for blanks.
+pub fn name_of(file: &str) -> String {
     let file = file.rsplit(['/', '\\']).next().unwrap_or_default();
-    file.strip_suffix(".toml").unwrap_or(file)
+    let name = file.strip_suffix(".toml").unwrap_or(file).to_ascii_lowercase();
+    if !name.contains(' ') {
+        return name;
+    }
+    let words = name.split(' ').map(|word| word.trim_matches('-')).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-")
 }
 
 /// Why a name cannot be that of a study that is kept; none where it can.
@@ -90,7 +98,7 @@ pub fn refused_name(name: &str) -> Option<String> {
         && !name.contains("--");
     if !is_plain {
         return Some(
-            "take lower-case letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`"
+            "take letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`"
                 .to_owned(),
         );
     }
@@ -156,6 +164,7 @@ mod tests {
     fn a_name_is_the_file_without_folders_and_extension() {
         assert_eq!(name_of("studies/a.b.toml"), "a.b");
         assert_eq!(name_of("c:\\studies\\mesh.toml"), "mesh");
+        assert_eq!(name_of("Results/My  Study - 2.toml"), "my-study-2");
         assert_eq!(name_of("..toml"), ".");
         assert_eq!(name_of("...toml"), "..");
         assert_eq!(name_of("/dev/stdin"), "stdin");
@@ -166,7 +175,7 @@ mod tests {
         for name in ["terzaghi-mesh", "a", "63", "v1.2_b"] {
             assert_eq!(refused_name(name), None, "{name}");
         }
-        let plain = "take lower-case letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`";
+        let plain = "take letters and digits, with single `-`, `_` or `.` between them, like `mesh-2.toml`";
         let others = [
             "", ".", "..", ".hidden", "-a", "a-", "a.", "MyStudy", "ä", "a b", "a/b", "a\\b", "a\n", "a--b",
             "con:", "_a", "a-.b--c",

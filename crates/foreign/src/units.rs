@@ -8,27 +8,51 @@ use std::f64::consts::PI;
 type Symbol = (&'static [&'static str], &'static str, [i32; 3], i32, f64);
 
 /// Unlikely prefixes are left out: an `mPa` is a mistyped `MPa`.
-const SYMBOLS: [Symbol; 12] = [
+const SYMBOLS: [Symbol; 14] = [
     (&["Pa"], "kMG", [1, -1, -2], 0, 1.0),
     (&["bar"], "", [1, -1, -2], 5, 1.0),
     (&["N"], "kM", [1, 1, -2], 0, 1.0),
     (&["m"], "kcmµu", [0, 1, 0], 0, 1.0),
     (&["g"], "kM", [1, 0, 0], -3, 1.0),
     (&["t"], "", [1, 0, 0], 3, 1.0),
-    (&["s", "second", "seconds"], "mµu", [0, 0, 1], 0, 1.0),
+    (&["s", "second", "seconds", "sec"], "mµun", [0, 0, 1], 0, 1.0),
     (&["min", "minute", "minutes"], "", [0, 0, 1], 0, 60.0),
-    (&["h", "hour", "hours"], "", [0, 0, 1], 0, 3600.0),
+    (&["h", "hour", "hours", "hr"], "", [0, 0, 1], 0, 3600.0),
     (&["d", "day", "days"], "", [0, 0, 1], 0, 86_400.0),
-    (&["a", "year", "years"], "", [0, 0, 1], 0, 365.25 * 86_400.0),
+    (&["week", "weeks"], "", [0, 0, 1], 0, 7.0 * 86_400.0),
+    (&["month", "months"], "", [0, 0, 1], 0, 365.25 / 12.0 * 86_400.0),
+    (&["a", "year", "years", "yr"], "", [0, 0, 1], 0, 365.25 * 86_400.0),
     (&["rad", "deg"], "", [0, 0, 0], 0, 1.0),
 ];
 
-const PREFIXES: [(char, i32); 7] = [('G', 9), ('M', 6), ('k', 3), ('c', -2), ('m', -3), ('µ', -6), ('u', -6)];
+const PREFIXES: [(char, i32); 8] =
+    [('G', 9), ('M', 6), ('k', 3), ('c', -2), ('m', -3), ('µ', -6), ('u', -6), ('n', -9)];
+
+/// Digits and signs above the line, and signs of other keyboards, with the plain ones.
+const PLAIN: [(char, char); 15] = [
+    ('⁰', '0'),
+    ('¹', '1'),
+    ('²', '2'),
+    ('³', '3'),
+    ('⁴', '4'),
+    ('⁵', '5'),
+    ('⁶', '6'),
+    ('⁷', '7'),
+    ('⁸', '8'),
+    ('⁹', '9'),
+    ('⁻', '-'),
+    ('⁺', '+'),
+    ('−', '-'),
+    ('μ', 'µ'),
+    ('\u{a0}', ' '),
+];
+/// Signs of a product before a power of ten.
+const TIMES: [char; 5] = ['x', 'X', '×', '*', '·'];
 
 /// Units as messages name them.
-const USUAL: [&str; 24] = [
-    "kPa", "MPa", "GPa", "Pa", "kN/m²", "bar", "m", "cm", "mm", "s", "min", "h", "days", "years", "m/s",
-    "cm/s", "m/day", "m/year", "kg/m³", "g/cm³", "kN/m³", "m/s²", "rad", "rad/s",
+const USUAL: [&str; 25] = [
+    "kPa", "MPa", "GPa", "Pa", "kN/m²", "bar", "m", "cm", "mm", "s", "min", "h", "days", "months", "years",
+    "m/s", "cm/s", "m/day", "m/year", "kg/m³", "g/cm³", "kN/m³", "m/s²", "rad", "rad/s",
 ];
 
 /// The unit of a key that is a share of something: a plain number, or a percentage in quotes.
@@ -46,7 +70,7 @@ struct Unit {
 impl Unit {
     /// Reads a product of powers of symbols, like `kN/m³` or `m/day`.
     fn read(text: &str) -> Option<Self> {
-        let text = text.replace('²', "2").replace('³', "3");
+        let text = plain(text);
         let mut unit = Self { dimension: [0; 3], tens: 0, up: 1.0, down: 1.0 };
         for (number, product) in text.split('/').enumerate() {
             // Neither `m/` nor `/` is a unit.
@@ -68,14 +92,12 @@ impl Unit {
     }
 
     fn multiply(&mut self, symbol: &str, exponent: i32) -> Option<()> {
-        let plain = |names: &[&str], symbol: &str| names.contains(&symbol).then_some(0);
-        let prefixed = |(names, prefixes, ..): &Symbol| {
-            let (prefix, tens) = PREFIXES.iter().find(|(prefix, _)| symbol.starts_with(*prefix))?;
-            let rest = symbol.strip_prefix(*prefix)?;
-            (prefixes.contains(*prefix) && names.first() == Some(&rest)).then_some(*tens)
-        };
-        let whole = SYMBOLS.iter().find_map(|one| Some((one, plain(one.0, symbol)?)));
-        let found = whole.or_else(|| SYMBOLS.iter().find_map(|one| Some((one, prefixed(one)?))));
+        let found = known(symbol).or_else(|| {
+            // In other letters, where only one unit is meant: of `mpa` it may be the first letter that is wrong.
+            let mut alike = spelled_otherwise(symbol);
+            let only = alike.next().filter(|found| !is_doubtful(symbol, found))?;
+            if alike.next().is_none() { known(&only) } else { None }
+        });
         let ((_, _, dimension, own, factor), prefix) = found?;
         for (sum, one) in self.dimension.iter_mut().zip(dimension) {
             *sum += exponent * one;
@@ -86,6 +108,66 @@ impl Unit {
         *side *= (0..exponent.abs()).map(|_| factor).product::<f64>();
         Some(())
     }
+}
+
+/// A text without signs that stand for others.
+fn plain(text: &str) -> String {
+    let of =
+        |letter: char| PLAIN.iter().find(|(other, _)| *other == letter).map_or(letter, |(_, plain)| *plain);
+    text.chars().map(of).collect()
+}
+
+/// A symbol in its own letters, and the power of ten of its prefix.
+fn known(symbol: &str) -> Option<(&'static Symbol, i32)> {
+    let whole = SYMBOLS.iter().find(|one| one.0.contains(&symbol)).map(|one| (one, 0));
+    let prefixed = |(names, prefixes, ..): &Symbol| {
+        let (prefix, tens) = PREFIXES.iter().find(|(prefix, _)| symbol.starts_with(*prefix))?;
+        let rest = symbol.strip_prefix(*prefix)?;
+        (prefixes.contains(*prefix) && names.first() == Some(&rest)).then_some(*tens)
+    };
+    whole.or_else(|| SYMBOLS.iter().find_map(|one| Some((one, prefixed(one)?))))
+}
+
+/// The symbols that differ from a text by capitals alone.
+fn spelled_otherwise(symbol: &str) -> impl Iterator<Item = String> {
+    let names = SYMBOLS.iter().flat_map(|(names, ..)| names.iter().map(|name| (*name).to_owned()));
+    let prefixed = SYMBOLS.iter().flat_map(|(names, prefixes, ..)| {
+        prefixes.chars().filter_map(|prefix| Some(format!("{prefix}{}", names.first()?)))
+    });
+    let lower = symbol.to_lowercase();
+    names.chain(prefixed).filter(move |name| name.to_lowercase() == lower)
+}
+
+/// Whether a text may mean another unit than the symbol that it differs from by capitals: milli or mega, a prefix alone.
+fn is_doubtful(typed: &str, symbol: &str) -> bool {
+    let first = |text: &str| text.chars().next().filter(|letter| letter.eq_ignore_ascii_case(&'m'));
+    let is_word = SYMBOLS.iter().any(|one| one.0.contains(&symbol)) && symbol.len() > 1;
+    !is_word && (first(typed).is_some() && first(typed) != first(symbol) || symbol == "m")
+}
+
+/// The number that a text begins with as a decimal number, and the rest: `10^-9`, `1x10-9` and `1·10⁻⁹` are `1e-9`.
+fn number_and_rest(text: &str) -> (String, String) {
+    let text = plain(text);
+    let number = leading_number(&text);
+    let rest = &text[number.len()..];
+    // A power of ten behind a factor, or alone.
+    let base =
+        rest.trim_start().strip_prefix(TIMES).map(str::trim_start).and_then(|rest| rest.strip_prefix("10"));
+    let power = match base {
+        Some(after) if !number.is_empty() => Some((number, after)),
+        None if number == "10" && rest.starts_with(['^', '*']) => Some(("1", rest)),
+        _ => None,
+    };
+    let exponent = power.and_then(|(factor, after)| {
+        let after = after.trim_start_matches(['^', '*']);
+        let digits = after.strip_prefix(['+', '-']).unwrap_or(after);
+        let end = after.len() - digits.trim_start_matches(|letter: char| letter.is_ascii_digit()).len();
+        after[..end]
+            .parse::<i32>()
+            .ok()
+            .map(|exponent| (format!("{factor}e{exponent}"), after[end..].to_owned()))
+    });
+    exponent.unwrap_or_else(|| (number.to_owned(), rest.to_owned()))
 }
 
 /// Whether a comma before these words may separate thousands.
@@ -101,8 +183,8 @@ pub(crate) fn is_thousands(after: &str) -> bool {
 /// # Errors
 /// Where the text is not a number with a unit, or where the unit is of another kind.
 pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
-    let number = leading_number(text);
-    let symbol = text[number.len()..].trim();
+    let (number, rest) = number_and_rest(text);
+    let (number, symbol) = (number.as_str(), rest.trim());
     if si == SHARE {
         return share(text, number, symbol);
     }
@@ -116,6 +198,7 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
             usual.join(", ")
         )
     };
+    let meant = |right: &str| format!("did you mean {right}? {}", help(example));
     if let Some(decimals) =
         symbol.strip_prefix(',').filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     {
@@ -130,11 +213,15 @@ pub fn in_si(text: &str, si: &str) -> Result<f64, (String, String)> {
         ));
     }
     if number.is_empty() || symbol.is_empty() {
-        return Err((format!("`{text}` is not a number with a unit"), help(example)));
+        let is_power =
+            symbol.is_empty() && number.parse::<f64>().is_ok() && leading_number(text) != text.trim();
+        let help = if is_power { meant(&format!("{number}, without quotes")) } else { help(example) };
+        return Err((format!("`{text}` is not a number with a unit"), help));
     }
     let Some(unit) = Unit::read(symbol) else {
-        let near = nearest(symbol, usual.iter().copied()).unwrap_or(example);
-        return Err((format!("the unit `{symbol}` is not known"), help(near)));
+        let near = nearest(symbol, usual.iter().copied());
+        let help = near.map_or_else(|| help(example), |near| meant(&format!("\"{number} {near}\"")));
+        return Err((format!("the unit `{symbol}` is not known"), help));
     };
     if Some(unit.dimension) != wanted {
         return Err((format!("`{symbol}` is not a unit of what is measured in {si}"), help(example)));
@@ -173,8 +260,53 @@ pub fn leading_number(text: &str) -> &str {
 
 /// Whether a text is a number with a unit, of whatever kind.
 pub fn has_unit(text: &str) -> bool {
-    let number = leading_number(text);
-    !number.is_empty() && Unit::read(text[number.len()..].trim()).is_some()
+    let (number, rest) = number_and_rest(text);
+    !number.is_empty() && Unit::read(rest.trim()).is_some()
+}
+
+/// Whether a text is a unit, as this program or another writes it.
+pub fn is_unit(text: &str) -> bool {
+    Unit::read(&in_symbols(text)).is_some()
+}
+
+/// Units in words, as other programs write them, with their symbols; words of a prefix may stand before them.
+const WORDS: [(&str, &str); 8] = [
+    ("metre", "m"),
+    ("meter", "m"),
+    ("pascal", "Pa"),
+    ("second", "s"),
+    ("newton", "N"),
+    ("gram", "g"),
+    ("minute", "min"),
+    ("hour", "h"),
+];
+/// Prefixes in words.
+const PREFIX_WORDS: [(&str, &str); 7] = [
+    ("nano", "n"),
+    ("micro", "µ"),
+    ("milli", "m"),
+    ("centi", "c"),
+    ("kilo", "k"),
+    ("mega", "M"),
+    ("giga", "G"),
+];
+
+/// A unit that is written in words in symbols: `kPa` for `kilopascals`; of `days since 1970-01-01` the unit.
+fn in_symbols(text: &str) -> String {
+    let text = text.split(" since ").next().unwrap_or_default().trim();
+    let lower = text.to_lowercase();
+    let (rest, prefix) = PREFIX_WORDS
+        .iter()
+        .find_map(|(word, prefix)| Some((lower.strip_prefix(word)?, *prefix)))
+        .unwrap_or((&lower, ""));
+    let word = WORDS.iter().find(|(word, _)| rest == *word || rest.strip_suffix('s') == Some(word));
+    word.map_or_else(|| text.to_owned(), |(_, symbol)| format!("{prefix}{symbol}"))
+}
+
+/// How many SI units one unit of a name is, where it is of the same kind as another: 1000 of `kPa` for `Pa`.
+pub fn size_of(unit: &str, si: &str) -> Option<f64> {
+    let (found, wanted) = (Unit::read(&in_symbols(unit))?, Unit::read(si)?);
+    (found.dimension == wanted.dimension).then(|| shifted(found.up / found.down, found.tens)).flatten()
 }
 
 #[cfg(test)]
@@ -205,6 +337,21 @@ mod tests {
             ("180 deg", "rad", PI),
             ("1 %", "%", 0.01),
             ("0.7%", "%", 0.007),
+            // Other letters, other ways to write a power of ten.
+            ("50 kpa", "Pa", 50e3),
+            ("50 KPA", "Pa", 50e3),
+            ("2 Mpa", "Pa", 2e6),
+            ("3 KN/M2", "Pa", 3e3),
+            ("1e-9 m/Day", "m/s", 1e-9 / 86_400.0),
+            ("5 Years", "s", 5.0 * 31_557_600.0),
+            ("6 months", "s", 15_778_800.0),
+            ("10^-9 m/s", "m/s", 1e-9),
+            ("10**-9 m/s", "m/s", 1e-9),
+            ("10⁻⁹ m/s", "m/s", 1e-9),
+            ("1x10-9 m/s", "m/s", 1e-9),
+            ("1.1 × 10^-9 m/s", "m/s", 1.1e-9),
+            ("2·10⁻⁹ m·s⁻¹", "m/s", 2e-9),
+            ("2*10^3 kPa", "Pa", 2e6),
         ] {
             assert_eq!(in_si(text, si), Ok(value), "{text}");
         }
@@ -214,10 +361,17 @@ mod tests {
     fn a_unit_of_another_kind_and_an_unknown_one_are_refused_with_what_would_be_right() {
         for (text, si, message, help) in [
             ("5 m", "Pa", "`m` is not a unit of what is measured in Pa", "\"10 kPa\""),
-            ("5 kpa", "Pa", "the unit `kpa` is not known", "\"10 kPa\""),
+            (
+                "5 mpa",
+                "Pa",
+                "the unit `mpa` is not known",
+                "did you mean \"5 MPa\"? write a plain number in Pa",
+            ),
+            ("10^-9", "m/s", "`10^-9` is not a number with a unit", "did you mean 1e-9, without quotes?"),
+            ("5 M", "m", "the unit `M` is not known", "did you mean \"5 m\"?"),
             ("1,5 kPa", "Pa", "has a comma in its number", "write a decimal point: \"1.5 kPa\""),
             ("1,500 kPa", "Pa", "has a comma in its number", "\"1.500 kPa\", or no separator: \"1500 kPa\""),
-            ("5 mPa", "Pa", "the unit `mPa` is not known", "\"10 MPa\""),
+            ("5 mPa", "Pa", "the unit `mPa` is not known", "\"5 MPa\""),
             ("5 m/s2", "m/s", "`m/s2` is not a unit of what is measured in m/s", "\"10 m/s\""),
             ("kPa", "Pa", "`kPa` is not a number with a unit", "\"10 kPa\""),
             ("5", "s", "`5` is not a number with a unit", "\"10 s\""),
@@ -225,6 +379,7 @@ mod tests {
             ("1 kPa", "%", "`1 kPa` is not a percentage", "\"1 %\""),
             ("%", "%", "`%` is not a percentage", "0.01"),
             ("5 %", "Pa", "the unit `%` is not known", "\"10 kPa\""),
+            ("10-9 m/s", "m/s", "the unit `-9 m/s` is not known", "m/s"),
             ("5 m^99999999999", "m", "is not known", ""),
             ("5 m^-2147483648", "m", "is not known", ""),
         ] {
@@ -331,10 +486,29 @@ mod tests {
     }
 
     #[test]
+    fn units_of_files_are_read_in_words_too() {
+        for (unit, si, size) in [
+            ("nanoseconds", "s", Some(1e-9)),
+            ("ms", "s", Some(1e-3)),
+            ("days since 1970-01-01 00:00:00", "s", Some(86_400.0)),
+            ("hours", "s", Some(3600.0)),
+            ("kilopascal", "Pa", Some(1e3)),
+            ("KPa", "Pa", Some(1e3)),
+            ("millimetres", "m", Some(1e-3)),
+            ("meters", "m", Some(1.0)),
+            ("m", "Pa", None),
+            ("degC", "Pa", None),
+        ] {
+            assert_eq!(size_of(unit, si), size, "{unit}");
+        }
+        assert!(is_unit("kN/m²") && !is_unit("clay") && !is_unit(""));
+    }
+
+    #[test]
     fn prefixes_that_nobody_means_and_powers_beyond_all_sense_are_no_units() {
         for symbol in [
             "mPa", "cPa", "µPa", "kbar", "mbar", "mN", "GN", "Mm", "Gm", "mg", "cg", "Gg", "kt", "Mt", "ks",
-            "cs", "Ms", "kh", "md", "ma", "mmin", "mseconds", "krad", "mdeg", "pa", "PA", "M", "k", "m^10",
+            "cs", "Ms", "kh", "md", "ma", "mmin", "mseconds", "krad", "mdeg", "mpa", "MM", "M", "k", "m^10",
             "m-10", "m^x", "m/", "/", "/s", "m//s", "*", "1/s",
         ] {
             assert!(!has_unit(&format!("3 {symbol}")), "{symbol}");

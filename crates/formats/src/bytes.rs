@@ -145,7 +145,19 @@ pub(crate) fn numbers_of_text(text: &str, most: usize) -> Result<Vec<f64>, Strin
 
 /// One number.
 pub(crate) fn number_of_word(word: &str) -> Result<f64, String> {
-    bare_number(word).parse().map_err(|_| format!("`{}` is not a number", excerpt(word)))
+    let number = bare_number(word);
+    let parsed = number.parse().ok().or_else(|| with_exponent(number)?.parse().ok());
+    parsed.ok_or_else(|| format!("`{}` is not a number", excerpt(word)))
+}
+
+/// A number that Fortran wrote with an exponent of three digits, for which it has no room for the letter: `0.573-104`.
+pub fn with_exponent(number: &str) -> Option<String> {
+    let at = number.rfind(['+', '-']).filter(|at| *at > 0)?;
+    let (mantissa, exponent) = number.split_at(at);
+    let is_whole = exponent.len() == 4 && exponent[1..].bytes().all(|digit| digit.is_ascii_digit());
+    let is_fraction =
+        mantissa.contains('.') && mantissa.ends_with(|last: char| last.is_ascii_digit() || last == '.');
+    (is_whole && is_fraction).then(|| format!("{mantissa}e{exponent}"))
 }
 
 /// A number without the type that Python shows around it since numpy 2: meshio 5.3 writes `np.float64(1.5)` into gmsh's files.
@@ -185,6 +197,18 @@ pub(crate) fn unpack(packed: &[u8], length: usize, is_zlib: bool) -> Result<Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_exponent_of_three_digits_needs_no_letter() {
+        for (word, number) in
+            [("0.573-104", 0.573e-104), ("-1.5+100", -1.5e100), ("1.-123", 1e-123), ("2e-3", 2e-3)]
+        {
+            assert_eq!(number_of_word(word), Ok(number), "{word}");
+        }
+        for word in ["573-104", "0.573-10", "0.573-1044", "1-2", "-104", "a.5-104", "0.5e3-104"] {
+            assert!(number_of_word(word).is_err(), "{word}");
+        }
+    }
 
     #[test]
     fn a_claim_beyond_what_can_be_packed_is_not_tried() {

@@ -2,7 +2,7 @@
 
 use crate::bytes::whole;
 use crate::cells::Cells;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Arrays that mark points and cells of another piece, or hidden ones.
 const GHOSTS: [&str; 2] = ["vtkGhostType", "vtkGhostLevels"];
@@ -89,6 +89,10 @@ pub struct Frame {
     pub ghosts: Vec<bool>,
     /// Times that the file lists beside its arrays: one axis of an array may run over them.
     pub times: Vec<f64>,
+    /// Units that the file states for arrays, by their names.
+    pub units: BTreeMap<String, String>,
+    /// Numbers that stand for no value in arrays, by their names; the arrays have NaN there.
+    pub fills: BTreeMap<String, f64>,
     /// One sentence for each thing that was left out.
     pub notes: Vec<String>,
     /// One sentence for each thing that the file says in two ways.
@@ -167,6 +171,8 @@ impl Frame {
         self.arrays.extend(new);
         self.cells = self.cells.take().or(other.cells);
         self.time = self.time.or(other.time);
+        self.units.extend(other.units);
+        self.fills.extend(other.fills);
         self.notes.extend(other.notes);
         self.doubts.extend(other.doubts);
         Ok(())
@@ -264,6 +270,8 @@ impl Frame {
             (_, None) => {}
         }
         self.time = self.time.or(part.time);
+        self.units.extend(part.units);
+        self.fills.extend(part.fills);
         self.notes.extend(part.notes);
         self.doubts.extend(part.doubts);
         Ok(())

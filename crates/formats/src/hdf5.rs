@@ -133,7 +133,11 @@ impl Store {
             Some(_) => set.read_f64_rows(first, count),
             None => set.read_f64(),
         };
-        let numbers = numbers.map_err(|error| named(damaged(&error)))?;
+        let mut numbers = numbers.map_err(|error| named(damaged(&error)))?;
+        let packing = Packing::of(set);
+        if packing != Packing::default() {
+            numbers.iter_mut().for_each(|number| *number = packing.value(*number));
+        }
         if numbers.len() as u64 != total {
             return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));
         }
@@ -197,6 +201,9 @@ impl Store {
                 shape,
             };
             if is_time || is_place || wanted.has(&array.name) {
+                let Packing { unit, fill, .. } = Packing::of(&self.sets[number].set);
+                frame.units.extend(unit.map(|unit| (array.name.clone(), unit)));
+                frame.fills.extend(fill.map(|fill| (array.name.clone(), fill)));
                 array.values = self.numbers(&array.name, None)?;
             }
             if is_time && frame.times.is_empty() {
@@ -276,6 +283,42 @@ impl Store {
     }
 }
 
+/// What the attributes of a data set say of its numbers, as in netCDF ("Climate and Forecast conventions", 2.5 and 8.1).
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Packing {
+    unit: Option<String>,
+    /// A number that stands for no value.
+    fill: Option<f64>,
+    scale: Option<f64>,
+    offset: Option<f64>,
+}
+
+impl Packing {
+    fn of(set: &Dataset) -> Self {
+        let Ok(attributes) = set.attrs() else { return Self::default() };
+        let number = |name: &str| {
+            let value = attributes.get(name)?;
+            value.as_f64().or_else(|| Some(value.as_i64()? as f64))
+        };
+        let unit = ["units", "unit"].iter().find_map(|name| attributes.get(*name)?.as_str());
+        Self {
+            unit: unit.map(str::trim).filter(|unit| !unit.is_empty()).map(str::to_owned),
+            fill: number("_FillValue").or_else(|| number("missing_value")).filter(|fill| !fill.is_nan()),
+            scale: number("scale_factor"),
+            offset: number("add_offset"),
+        }
+    }
+
+    /// The number that a stored one means.
+    fn value(&self, stored: f64) -> f64 {
+        if self.fill == Some(stored) {
+            return f64::NAN;
+        }
+        let scaled = self.scale.map_or(stored, |scale| stored * scale);
+        self.offset.map_or(scaled, |offset| scaled + offset)
+    }
+}
+
 fn is_named(path: &str, names: &[&str]) -> bool {
     let name = path.rsplit('/').next().unwrap_or_default().to_ascii_lowercase();
     names.contains(&name.as_str())
@@ -313,7 +356,7 @@ fn scalar_of(kind: &Datatype) -> Option<(Scalar, bool)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hdf5_pure::FileBuilder;
+    use hdf5_pure::{AttrValue, FileBuilder};
     use std::collections::BTreeSet;
 
     #[test]
@@ -329,6 +372,27 @@ mod tests {
         let frame = store.frame(0, Wanted(&names)).expect("a state");
         let values: Vec<&[f64]> = frame.arrays.iter().map(|array| &array.values[..]).collect();
         assert_eq!(values, [[-1.0, 2.0], [5.0, 6.0], [0.5, 1.5]]);
+    }
+
+    #[test]
+    fn attributes_unpack_the_numbers_and_name_their_unit_and_what_is_none() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.h5");
+        let mut builder = FileBuilder::new();
+        let set = builder.create_dataset("p").with_i16_data(&[100, -999, 300]).with_shape(&[3]);
+        set.set_attr("units", AttrValue::String("kPa".to_owned()));
+        set.set_attr("scale_factor", AttrValue::F64(0.5));
+        set.set_attr("add_offset", AttrValue::F64Array(vec![7.0]));
+        set.set_attr("_FillValue", AttrValue::I16(-999));
+        builder.create_dataset("q").with_f64_data(&[100.0, -999.0]).with_shape(&[2]);
+        builder.write(&path).expect("a file");
+        let mut store = Store::open(&path).expect("a file");
+        let names = BTreeSet::from(["p", "q"].map(str::to_owned));
+        let frame = store.frame(0, Wanted(&names)).expect("a state");
+        let [p, q] = ["p", "q"].map(|name| &frame.array(name, None).expect("there").values[..]);
+        assert!((p[0], p[2]) == (57.0, 157.0) && p[1].is_nan() && q == [100.0, -999.0], "{p:?} {q:?}");
+        assert_eq!(frame.units.get("p").map(String::as_str), Some("kPa"));
+        assert_eq!((frame.fills.get("p"), frame.fills.len(), frame.units.len()), (Some(&-999.0), 1, 1));
     }
 
     #[test]

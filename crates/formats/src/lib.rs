@@ -29,7 +29,7 @@ mod xdmf_states;
 mod xml;
 mod xpath;
 
-pub use bytes::{bare_number, excerpt};
+pub use bytes::{bare_number, excerpt, with_exponent};
 pub use cells::Cells;
 pub use collections::collection_of;
 pub use frame::{Array, Association, Frame, OtherPoints, Wanted};

@@ -219,6 +219,8 @@ impl States<'_> {
             time: Some(*time),
             coordinates: self.frame.coordinates.clone(),
             cells: self.frame.cells.clone(),
+            units: self.frame.units.clone(),
+            fills: self.frame.fills.clone(),
             notes: self.frame.notes.clone(),
             doubts: self.frame.doubts.clone(),
             ..Frame::default()

@@ -216,7 +216,7 @@ impl<'a> Trial<'a> {
             None => self.run_here(&study, &out)?,
         }
         let mut state = State::of_records(&out).map_err(|error| error.to_string())?;
-        let name = name_of(&study).to_owned();
+        let name = name_of(&study);
         state.studies.remove(&name).ok_or_else(|| format!("there are no records of `{name}`"))
     }
 

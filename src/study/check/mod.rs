@@ -291,7 +291,7 @@ impl Checker<'_> {
             file.expect_case.iter().filter_map(|table| self.case_expectation(table, &subject)).collect();
         let timing_repeats = self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000);
         Study {
-            name: name_of(&self.source.name).to_owned(),
+            name: name_of(&self.source.name),
             title: file.title,
             summary: file.summary,
             scene,

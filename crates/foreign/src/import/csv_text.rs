@@ -2,7 +2,8 @@
 //! choice is left.
 
 use crate::import::mapping::TableLayout;
-use oedometer_formats::{ImportError, bare_number, excerpt, input_file};
+use crate::units::is_unit;
+use oedometer_formats::{ImportError, bare_number, excerpt, input_file, with_exponent};
 use std::path::Path;
 
 /// Separators in the order in which they are tried; a blank stands for any.
@@ -24,6 +25,8 @@ pub struct CsvText {
     pub has_decimal_comma: bool,
     /// Names of the columns, where the text itself does not begin with them.
     pub names: Option<Vec<String>>,
+    /// Units of the columns, where a row below the names has them.
+    pub units: Vec<String>,
     /// Whether its last line ends.
     pub is_ended: bool,
 }
@@ -56,6 +59,7 @@ impl CsvText {
             declared => declared,
         };
         let is_comment = |line: &str| comment.is_some_and(|mark| line.trim_start().starts_with(mark));
+        let (text, units) = regular(text, &is_comment);
         let mut lines = text.lines().filter(|line| !line.trim().is_empty());
         let comments: Vec<&str> = lines.clone().take_while(|line| is_comment(line)).collect();
         let mut rows = lines.by_ref().filter(|line| !is_comment(line));
@@ -89,6 +93,7 @@ impl CsvText {
                 comment,
                 has_decimal_comma,
                 names,
+                units,
                 is_ended,
             });
         }
@@ -108,8 +113,67 @@ impl CsvText {
         }
         let delimiter =
             if dialect.delimiter == ' ' { b';' } else { u8::try_from(dialect.delimiter).unwrap_or(b',') };
-        Ok(Self { delimiter, comment, has_decimal_comma, names, is_ended, text: rewritten.into_bytes() })
+        Ok(Self {
+            delimiter,
+            comment,
+            has_decimal_comma,
+            names,
+            units,
+            is_ended,
+            text: rewritten.into_bytes(),
+        })
     }
+}
+
+/// A text without what stands between its names and numbers, line by line as in the file: a row of units, which is returned,
+/// names that are repeated, and a separator at the end of each row.
+fn regular(text: String, is_comment: &dyn Fn(&str) -> bool) -> (String, Vec<String>) {
+    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !is_comment(line));
+    let (Some(first), Some(second)) = (lines().next(), lines().nth(1)) else { return (text, Vec::new()) };
+    let separator = SEPARATORS.into_iter().find(|separator| first.trim().contains(*separator));
+    let Some(separator) = separator else { return (text, Vec::new()) };
+    let fields = |line: &str| -> Vec<String> {
+        let dialect = Dialect { delimiter: separator, has_decimal_comma: false };
+        dialect.split(line.trim()).iter().map(|field| field.trim_matches('"').trim().to_owned()).collect()
+    };
+    let names = fields(first);
+    let are_names =
+        names.iter().all(|name| number_of(name, false).is_none() && number_of(name, true).is_none());
+    let bare = |unit: &String| unit.trim_matches(['[', ']', '(', ')', '<', '>']).trim().to_owned();
+    let units: Vec<String> = fields(second).iter().map(bare).collect();
+    let is_unit_or_none = |unit: &String| ["", "-", "–", "1"].contains(&unit.as_str()) || is_unit(unit);
+    let are_units = are_names
+        && units.len() == names.len()
+        && units.iter().any(|unit| is_unit(unit))
+        && units.iter().all(is_unit_or_none);
+    let ends = |line: &str| separator != ' ' && line.trim_end_matches([' ', '\r']).ends_with(separator);
+    let are_ended = lines().skip(1).all(ends)
+        && (ends(first) != are_names)
+        && fields(second).len() == names.len() + usize::from(are_names);
+    let is_repeated = are_names && lines().skip(1).any(|line| line.trim() == first.trim());
+    if !(are_units || are_ended || is_repeated) {
+        return (text, Vec::new());
+    }
+    let mut rewritten = String::with_capacity(text.len());
+    let mut is_first = true;
+    for line in text.lines() {
+        let is_row = !line.trim().is_empty() && !is_comment(line);
+        let is_left_out = is_row
+            && !is_first
+            && (is_repeated && line.trim() == first.trim() || are_units && line == second);
+        if !is_left_out {
+            let is_cut = are_ended && is_row && ends(line);
+            rewritten.push_str(if is_cut {
+                line.trim_end_matches([' ', '\r']).strip_suffix(separator).unwrap_or(line)
+            } else {
+                line
+            });
+        }
+        is_first &= !is_row;
+        rewritten.push('\n');
+    }
+    let units = if are_units { units } else { Vec::new() };
+    (rewritten, units)
 }
 
 /// The first byte of a record that begins at a byte of a text or below the comments and blank lines there, and its line from 1;
@@ -237,7 +301,7 @@ impl Dialect {
     }
 }
 
-/// A number as programs write it: with a comma, or with Fortran's `D` before the exponent.
+/// A number as programs write it: with a comma, with Fortran's `D` before the exponent, or with no letter there.
 pub fn number_of(typed: &str, has_decimal_comma: bool) -> Option<f64> {
     let typed = bare_number(typed);
     if let Ok(number) = typed.parse() {
@@ -254,7 +318,32 @@ pub fn number_of(typed: &str, has_decimal_comma: bool) -> Option<f64> {
         })
         .collect();
     let is_number = plain.chars().all(|symbol| symbol.is_ascii_digit() || "+-.eE".contains(symbol));
-    plain.parse().ok().filter(|_| is_number)
+    plain.parse().ok().or_else(|| with_exponent(&plain)?.parse().ok()).filter(|_| is_number)
+}
+
+/// Signs that stand between thousands, beside the one that does not begin fractions.
+const BETWEEN_THOUSANDS: [char; 5] = ['\'', '’', '\u{a0}', '\u{202f}', ' '];
+
+/// A number with signs between its thousands, and whether nothing else can be meant: `19.937` under a decimal comma may be a
+/// fraction.
+pub fn number_of_thousands(typed: &str, has_decimal_comma: bool) -> Option<(f64, bool)> {
+    let typed = typed.trim().trim_matches('"');
+    let (decimal, other) = if has_decimal_comma { (',', '.') } else { ('.', ',') };
+    let digits = typed.trim_start_matches(['+', '-']);
+    let between = digits.chars().find(|letter| *letter == other || BETWEEN_THOUSANDS.contains(letter))?;
+    let (whole, fraction) =
+        digits.split_once(decimal).map_or((digits, None), |(whole, rest)| (whole, Some(rest)));
+    let groups: Vec<&str> = whole.split(between).collect();
+    let is_digits = |group: &str| group.bytes().all(|digit| digit.is_ascii_digit());
+    let are_thousands = groups.iter().all(|group| is_digits(group))
+        && (1..=3).contains(&groups[0].len())
+        && !groups[0].starts_with('0')
+        && groups[1..].iter().all(|group| group.len() == 3);
+    let plain =
+        format!("{}{}.{}", &typed[..typed.len() - digits.len()], groups.concat(), fraction.unwrap_or("0"));
+    let is_certain = fraction.is_some() || groups.len() > 2 || between != other;
+    let is_fraction = fraction.is_none_or(|fraction| !fraction.is_empty() && is_digits(fraction));
+    (are_thousands && is_fraction).then(|| Some((plain.parse().ok()?, is_certain))).flatten()
 }
 
 #[cfg(test)]
@@ -308,6 +397,13 @@ mod tests {
             ("t,name,p\n1,clay,3\n", "t name p = 1 ? 3 in line 2"),
             ("t,y,p\n1,2.5,nan\n", "t y p = 1 2.5 NaN in line 2"),
             ("\"t\",\"y\",\"p\"\n1,2.5,3\n", "t y p = 1 2.5 3 in line 2"),
+            // A row of units, a separator too many, names again, no letter before an exponent.
+            ("t,y,p\ns,m,Pa\n1,2.5,3\n", "t y p = 1 2.5 3 in line 3"),
+            ("t;n;p\n[s];[-];[kPa]\n1;2,5;3\n", "t n p = 1 2.5 3 in line 3"),
+            ("t y p\n(s) (m) (Pa)\n1 2.5 3\n", "t y p = 1 2.5 3 in line 3"),
+            ("t,y,p\n1,2.5,3,\n2,2.5,3,\n", "t y p = 1 2.5 3 in line 2"),
+            ("1;2,5;3;\n2;2,5;3;\n", "1 2 3 = 1 2.5 3 in line 1"),
+            ("t,y,p\nt,y,p\n1,2.5,3\n", "t y p = 1 2.5 3 in line 3"),
         ] {
             assert_eq!(told(text, &layout).as_deref(), Ok(found), "{text}");
         }
@@ -326,6 +422,21 @@ mod tests {
         assert!(twice.is_err_and(|why| why.contains("twice as many fields")));
         assert_eq!(number_of("1,234.5", true), None);
         assert_eq!(number_of("1.0D-3", false), Some(1e-3));
+        assert_eq!(number_of("0.573-104", false), Some(0.573e-104));
+        for (typed, has_comma, number) in [
+            ("18,986.106", false, Some((18_986.106, true))),
+            ("1,234,567", false, Some((1_234_567.0, true))),
+            ("18,986", false, Some((18_986.0, false))),
+            ("-19.937", true, Some((-19_937.0, false))),
+            ("1.234.567,5", true, Some((1_234_567.5, true))),
+            ("18'986.5", false, Some((18_986.5, true))),
+            ("0.573", true, None),
+            ("1.2345", true, None),
+            ("1,23", false, None),
+            ("clay", false, None),
+        ] {
+            assert_eq!(number_of_thousands(typed, has_comma), number, "{typed}");
+        }
         assert_eq!(number_of("dead", false), None);
         assert_eq!(number_of("np.float64(0.5)", false), Some(0.5));
     }

@@ -4,6 +4,7 @@ use crate::import::mapping::units::{StatedPlace, StressKind};
 use crate::import::mapping::{Column, DeclaredBy, Mapping};
 use crate::import::origins::Origin;
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
+use crate::import::said_units::SaidUnit;
 use crate::import::samples::{PlaceSet, SampleRow};
 use crate::import::spelling::spellings;
 use crate::solver::Preset;
@@ -58,6 +59,10 @@ pub struct FrameRows<'a> {
     along: Option<Source<'a>>,
     equals: Vec<(Source<'a>, f64)>,
     id: Option<Source<'a>>,
+    /// What the numbers of each column become by the units that the file states.
+    factors: [f64; Column::ALL.len()],
+    /// What the file and the mapping say in two ways.
+    pub doubts: Vec<String>,
     /// Quantities that are on something else than the rows.
     elsewhere: Vec<Column>,
     /// Which places the rows are of.
@@ -132,6 +137,8 @@ impl<'a> FrameRows<'a> {
             along: None,
             equals: Vec::new(),
             id: None,
+            factors: [1.0; Column::ALL.len()],
+            doubts: Vec::new(),
             elsewhere: Vec::new(),
             set: PlaceSet::default(),
             centres: Vec::new(),
@@ -172,6 +179,7 @@ impl<'a> FrameRows<'a> {
             }
         }
         rows.check_lengths()?;
+        rows.take_units(&mut notes);
         rows.note(notes);
         Ok(rows)
     }
@@ -239,6 +247,21 @@ impl<'a> FrameRows<'a> {
         };
         let any = spellings(typed).any(|spelled| is_here(&spelled));
         !any && first.next().is_some()
+    }
+
+    /// Takes the units that the file states for the arrays of its columns.
+    fn take_units(&mut self, notes: &mut Vec<String>) {
+        for column in Column::ALL {
+            let Some(Source::Array(array, _)) = self.columns[column as usize] else { continue };
+            match said_unit(self.frame, &array.name, column, self.mapping) {
+                SaidUnit::AsMapped => {}
+                SaidUnit::Factor(factor, note) => {
+                    self.factors[column as usize] = factor;
+                    notes.push(note);
+                }
+                SaidUnit::Unfit(doubt) => self.doubts.push(doubt),
+            }
+        }
     }
 
     fn note(&mut self, mut notes: Vec<String>) {
@@ -404,6 +427,7 @@ impl<'a> FrameRows<'a> {
         let is_selected = |row: &usize| {
             are_corners[*row]
                 && is_sample(*row)
+                && !self.is_masked(*row)
                 && self.equals.iter().all(|(source, value)| self.number(*source, *row) == *value)
                 && rows.x.zip(self.along).is_none_or(|(x, along)| is_at(self.number(along, *row), x))
         };
@@ -412,6 +436,20 @@ impl<'a> FrameRows<'a> {
             return Err(self.refused(format!("[rows] selects none of its {} rows", self.count)));
         }
         Ok(selected)
+    }
+
+    /// The number that stands for no value in the array of a source.
+    fn fill_of(&self, source: Source) -> Option<f64> {
+        let Source::Array(array, _) = source else { return None };
+        self.frame.fills.get(&array.name).copied()
+    }
+
+    /// Whether the file has no value at a row, of any quantity: there is no sample.
+    fn is_masked(&self, row: usize) -> bool {
+        let mut quantities = QUANTITIES.iter().filter_map(|column| self.columns[*column as usize]).peekable();
+        !self.frame.fills.is_empty()
+            && quantities.peek().is_some()
+            && quantities.all(|source| self.fill_of(source).is_some() && self.number(source, row).is_nan())
     }
 
     /// Whether a row is a sample: a point that no other piece owns and that a cell of the highest dimension has the value
@@ -460,10 +498,18 @@ impl<'a> FrameRows<'a> {
             let refused = |reason: String| self.refused(format!("{kind} {row}: {reason}"));
             let number = |source: Source, key: &str| {
                 let number = self.number(source, row);
-                if number.is_finite() { Ok(number) } else { Err(refused(format!("`{key}` is {number}"))) }
+                match self.fill_of(source).filter(|_| number.is_nan()) {
+                    Some(fill) => Err(refused(format!(
+                        "`{key}` has no value: the file has {fill} there, its `_FillValue`"
+                    ))),
+                    None if number.is_finite() => Ok(number),
+                    None => Err(refused(format!("`{key}` is {number}"))),
+                }
             };
             let mut raw = RawRow::read(time, self.hash_of_place(row, step), origin(row), |column| {
-                self.columns[column as usize].map(|source| number(source, column.name())).transpose()
+                let number =
+                    self.columns[column as usize].map(|source| number(source, column.name())).transpose()?;
+                Ok(number.map(|number| number * self.factors[column as usize]))
             })?;
             raw.set = self.set;
             if let Some(volume) = self.volumes.get(row) {
@@ -510,9 +556,13 @@ impl<'a> FrameRows<'a> {
         else {
             return Ok(None);
         };
+        let factor = match said_unit(self.frame, &array.name, Column::Time, self.mapping) {
+            SaidUnit::Factor(factor, _) => factor,
+            SaidUnit::AsMapped | SaidUnit::Unfit(_) => 1.0,
+        };
         let times = || array.values.iter().skip(component).step_by(array.components);
-        let first = times().next().copied();
-        match times().find(|time| Some(**time) != first) {
+        let first = times().next().map(|time| time * factor);
+        match times().find(|time| Some(**time * factor) != first) {
             Some(other) => Err(self.refused(format!(
                 "`{}` has several times, {} and {other} among them, and a state has one: no array of the mapping has an \
                  axis of their number",
@@ -521,6 +571,18 @@ impl<'a> FrameRows<'a> {
             ))),
             None => Ok(first),
         }
+    }
+}
+
+/// What the unit means that a file states for an array that is a column: in an attribute, or in brackets behind its name, where
+/// a word may be none.
+pub fn said_unit(frame: &Frame, name: &str, column: Column, mapping: &Mapping) -> SaidUnit {
+    if let Some(unit) = frame.units.get(name) {
+        return SaidUnit::of(column, name, unit, mapping);
+    }
+    match SaidUnit::in_name(name).map(|unit| SaidUnit::of(column, name, unit, mapping)) {
+        Some(said @ SaidUnit::Factor(..)) => said,
+        _ => SaidUnit::AsMapped,
     }
 }
 

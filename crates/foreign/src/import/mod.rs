@@ -11,6 +11,7 @@ pub mod mapping;
 pub mod origins;
 pub mod raw_row;
 pub mod runs;
+mod said_units;
 mod samples;
 mod spelling;
 mod step_times;

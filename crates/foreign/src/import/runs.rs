@@ -1,10 +1,11 @@
 //! Groups the files that a user gives into runs by mesh, and reads their times and rows.
 
 use crate::import::expected::Expected;
-use crate::import::frame_rows::{FrameRows, Start, cells_over_height, wanted_names};
+use crate::import::frame_rows::{FrameRows, Start, cells_over_height, said_unit, wanted_names};
 use crate::import::mapping::{Column, Mapping};
 use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::SolvedBody;
+use crate::import::said_units::SaidUnit;
 use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::spelling::spellings;
 use crate::import::step_times::{declared_time, have_steps_in_folders, join, members, numbers_in};
@@ -149,15 +150,17 @@ pub fn runs_of(given: &[Vec<PathBuf>], mapping: &Mapping, body: SolvedBody) -> R
 
 fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
     let mut rows = Vec::new();
-    let mut unended = Vec::new();
+    let (mut unended, mut notes, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
     let mut origins = Origins::new(mapping);
     for (place, path) in files.iter().enumerate() {
-        let is_ended = take_rows(path, place, mapping, body, &mut origins, &mut rows)?;
-        unended.extend((!is_ended).then(|| path.clone()));
+        let told = take_rows(path, place, mapping, body, &mut origins, &mut rows)?;
+        unended.extend((!told.is_ended).then(|| path.clone()));
+        notes.extend(told.notes);
+        doubts.extend(told.doubts);
     }
     let (states, contradictions) = states_of(&rows, &origins)?;
     let expected = Expected::of_states(&states);
-    let mut run = Run { files, expected, states, unended, contradictions, ..Run::default() };
+    let mut run = Run { files, expected, states, unended, notes, doubts, contradictions, ..Run::default() };
     if mapping.columns.t.is_none() {
         run.files_are_in_order(mapping)?;
     }
@@ -173,9 +176,11 @@ fn run_of_curve(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Res
     if let Some(series) = &mapping.settlement {
         let curve = Curve::read(series, run.files.first().map(PathBuf::as_path), mapping, body)?;
         run.states = curve.states();
-        run.contradictions.clone_from(&curve.contradictions);
+        run.contradictions = curve.contradictions;
         run.expected.settlement = true;
-        run.unended.extend((!curve.is_ended).then(|| curve.file.clone()));
+        run.unended.extend((!curve.told.is_ended).then_some(curve.file));
+        run.notes = curve.told.notes;
+        run.doubts = curve.told.doubts;
     }
     Ok(run)
 }
@@ -203,7 +208,8 @@ fn runs_of_arrays(
             }
             read_states(&steps, Wanted(&names), &mut |step, mut frame| {
                 join(step, &mapping.join, Wanted(&names), &mut frame)?;
-                each_time(step, &frame, mapping, &mut |listed, frame, count| {
+                let mut of_times = Vec::new();
+                each_time(step, &frame, mapping, &mut of_times, &mut |listed, frame, count| {
                     let cells = cells_over_height(frame, mapping, body.height);
                     let is_one_of_many = steps.len() > 1 || count > 1;
                     let key = key_of(step, is_one_of_many, are_folders, frame, cells);
@@ -223,7 +229,14 @@ fn runs_of_arrays(
                     readings[place].take(step, frame, listed, mapping, body)?;
                     readings[place].run.notes.append(&mut notes);
                     Ok(())
-                })
+                })?;
+                if let Some(reading) = readings.last_mut() {
+                    reading
+                        .run
+                        .notes
+                        .extend(of_times.iter().map(|note| format!("{}: {note}", step.file.display())));
+                }
+                Ok(())
             })?;
         }
     }
@@ -247,10 +260,11 @@ fn each_time(
     step: &Step,
     frame: &Frame,
     mapping: &Mapping,
+    notes: &mut Vec<String>,
     take: &mut TakeState<'_>,
 ) -> Result<(), ImportError> {
     let refused = |why: String| ImportError::content(&step.file, why);
-    let times = times_in(frame, mapping);
+    let times = times_in(frame, mapping, notes);
     if times.is_empty() {
         let names_time = |column: Column| {
             let spelled = mapping.columns.get(column).into_iter().flat_map(|typed| spellings(typed));
@@ -272,8 +286,16 @@ fn each_time(
     Ok(())
 }
 
-/// The times over which the arrays of a frame run: those of the array that the mapping names, or of the file's own list.
-fn times_in(frame: &Frame, mapping: &Mapping) -> Vec<f64> {
+/// The times over which the arrays of a frame run, in the mapping's unit: those of the array that the mapping names, or of the
+/// file's own list.
+fn times_in(frame: &Frame, mapping: &Mapping, notes: &mut Vec<String>) -> Vec<f64> {
+    let mut in_unit = |array: &str, times: Vec<f64>| match said_unit(frame, array, Column::Time, mapping) {
+        SaidUnit::Factor(factor, note) => {
+            notes.push(note);
+            times.into_iter().map(|time| time * factor).collect()
+        }
+        SaidUnit::AsMapped | SaidUnit::Unfit(_) => times,
+    };
     let spelled = mapping.columns.t.as_deref().into_iter().flat_map(spellings);
     let of_array = |array: &Array, component: Option<usize>| -> Vec<f64> {
         array
@@ -292,9 +314,14 @@ fn times_in(frame: &Frame, mapping: &Mapping) -> Vec<f64> {
         Some((array, _)) if array.on != Association::Whole && frame.cells.is_some() => Vec::new(),
         Some((array, component)) => {
             let times = of_array(array, component);
-            if times.len() > 1 || !frame.times.is_empty() { times } else { Vec::new() }
+            if times.len() > 1 || !frame.times.is_empty() { in_unit(&array.name, times) } else { Vec::new() }
         }
-        None => frame.times.clone(),
+        None => {
+            let is_list =
+                |array: &&Array| array.values == frame.times && frame.units.contains_key(&array.name);
+            let name = frame.arrays.iter().find(is_list).map_or("", |array| &array.name);
+            in_unit(name, frame.times.clone())
+        }
     }
 }
 
@@ -394,7 +421,7 @@ impl Reading {
             self.start = mapping.displacement.is_some().then(|| columns.start());
         }
         self.run.notes.extend(frame.notes.iter().cloned());
-        for doubt in &frame.doubts {
+        for doubt in frame.doubts.iter().chain(&columns.doubts) {
             let told = format!("{}: {doubt}", step.file.display());
             if self.run.doubts.len() < MOST_DOUBTS {
                 self.run.doubts.push(told);
@@ -561,7 +588,14 @@ impl Run {
         let matched = curve.attach(&mut self.states);
         self.contradictions.extend(curve.contradictions);
         let file = curve.file;
-        let is_told = curve.is_ended || self.unended.contains(&file);
+        let is_told = curve.told.is_ended || self.unended.contains(&file);
+        for (own, of_curve) in [(&mut self.notes, curve.told.notes), (&mut self.doubts, curve.told.doubts)] {
+            of_curve.into_iter().for_each(|told| {
+                if !own.contains(&told) {
+                    own.push(told)
+                }
+            });
+        }
         self.expected.settlement = matched > 0;
         self.notes.push(format!(
             "settlement from {} at {matched} of {} times, the nearest within 0.1 % each",

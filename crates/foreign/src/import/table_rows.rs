@@ -1,11 +1,12 @@
 //! Reads text tables by their declared layout as rows in SI.
 
-use crate::import::csv_text::{CsvText, line_of_record, number_of};
+use crate::import::csv_text::{CsvText, line_of_record, number_of, number_of_thousands};
 use crate::import::expected::left_out;
 use crate::import::mapping::units::{SettlementSeries, VerticalSense};
 use crate::import::mapping::{Column, DeclaredBy, Mapping, TableLayout};
 use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::{RawRow, SolvedBody, is_at};
+use crate::import::said_units::SaidUnit;
 use crate::import::samples::{SampleRow, SampledState, states_of};
 use crate::import::step_times::declared_time;
 use oedometer_formats::{ImportError, excerpt};
@@ -14,6 +15,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+/// Most doubts that are told of a table.
+const MOST_DOUBTS: usize = 4;
 /// Names of columns that a message lists.
 const MOST_NAMES: usize = 30;
 /// Largest relative distance of a time of a settlement curve from that of a state.
@@ -29,20 +32,46 @@ struct Table<'a> {
     at: (usize, u64),
     comment: Option<char>,
     has_decimal_comma: bool,
+    /// Units of the columns, where a row has them.
+    units: Vec<String>,
+    /// For each column with signs between thousands the first number that has one, with its line, and whether nothing else can
+    /// be meant.
+    thousands: Vec<Option<Thousands>>,
     is_ended: bool,
+}
+
+/// Numbers of a column with signs between their thousands.
+#[derive(Clone, Debug)]
+struct Thousands {
+    first: String,
+    line: u64,
+    is_certain: bool,
+}
+
+/// What is told of a table beside its rows.
+#[derive(Debug, Default)]
+pub struct TableNotes {
+    /// Whether its last line ends: a table that is cut inside its last number still reads as a table, with another number.
+    pub is_ended: bool,
+    /// What was taken from where.
+    pub notes: Vec<String>,
+    /// What it says in two ways.
+    pub doubts: Vec<String>,
 }
 
 impl<'a> Table<'a> {
     fn open(path: &'a Path, layout: &TableLayout) -> Result<Self, ImportError> {
-        let CsvText { text, delimiter, comment, has_decimal_comma, names, is_ended } =
+        let CsvText { text, delimiter, comment, has_decimal_comma, names, units, is_ended } =
             CsvText::read(path, layout)?;
         let as_byte = |mark: char| u8::try_from(mark).unwrap_or(b'#');
-        let mut reader = csv::ReaderBuilder::new()
+        let mut builder = csv::ReaderBuilder::new();
+        builder
             .delimiter(delimiter)
             .comment(comment.map(as_byte))
             .trim(csv::Trim::All)
-            .has_headers(names.is_none())
-            .from_reader(Cursor::new(text));
+            .has_headers(names.is_none());
+        let thousands = thousands_of(&builder, &text, has_decimal_comma, delimiter);
+        let mut reader = builder.from_reader(Cursor::new(text));
         let header = if let Some(names) = names {
             csv::StringRecord::from(names)
         } else {
@@ -57,8 +86,51 @@ impl<'a> Table<'a> {
             at: (0, 1),
             comment,
             has_decimal_comma,
+            units,
+            thousands,
             is_ended,
         })
+    }
+
+    /// What its numbers become by the unit that it states for a column, and what is told of that.
+    fn factor(&self, column: Column, place: usize, mapping: &Mapping, told: &mut TableNotes) -> f64 {
+        let name = self.header.get(place).unwrap_or_default();
+        let stated = self.units.get(place).map(String::as_str).filter(|unit| !unit.is_empty());
+        let said = match (stated, SaidUnit::in_name(name)) {
+            (Some(unit), _) => SaidUnit::of(column, name, unit, mapping),
+            // A word in brackets may be none.
+            (None, Some(unit)) => match SaidUnit::of(column, name, unit, mapping) {
+                SaidUnit::Unfit(_) => SaidUnit::AsMapped,
+                said => said,
+            },
+            (None, None) => SaidUnit::AsMapped,
+        };
+        let file = self.path.display();
+        match said {
+            SaidUnit::AsMapped => 1.0,
+            SaidUnit::Factor(factor, note) => {
+                told.notes.push(format!("{file}: {note}"));
+                factor
+            }
+            SaidUnit::Unfit(doubt) => {
+                told.doubts.push(format!("{file}: {doubt}"));
+                1.0
+            }
+        }
+    }
+
+    /// Doubts about numbers of a column that may have signs between thousands.
+    fn doubt(&self, place: usize, told: &mut TableNotes) {
+        if let Some(Some(Thousands { first, line, is_certain: false })) = self.thousands.get(place) {
+            let column = excerpt(self.header.get(place).unwrap_or_default());
+            let sign = if self.has_decimal_comma { "point" } else { "comma" };
+            let whole = first.replace([',', '.'], "");
+            told.doubts.push(format!(
+                "{}:{line}: the {sign} of `{first}` in the column `{column}` may stand between thousands or before a fraction, and it \
+                 is read as {whole}: write the numbers without it, or say `decimal` in [csv]",
+                self.path.display()
+            ));
+        }
     }
 
     /// The place of the first of several names, separated by `|`, that is a column.
@@ -123,7 +195,9 @@ impl<'a> Table<'a> {
     /// The number in a column of the line.
     fn number(&self, place: usize) -> Result<f64, ImportError> {
         let typed = self.line.get(place).unwrap_or_default();
-        let number = number_of(typed, self.has_decimal_comma);
+        let thousands = self.thousands.get(place).and_then(Option::as_ref);
+        let number = thousands.and_then(|_| number_of_thousands(typed, self.has_decimal_comma));
+        let number = number.map(|(number, _)| number).or_else(|| number_of(typed, self.has_decimal_comma));
         number.filter(|number| number.is_finite()).ok_or_else(|| {
             let column = excerpt(self.header.get(place).unwrap_or_default());
             let has_comma = !self.has_decimal_comma && number_of(typed, true).is_some_and(f64::is_finite);
@@ -138,6 +212,46 @@ impl<'a> Table<'a> {
             ))
         })
     }
+}
+
+/// The columns in which numbers have signs between thousands. A column that has the sign before other than three digits too has
+/// fractions.
+fn thousands_of(
+    builder: &csv::ReaderBuilder,
+    text: &[u8],
+    has_decimal_comma: bool,
+    delimiter: u8,
+) -> Vec<Option<Thousands>> {
+    let has = |letter: u8| text.contains(&letter);
+    let may_have = if has_decimal_comma { has(b'.') } else { has(b',') && (delimiter != b',' || has(b'"')) };
+    if !(may_have || has(b'\'') || text.windows(2).any(|pair| pair == "\u{a0}".as_bytes())) {
+        return Vec::new();
+    }
+    let (mut found, mut others): (Vec<Option<Thousands>>, Vec<bool>) = (Vec::new(), Vec::new());
+    let (decimal, other) = if has_decimal_comma { (',', '.') } else { ('.', ',') };
+    let mut reader = builder.from_reader(text);
+    for record in reader.records().map_while(Result::ok) {
+        found.resize(found.len().max(record.len()), None);
+        others.resize(found.len(), false);
+        for (place, field) in record.iter().enumerate() {
+            match number_of_thousands(field, has_decimal_comma) {
+                Some((_, is_certain)) => {
+                    let line = record.position().map_or(0, csv::Position::line);
+                    let first = || Thousands { first: field.to_owned(), line, is_certain };
+                    found[place].get_or_insert_with(first).is_certain |= is_certain;
+                }
+                None if field.contains(other) => others[place] = true,
+                None => {}
+            }
+        }
+        for (place, field) in record.iter().enumerate() {
+            if let Some(known) = &mut found[place] {
+                known.is_certain |= field.contains(decimal);
+            }
+        }
+    }
+    found.iter_mut().zip(others).filter(|(_, is_other)| *is_other).for_each(|(known, _)| *known = None);
+    found
 }
 
 /// What is wrong with a line of more or fewer fields than the lines above it.
@@ -167,6 +281,8 @@ struct Wide {
     heights: Vec<f64>,
     /// The column of each height, for each quantity.
     quantities: Vec<(Column, Vec<usize>)>,
+    /// What the numbers of each become by the units that the table states.
+    factors: Vec<Vec<f64>>,
 }
 
 impl Wide {
@@ -180,7 +296,7 @@ impl Wide {
             let heights: Vec<f64> = named.iter().map(|(_, height)| *height).collect();
             match sets.iter_mut().find(|set| set.heights == heights) {
                 Some(set) => set.quantities.push((column, places)),
-                None => sets.push(Self { heights, quantities: vec![(column, places)] }),
+                None => sets.push(Self { heights, quantities: vec![(column, places)], factors: Vec::new() }),
             }
         }
         Ok(sets)
@@ -241,8 +357,7 @@ impl Places {
     }
 }
 
-/// Adds the rows of a table; `place` counts the files of a run. Returns whether its last line ends: a table that is cut
-/// inside its last number still reads as a table, with another number.
+/// Adds the rows of a table; `place` counts the files of a run. Returns what is told of it beside its rows.
 ///
 /// # Errors
 /// What cannot be read, is not a number or lies outside the body, with its line.
@@ -253,7 +368,7 @@ pub fn take_rows(
     body: SolvedBody,
     origins: &mut Origins,
     rows: &mut Vec<SampleRow>,
-) -> Result<bool, ImportError> {
+) -> Result<TableNotes, ImportError> {
     let part = origins.add(path, path, PartKind::Lines);
     let mut table = Table::open(path, &mapping.csv)?;
     let mut places = Places::of(&table, mapping)?;
@@ -271,6 +386,23 @@ pub fn take_rows(
              --set-time-step if the name has the number of a step"
         )));
     }
+    let mut told = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
+    let factors = Column::ALL.map(|column| match places.columns[column as usize] {
+        Some(place) => {
+            table.doubt(place, &mut told);
+            table.factor(column, place, mapping, &mut told)
+        }
+        None => 1.0,
+    });
+    for set in &mut places.wide {
+        for (column, of_heights) in &set.quantities {
+            let factor = |place: &usize| {
+                table.doubt(*place, &mut told);
+                table.factor(*column, *place, mapping, &mut told)
+            };
+            set.factors.push(of_heights.iter().map(factor).collect());
+        }
+    }
     let before = rows.len();
     while table.next()? {
         if !places.counts(&table, mapping)? {
@@ -278,6 +410,7 @@ pub fn take_rows(
         }
         let of_line = || -> Result<f64, ImportError> {
             let time = table.number(time_column.unwrap_or_default())?;
+            let time = time * factors[Column::Time as usize];
             Ok(mapping.units.time.seconds(time, body.seconds_per_time_factor))
         };
         let seconds = time_of_file.map_or_else(of_line, Ok)?;
@@ -290,11 +423,16 @@ pub fn take_rows(
             table.line.get(*place).hash(&mut others);
         }
         let row = RawRow::read(seconds, others.finish(), table.origin(part), |column| {
-            places.columns[column as usize].map(|place| table.number(place)).transpose()
+            let number = places.columns[column as usize].map(|place| table.number(place)).transpose()?;
+            Ok(number.map(|number| number * factors[column as usize]))
         })?;
         rows.push(row.sample(mapping, body, &|reason| table.error_in_line(reason))?);
     }
-    if rows.len() == before { Err(table.error("there are no rows".to_owned())) } else { Ok(table.is_ended) }
+    if rows.len() == before {
+        return Err(table.error("there are no rows".to_owned()));
+    }
+    told.doubts.truncate(MOST_DOUBTS);
+    Ok(told)
 }
 
 /// Adds the rows of a line with one column per height.
@@ -310,8 +448,11 @@ fn take_wide(
     for (number, set) in (0_u8..).zip(sets) {
         for (place, height) in set.heights.iter().enumerate() {
             let of = |column: Column| {
-                let places = set.quantities.iter().find(|(known, _)| *known == column);
-                places.map(|(_, places)| table.number(places[place])).transpose()
+                let quantities = set.quantities.iter().zip(&set.factors);
+                let found = quantities.into_iter().find(|((known, _), _)| *known == column);
+                found
+                    .map(|((_, places), factors)| Ok(table.number(places[place])? * factors[place]))
+                    .transpose()
             };
             let row = RawRow {
                 time: seconds,
@@ -337,8 +478,8 @@ pub struct Curve {
     pub contradictions: Vec<String>,
     /// Its file.
     pub file: PathBuf,
-    /// Whether the last line of the file ends.
-    pub is_ended: bool,
+    /// What is told of its file.
+    pub told: TableNotes,
 }
 
 impl Curve {
@@ -364,16 +505,23 @@ impl Curve {
         let (time, settlement) = (place(&series.t)?, place(&series.s)?);
         let unit = mapping.units.displacement.unwrap_or(mapping.units.length).metres();
         let upward = if series.sign == VerticalSense::Down { -unit } else { unit };
+        let mut told = TableNotes { is_ended: table.is_ended, ..TableNotes::default() };
+        let mut factor = |column: Column, place: usize| {
+            table.doubt(place, &mut told);
+            table.factor(column, place, mapping, &mut told)
+        };
+        let factors = [factor(Column::Time, time), factor(Column::Up, settlement)];
         let mut origins = Origins::of_curve(mapping);
         let part = origins.add(&file, &file, PartKind::Lines);
         let mut rows = Vec::new();
         while table.next()? {
-            let seconds = mapping.units.time.seconds(table.number(time)?, body.seconds_per_time_factor);
+            let seconds =
+                mapping.units.time.seconds(table.number(time)? * factors[0], body.seconds_per_time_factor);
             if seconds < 0.0 {
                 return Err(table.error_in_line("the time is negative".to_owned()));
             }
             rows.push(SampleRow {
-                displacement: table.number(settlement)? * upward,
+                displacement: table.number(settlement)? * factors[1] * upward,
                 ..SampleRow::at(seconds, body.height, table.origin(part))
             });
         }
@@ -381,8 +529,7 @@ impl Curve {
             return Err(table.error("there are no rows".to_owned()));
         }
         let (points, contradictions) = points_of(&rows, &origins)?;
-        let is_ended = table.is_ended;
-        Ok(Self { points, contradictions, file, is_ended })
+        Ok(Self { points, contradictions, file, told })
     }
 
     /// Gives each state the displacement of the surface at the nearest time of the curve; returns how many states got one.

@@ -57,10 +57,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let given = arguments.name.display().to_string();
     let name = name_of(&given);
-    if let Some(why) = refused_name(name) {
+    if let Some(why) = refused_name(&name) {
         return Err(Ended::usage(format!("a study cannot be called `{name}`: {why}")));
     }
-    let text = starter(name, arguments.scene.as_deref())?;
+    let text = starter(&name, arguments.scene.as_deref())?;
     let path = arguments.name.with_file_name(format!("{name}.toml"));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| not_written(folder, &error))?;
@@ -122,9 +122,9 @@ impl Language {
 fn write_adapter(folder: &Path, language: Language) -> anyhow::Result<Exit> {
     let given = folder.display().to_string();
     let name = name_of(&given);
-    let is_taken = Method::named(name).map(|_| "a method of this program has this name".to_owned());
-    let no_solver = || Attached::new(name, &"0".repeat(DIGEST_DIGITS)).err().map(|why| why.to_string());
-    if let Some(why) = refused_name(name).or(is_taken).or_else(no_solver) {
+    let is_taken = Method::named(&name).map(|_| "a method of this program has this name".to_owned());
+    let no_solver = || Attached::new(&name, &"0".repeat(DIGEST_DIGITS)).err().map(|why| why.to_string());
+    if let Some(why) = refused_name(&name).or(is_taken).or_else(no_solver) {
         return Err(Ended::usage(format!("a solver and its study cannot be called `{name}`: {why}")));
     }
     let refused = |error: std::io::Error| not_written(folder, &error);
@@ -140,7 +140,7 @@ fn write_adapter(folder: &Path, language: Language) -> anyhow::Result<Exit> {
         (file, adapter),
     ];
     for (file_name, text) in texts {
-        let text = text.replace("@NAME@", name).replace("@LANGUAGE@", program).replace("@ADAPTER@", file);
+        let text = text.replace("@NAME@", &name).replace("@LANGUAGE@", program).replace("@ADAPTER@", file);
         fs::write(folder.join(file_name), text).map_err(refused)?;
     }
     let study = folder.join(study);

@@ -8,25 +8,27 @@ use crate::import::mapping::{Axes, Mapping};
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, are_tables, files_of, runs_of};
 use crate::study::file::StudySource;
+use crate::study::overrides::times;
 use crate::study::solver::Preset;
 use clap::ValueEnum;
 use oedometer_formats::input_file;
 use std::path::Path;
 
-/// Reads the files of the command line, which may lack some quantities: their mapping, and their runs. `times` are the requested
+/// Reads the files of the command line, which may lack some quantities: their mapping, and their runs. `requested` are
 /// time factors.
 pub fn read(
     arguments: &Arguments,
     without: &[Quantity],
     case: &Case,
-    times: &[f64],
+    requested: &[f64],
 ) -> anyhow::Result<(Mapping, Vec<Run>)> {
     let body = SolvedBody::of(case);
     let given = files_of(&arguments.results)?;
     let is_tables = are_tables(&given)?;
     let mut mapping = mapping_of(arguments, Axes::of(case.scene), is_tables)?;
     mapping.let_lack(without);
-    let steps = &arguments.set_time_step;
+    let steps = arguments.set_time_step.as_ref().map(|typed| times("--set-time-step", typed));
+    let steps = steps.transpose()?.unwrap_or_default();
     if let Some(step) = steps.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
         return Err(Ended::usage(format!("`--set-time-step {step}` is invalid: give seconds above 0")));
     }
@@ -39,12 +41,13 @@ pub fn read(
     }
     mapping.time.step = steps.first().copied().or(mapping.time.step);
     if mapping.time.case {
-        if times.is_empty() {
+        if requested.is_empty() {
             return Err(Ended::usage(
                 "the mapping takes the times of the case: give them with --time-factor, in the order of the files".to_owned(),
             ));
         }
-        let seconds: Vec<f64> = times.iter().map(|factor| factor * body.seconds_per_time_factor).collect();
+        let seconds: Vec<f64> =
+            requested.iter().map(|factor| factor * body.seconds_per_time_factor).collect();
         mapping.follow_case(&seconds, body.seconds_per_time_factor);
     }
     // With as many numbers of cells as arguments each argument is a mesh.

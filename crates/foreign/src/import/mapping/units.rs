@@ -17,6 +17,8 @@ pub enum TimeUnit {
     H,
     /// Day.
     D,
+    /// Month, a twelfth of a year.
+    Month,
     /// Year of 365.25 days.
     A,
     /// Time factor `T_v`.
@@ -92,7 +94,7 @@ pub enum StatedPlace {
 
 words!(StatedPlace: Reference "reference", Current "current");
 
-words!(TimeUnit: S "s", Min "min", H "h", D "d", A "a", TimeFactor "time-factor");
+words!(TimeUnit: S "s", Min "min", H "h", D "d", Month "month", A "a", TimeFactor "time-factor");
 
 impl TimeUnit {
     /// Seconds of a time in this unit, with the seconds of `T_v = 1`.
@@ -102,6 +104,7 @@ impl TimeUnit {
             Self::Min => 60.0,
             Self::H => 3600.0,
             Self::D => 86_400.0,
+            Self::Month => 365.25 / 12.0 * 86_400.0,
             Self::A => 365.25 * 86_400.0,
             Self::TimeFactor => seconds_per_time_factor,
         }
