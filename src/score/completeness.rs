@@ -51,6 +51,10 @@ pub enum Lack {
     ValueImpossible,
     /// A file says a thing in two ways: a header that does not fit its data.
     FileContradicts,
+    /// The number of cells that was given is that of nodes, or of all cells of a mesh.
+    CellsDoubtful,
+    /// Two meshes have the same numbers.
+    ResultsIdentical,
 }
 
 words!(
@@ -60,6 +64,7 @@ words!(
     SamplesDiffer "samples-differ", TimeMissing "time-missing", ZerosInside "zeros-inside",
     Undeclared "undeclared", QuantityMissing "quantity-missing", EndMissing "end-missing",
     ValueImpossible "value-impossible", FileContradicts "file-contradicts",
+    CellsDoubtful "cells-doubtful", ResultsIdentical "results-identical",
 );
 
 /// One thing that is missing from a result.

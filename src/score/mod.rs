@@ -171,7 +171,14 @@ impl Score {
     /// Adds the errors of a state against a reference, of the first reference the worst places too.
     fn add(&mut self, compared: &ScoredState<'_>, is_first: bool) -> Result<(), ExactError> {
         let ScoredState { parameters, reference, state, time_factor, sample, .. } = *compared;
-        let exact = ExactFields::of(reference, time_factor, places_of(state, parameters.height))?;
+        let places = places_of(state, parameters.height);
+        let computed = [&state.pressure[..], &state.effective_stress];
+        let exact = ExactFields::of(reference, time_factor, places)?.on_either_side(
+            reference,
+            time_factor,
+            places,
+            computed,
+        )?;
         let settled = if reference.is_plane() {
             reference.settlement(LONG_AFTER)?
         } else {

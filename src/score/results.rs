@@ -5,8 +5,10 @@ mod other_water;
 use crate::case::{Case, Quantity, Sample};
 use crate::import::Absent;
 use crate::import::mapping::Mapping;
+use crate::import::nodes::counted_otherwise;
 use crate::import::runs::Run;
 use crate::import::{SampledState, not_ended};
+use crate::measure::round_off::SINGLE_PRECISION;
 use crate::record::ErrorRow;
 use crate::score::completeness::{Finding, Lack, Whole, interior_zeros, missing_times, uneven_meshes};
 use crate::score::diagnosis::diagnosis;
@@ -125,8 +127,12 @@ impl<'a> Results<'a> {
         Ok(results)
     }
 
-    /// Adds the finding that shows only beside other meshes.
+    /// Adds the findings on numbers of cells that were given, and those that show only beside other meshes.
     fn compare_meshes(&mut self, parameters: &ColumnParameters) {
+        if !self.comparison.are_cells_found {
+            self.doubt_cells(parameters.height);
+        }
+        self.find_identical();
         let first = |place: &usize| {
             let run = &self.all[*place].run;
             Some((run.cells?, run.states.first()?))
@@ -136,6 +142,41 @@ impl<'a> Results<'a> {
             && let Some((rank, finding)) = uneven_meshes(&meshes, parameters)
         {
             self.all[self.order[rank]].score.warnings.push(finding);
+        }
+    }
+
+    /// Doubts numbers of cells that are those of nodes, or of all cells; equal places on all meshes are a choice.
+    fn doubt_cells(&mut self, height: f64) {
+        let counts = |one: &Scored| one.run.states.first().map(|state| state.initial_height.len());
+        let all: Vec<Option<usize>> = self.all.iter().map(counts).collect();
+        if all.len() > 1 && all.iter().all(|count| *count == all[0]) {
+            return;
+        }
+        for Scored { run, score } in &mut self.all {
+            let Some((cells, state)) = run.cells.zip(run.states.first()) else { continue };
+            let doubt = counted_otherwise(cells, &state.initial_height, height);
+            score.warnings.extend(doubt.map(|told| Finding::new(Lack::CellsDoubtful, told)));
+        }
+    }
+
+    /// Finds meshes with the numbers of a coarser one, unless both are exact.
+    fn find_identical(&mut self) {
+        for rank in 1..self.order.len() {
+            let own = &self.all[self.order[rank]];
+            let is_exact = own.score.errors.iter().all(|row| row.value.abs() < SINGLE_PRECISION);
+            let has_same = |place: &&usize| {
+                self.all[**place].run.states == own.run.states && self.all[**place].run.cells != own.run.cells
+            };
+            if let Some(place) = self.order[..rank].iter().find(has_same).filter(|_| !is_exact) {
+                let sentence = format!(
+                    "its numbers are identical to those of {}: was one result copied, or the mesh not refined?",
+                    self.all[*place].name()
+                );
+                self.all[self.order[rank]]
+                    .score
+                    .warnings
+                    .push(Finding::new(Lack::ResultsIdentical, sentence));
+            }
         }
     }
 
@@ -240,7 +281,11 @@ impl Scored {
                 is_declared: held.mapping.whole_volume.is_some(),
                 has_volumes: held.mapping.columns.volume.is_some(),
             };
-            self.score.warnings.extend(whole.findings(states)?);
+            let changes = self.run.has_changing_mesh;
+            let is_of_mesh = |finding: &Finding| changes && finding.name == Lack::SamplesDiffer;
+            self.score
+                .warnings
+                .extend(whole.findings(states)?.into_iter().filter(|finding| !is_of_mesh(finding)));
             for set in beside_by_set(states) {
                 self.score.warnings.extend(Whole { has_volumes: false, ..whole }.findings(&set)?);
             }

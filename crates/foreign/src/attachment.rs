@@ -124,7 +124,8 @@ impl<'a> Reading<'a> {
     fn taken(&self, case: &Case, paths: &[PathBuf], failure: impl Fn(Unread) -> Failure) -> Left {
         let mapping = self.mapping.as_ref().map_err(|why| ending::of_mapping(why))?;
         let result = read(case, mapping, paths).map_err(failure)?;
-        let states = states_at_outputs(case, &result.states).map_err(|lack| ending::of_incomplete(&lack))?;
+        let states = states_at_outputs(case, &result.states, result.has_changing_mesh)
+            .map_err(|lack| ending::of_incomplete(&lack))?;
         Ok((states, result))
     }
 }

@@ -240,11 +240,15 @@ const ROUND_OFF: f64 = 1e-6;
 /// Most outputs that a message names.
 const MOST_TIMES: usize = 6;
 
-/// The states at the outputs of a case, one an output.
+/// The states at the outputs of a case, one an output; they have equally many samples, unless the mesh changes.
 ///
 /// # Errors
 /// What is missing, a sentence.
-pub(crate) fn states_at_outputs(case: &Case, states: &[SampledState]) -> Result<Vec<SampledState>, String> {
+pub(crate) fn states_at_outputs(
+    case: &Case,
+    states: &[SampledState],
+    has_changing_mesh: bool,
+) -> Result<Vec<SampledState>, String> {
     let unit = case.seconds_per_time_factor();
     let nearest = |factor: f64| {
         let off = |state: &&SampledState| (state.time / unit - factor).abs();
@@ -272,6 +276,7 @@ pub(crate) fn states_at_outputs(case: &Case, states: &[SampledState]) -> Result<
     let states: Vec<SampledState> = found.into_iter().flatten().cloned().collect();
     match case.time_factors.iter().zip(&states).find_map(|(factor, state)| lack(case, *factor, state)) {
         Some(lack) => Err(lack),
+        None if has_changing_mesh => Ok(states),
         None => same_counts(case, &states).map_or(Ok(states), Err),
     }
 }

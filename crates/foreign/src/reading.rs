@@ -2,6 +2,7 @@
 
 use crate::diagnostic::StudyError;
 use crate::import::mapping::{Axes, Mapping};
+use crate::import::nodes::counted_otherwise;
 use crate::import::raw_row::SolvedBody;
 use crate::import::runs::{Run, files_of, runs_of};
 use crate::import::{SampledState, not_ended};
@@ -26,6 +27,8 @@ pub struct ReadResult {
     pub states: Vec<SampledState>,
     /// Kind of its places.
     pub sample: Sample,
+    /// Whether its mesh changes with time, so that the number of samples does.
+    pub has_changing_mesh: bool,
     /// What was taken from where.
     pub notes: Vec<String>,
     /// Digest of the content of its files.
@@ -125,6 +128,12 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
     if let Some(why) = unfit(case, sample, &run) {
         return Err(Unread::Unreadable(why));
     }
+    let counted = run.states.first().filter(|_| run.cells.is_none() && sample == Sample::Nodes);
+    if let Some(why) =
+        counted.and_then(|state| counted_otherwise(case.cells, &state.initial_height, case.column.height))
+    {
+        return Err(Unread::Unreadable(format!("the case has {} cells: {why}", case.cells)));
+    }
     if let Some(why) = other_cells(case, run.cells) {
         return Err(Unread::Unreadable(why));
     }
@@ -135,7 +144,7 @@ pub fn read(case: &Case, mapping: &Mapping, result: &[PathBuf]) -> Result<ReadRe
         )));
     }
     let notes = run.doubts.into_iter().chain(run.notes).collect();
-    Ok(ReadResult { states: run.states, sample, notes, digest })
+    Ok(ReadResult { states: run.states, sample, has_changing_mesh: run.has_changing_mesh, notes, digest })
 }
 
 /// Why a result that could be read cannot be that of its case: cut, without a quantity, of another mesh, or with a pressure

@@ -1,9 +1,10 @@
 //! Formats of other programs: all ways of writing an array are one array, and no damage is more than a sentence.
 
 mod edited_files;
+mod flags;
 mod written_files;
 
-use super::frame::{Frame, Wanted};
+use super::frame::{Association, Frame, Wanted};
 use super::steps::{Kind, Step, read_states, steps_of};
 use super::{ImportError, legacy_vtk, numpy, vtu, xdmf, xml};
 use base64::Engine;

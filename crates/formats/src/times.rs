@@ -219,6 +219,7 @@ impl States<'_> {
             time: Some(*time),
             coordinates: self.frame.coordinates.clone(),
             cells: self.frame.cells.clone(),
+            ghosts: self.frame.ghosts.clone(),
             units: self.frame.units.clone(),
             fills: self.frame.fills.clone(),
             notes: self.frame.notes.clone(),

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 /// Number of different heights from which on they are evaluated in parallel.
 const MANY_HEIGHTS: usize = 5_000;
+/// Share of the height that is beside an end.
+const BESIDE: f64 = 1e-9;
 
 /// Exact fields, `[sample]`; SI, signs as in [`Samples`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,6 +67,37 @@ impl ExactFields {
             exact.push(fields.pressure, fields.effective_stress, [horizontal, fields.displacement]);
         }
         Ok(exact)
+    }
+
+    /// The fields with the value on the other side of the jump at the undrained start, where a result has that one: on a drained
+    /// side the whole pressure is as right as none.
+    ///
+    /// # Errors
+    /// When the reference refuses the time factor.
+    pub fn on_either_side(
+        mut self,
+        reference: &Reference,
+        time_factor: f64,
+        places: SamplePlaces<'_>,
+        [pressure, effective_stress]: [&[f64]; 2],
+    ) -> Result<Self, ExactError> {
+        if time_factor != 0.0 {
+            return Ok(self);
+        }
+        let [low, high] = [BESIDE * places.height, (1.0 - BESIDE) * places.height];
+        let heights: Vec<f64> = places.heights.iter().map(|height| height.clamp(low, high)).collect();
+        let beside = Self::of(reference, time_factor, SamplePlaces { heights: &heights, ..places })?;
+        for (own, beside, computed) in [
+            (&mut self.pressure, &beside.pressure, pressure),
+            (&mut self.effective_stress, &beside.effective_stress, effective_stress),
+        ] {
+            for ((own, beside), computed) in own.iter_mut().zip(beside).zip(computed) {
+                if (computed - beside).abs() < (computed - *own).abs() {
+                    *own = *beside;
+                }
+            }
+        }
+        Ok(self)
     }
 
     fn push(&mut self, pressure: f64, effective_stress: f64, [horizontal, vertical]: [f64; 2]) {
@@ -128,6 +161,10 @@ pub fn exact_samples(
         distances: plane.map_or(&[], |plane| &plane.initial_distance),
     };
     let mut exact = ExactFields::of(reference, time_factor, own)?;
+    if case.method.built_in().is_none() {
+        let computed = [&samples.pressure[..], &samples.effective_stress];
+        exact = exact.on_either_side(reference, time_factor, own, computed)?;
+    }
     let heights = samples.displacement_height.as_deref();
     let distances = plane.and_then(|plane| plane.displacement_distance.as_deref());
     if heights.is_some() || distances.is_some() {

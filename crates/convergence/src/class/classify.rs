@@ -60,7 +60,15 @@ pub fn classify(series: &ErrorSeries, context: &Context) -> Classification {
     }
     let evaluated =
         series.points().and_then(|points| Ok(EvaluableSeries::new(&points, context)?.classify(context)));
-    evaluated.unwrap_or_else(|undefined| Classification::new(Class::NotEvaluable, undefined.to_string()))
+    let classification =
+        evaluated.unwrap_or_else(|undefined| Classification::new(Class::NotEvaluable, undefined.to_string()));
+    let levels = series.levels();
+    if !levels.windows(2).all(|pair| pair[0].error == pair[1].error) {
+        return classification;
+    }
+    let reason =
+        format!("the errors are identical on all levels, as of one result; {}", classification.reason);
+    Classification { reason, ..classification }.advise("look whether each level has a result of its own mesh")
 }
 
 fn wrong_context(context: &Context) -> Option<Classification> {

@@ -23,13 +23,13 @@ fn lattice(count: usize, first: f64, spacing: f64) -> Vec<f64> {
 }
 
 fn said(states: &[SampledState]) -> String {
-    states_at_outputs(&case(), states).expect_err("something is missing")
+    states_at_outputs(&case(), states, false).expect_err("something is missing")
 }
 
 #[test]
 fn nodes_centres_and_points_are_whole() {
     for heights in [lattice(11, 0.0, 0.1), lattice(10, 0.05, 0.1), lattice(20, 0.025, 0.05)] {
-        assert!(states_at_outputs(&case(), &states(&heights)).is_ok(), "{heights:?}");
+        assert!(states_at_outputs(&case(), &states(&heights), false).is_ok(), "{heights:?}");
     }
 }
 
@@ -61,7 +61,7 @@ fn a_stretch_of_a_layers_length_that_is_missing_is_told_with_its_distances() {
             initial_height: y.clone(),
             ..SampledState::default()
         };
-        states_at_outputs(&case, &[state(0.05), state(0.1)])
+        states_at_outputs(&case, &[state(0.05), state(0.1)], false)
     };
     assert!(of(&nodes).is_ok());
     let told = of(&nodes[..2]).expect_err("nine tenths are missing");
@@ -86,7 +86,7 @@ fn the_length_of_a_layer_is_its_own_and_not_its_height() {
             along.iter().flat_map(|x| up.iter().map(move |y| (*x, *y))).unzip();
         let time = 0.1 * case.seconds_per_time_factor();
         let state = SampledState { time, initial_distance, initial_height, ..SampledState::default() };
-        let found = states_at_outputs(&case, &[state]).err();
+        let found = states_at_outputs(&case, &[state], false).err();
         match told {
             None => assert_eq!(found, None, "{length} m, {reached} nodes"),
             Some(told) => assert!(found.as_ref().is_some_and(|found| found.contains(told)), "{found:?}"),
@@ -101,9 +101,9 @@ fn missing_times_and_uneven_ones_are_told() {
     let told = said(&all);
     assert!(told.contains("no state at T_v = 0.1") && told.contains("it has 0.05"), "{told}");
     let near = SampledState { time: late.time * 1.0009, ..late.clone() };
-    assert!(states_at_outputs(&case(), &[all[0].clone(), near]).is_ok());
+    assert!(states_at_outputs(&case(), &[all[0].clone(), near], false).is_ok());
     let far = SampledState { time: late.time * 1.0011, ..late.clone() };
-    assert!(states_at_outputs(&case(), &[all[0].clone(), far]).is_err());
+    assert!(states_at_outputs(&case(), &[all[0].clone(), far], false).is_err());
     let more = SampledState { initial_height: lattice(21, 0.0, 0.05), ..late.clone() };
     assert_eq!(said(&[all[0].clone(), more]), "there are 21 samples at T_v = 0.1, and 11 at 0.05");
     let twice = SampledState { repeated: 3, ..late };
@@ -204,7 +204,7 @@ fn an_output_has_the_state_nearest_to_it_in_whatever_order_they_come() {
         state(0.099_95, 6.0),
     ];
     for _ in 0..all.len() {
-        let found = states_at_outputs(&case(), &all).expect("both outputs");
+        let found = states_at_outputs(&case(), &all, false).expect("both outputs");
         let marks: Vec<f64> = found.iter().map(|state| state.pressure[0]).collect();
         assert_eq!(marks, [2.0, 6.0]);
         all.rotate_left(1);

@@ -61,6 +61,11 @@ impl Expected {
         }
     }
 
+    /// Columns that every state must have.
+    pub fn columns(&self) -> Vec<Column> {
+        self.columns.clone()
+    }
+
     /// What states lack, one entry per quantity.
     pub fn absent(&self, states: &[SampledState]) -> Vec<Absent> {
         let absent = |column: Option<Column>, has: &dyn Fn(&SampledState) -> bool| {

@@ -23,12 +23,29 @@ const SAME_VOLUME: f64 = 1e-9;
 /// Coordinates that differ by less than this share of the largest are equal.
 const SAME_PLACE: f64 = 1e-9;
 
+/// Names of arrays that number the points, as programs write them.
+const IDS: [&str; 12] = [
+    "id",
+    "ids",
+    "ID",
+    "Id",
+    "pid",
+    "particle_id",
+    "particleID",
+    "point_id",
+    "GlobalPointIds",
+    "GlobalNodeIds",
+    "GlobalIds",
+    "tag",
+];
+
 /// Names of all arrays that a mapping may ask for.
 pub fn wanted_names(mapping: &Mapping) -> BTreeSet<String> {
+    let numbers = IDS.iter().filter(|_| mapping.displacement.is_some()).map(|name| (*name).to_owned());
     let columns = Column::ALL.into_iter().filter_map(|column| mapping.columns.get(column));
     let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
     let typed = columns.chain(id).chain(mapping.rows.equals.keys());
-    typed.flat_map(|typed| spellings(typed)).map(|spelled| spelled.name.to_owned()).collect()
+    typed.flat_map(|typed| spellings(typed)).map(|spelled| spelled.name.to_owned()).chain(numbers).collect()
 }
 
 /// Where the numbers of a column are.
@@ -178,6 +195,12 @@ impl<'a> FrameRows<'a> {
                 notes.extend(rows.weigh(cells));
             }
         }
+        if rows.on == Association::Points
+            && columns.volume.is_none()
+            && let Some(cells) = &frame.cells
+        {
+            notes.extend(rows.weigh_nodes(cells));
+        }
         rows.check_lengths()?;
         rows.take_units(&mut notes);
         rows.note(notes);
@@ -208,6 +231,9 @@ impl<'a> FrameRows<'a> {
         }
         let id = mapping.displacement.as_ref().and_then(|source| source.id.as_ref());
         self.id = self.source("id", id, on, notes)?;
+        if self.id.is_none() && mapping.displacement.is_some() {
+            self.id = self.numbering(notes);
+        }
         if self.count == 0 {
             self.count = match (self.on, y) {
                 (Association::Cells, _) => frame.cells.as_ref().map_or(0, Cells::count),
@@ -216,6 +242,44 @@ impl<'a> FrameRows<'a> {
             };
         }
         Ok(())
+    }
+
+    /// The array that numbers the points, where the mapping names none: each has a number of its own.
+    fn numbering(&self, notes: &mut Vec<String>) -> Option<Source<'a>> {
+        let numbers_all = |array: &&Array| {
+            let mut numbers: Vec<u64> = array.values.iter().map(|number| number.to_bits()).collect();
+            numbers.sort_unstable();
+            numbers.dedup();
+            array.components == 1
+                && numbers.len() == array.tuples
+                && array.values.iter().all(|id| id.fract() == 0.0)
+        };
+        let on = Some(self.on);
+        let array = IDS.iter().filter_map(|name| self.frame.array(name, on)).find(numbers_all)?;
+        notes.push(format!("points told apart by {}", array.name));
+        Some(Source::Array(array, 0))
+    }
+
+    /// Takes as weights of nodes their shares of the cells around them, where the cells differ; a note says so.
+    fn weigh_nodes(&mut self, cells: &Cells) -> Option<String> {
+        let highest = cells.dimension();
+        let mut shares = vec![0.0; self.count];
+        let mut range = [f64::INFINITY, 0.0_f64];
+        for cell in (0..cells.count()).filter(|cell| cells.dimension_of(*cell) == highest) {
+            let volume = cells.volume(cell, &self.frame.coordinates);
+            let nodes = if self.mapping.rows.corners { cells.corners(cell) } else { cells.points(cell) };
+            for node in nodes {
+                *shares.get_mut(*node as usize)? += volume / nodes.len() as f64;
+            }
+            range = [range[0].min(volume), range[1].max(volume)];
+        }
+        // A volume that is no number makes a share that is none.
+        let are_known = shares.iter().all(|share| share.is_finite());
+        if highest == 0 || !are_known || range[0] <= 0.0 || range[0] >= (1.0 - SAME_VOLUME) * range[1] {
+            return None;
+        }
+        self.volumes = shares;
+        Some("weight = each node's share of the cells around it".to_owned())
     }
 
     /// Takes the volumes of the cells as weights, where they differ; a note says so.

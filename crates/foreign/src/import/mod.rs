@@ -8,6 +8,7 @@ mod csv_text;
 mod expected;
 mod frame_rows;
 pub mod mapping;
+pub mod nodes;
 pub mod origins;
 pub mod raw_row;
 pub mod runs;

@@ -3,6 +3,7 @@
 use crate::import::expected::Expected;
 use crate::import::frame_rows::{FrameRows, Start, cells_over_height, said_unit, wanted_names};
 use crate::import::mapping::{Column, Mapping};
+use crate::import::nodes::weigh;
 use crate::import::origins::{Origin, Origins, PartKind};
 use crate::import::raw_row::SolvedBody;
 use crate::import::said_units::SaidUnit;
@@ -45,6 +46,8 @@ pub struct Run {
     pub contradictions: Vec<String>,
     /// Width of a body whose files show it, m.
     pub width: Option<f64>,
+    /// Whether its mesh changes with time; its cells are then those of the finest.
+    pub has_changing_mesh: bool,
     /// Quantities that are left out on purpose.
     pub without: Vec<Quantity>,
 }
@@ -166,6 +169,7 @@ fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Re
     }
     run.note_repeated(rows.len());
     run.leave_out_unloaded();
+    run.weigh_nodes(mapping, body);
     run.attach_settlement(mapping, body)?;
     Ok(run)
 }
@@ -192,6 +196,7 @@ fn runs_of_arrays(
 ) -> Result<Vec<Run>, ImportError> {
     let names = wanted_names(mapping);
     let mut readings: Vec<Reading> = Vec::new();
+    let mut origins = Origins::new(mapping);
     let mut joined = HashSet::new();
     for files in given {
         let are_folders = have_steps_in_folders(files);
@@ -218,15 +223,15 @@ fn runs_of_arrays(
                         readings.push(Reading {
                             key,
                             are_folders,
+                            is_one_of_many,
                             run,
                             start: None,
                             rows: Vec::new(),
-                            origins: Origins::new(mapping),
                             steps: 0,
                         });
                         readings.len() - 1
                     });
-                    readings[place].take(step, frame, listed, mapping, body)?;
+                    readings[place].take(step, frame, listed, &mut origins, mapping, body)?;
                     readings[place].run.notes.append(&mut notes);
                     Ok(())
                 })?;
@@ -240,7 +245,27 @@ fn runs_of_arrays(
             })?;
         }
     }
-    readings.into_iter().map(|reading| reading.done(mapping, body)).collect()
+    let readings = with_changing_meshes(readings);
+    readings.into_iter().map(|reading| reading.done(&origins, mapping, body)).collect()
+}
+
+/// Joins what was read of one list of states where its mesh changes with time: several meshes, and no time on two of them.
+fn with_changing_meshes(readings: Vec<Reading>) -> Vec<Reading> {
+    let mut joined: Vec<Reading> = Vec::new();
+    for reading in readings {
+        let is_other_mesh = |known: &&mut Reading| {
+            let is_of_list = known.is_one_of_many && reading.is_one_of_many && known.start.is_none();
+            let is_same_list = (&known.key.0, &known.key.1) == (&reading.key.0, &reading.key.1);
+            let times =
+                |rows: &[SampleRow]| rows.iter().map(|row| row.time.to_bits()).collect::<HashSet<u64>>();
+            is_of_list && is_same_list && times(&known.rows).is_disjoint(&times(&reading.rows))
+        };
+        match joined.iter_mut().find(is_other_mesh) {
+            Some(known) => known.change_mesh(reading),
+            None => joined.push(reading),
+        }
+    }
+    joined
 }
 
 /// A state of a frame whose arrays run over times.
@@ -381,20 +406,43 @@ struct Reading {
     key: Key,
     /// Whether folders count the steps.
     are_folders: bool,
+    /// Whether it is a state of a list.
+    is_one_of_many: bool,
     run: Run,
     start: Option<Start>,
     rows: Vec<SampleRow>,
-    origins: Origins,
     steps: usize,
 }
 
 impl Reading {
+    /// Adds the states of another mesh.
+    fn change_mesh(&mut self, other: Self) {
+        let (own, others) = (&mut self.run, other.run);
+        let told =
+            |cells: Option<usize>| cells.map_or("another number of".to_owned(), |cells| cells.to_string());
+        own.notes.push(format!(
+            "its mesh changes with time: {} and {} cells over the height",
+            told(own.cells),
+            told(others.cells)
+        ));
+        own.has_changing_mesh = true;
+        own.cells = own.cells.max(others.cells);
+        own.notes.extend(others.notes);
+        own.doubts.extend(others.doubts);
+        let files = others.files.into_iter().filter(|file| !own.files.contains(file)).collect::<Vec<_>>();
+        own.files.extend(files);
+        own.expected.add(others.expected.columns());
+        self.rows.extend(other.rows);
+        self.rows.sort_by_key(|row| row.origin);
+    }
+
     /// Adds a state.
     fn take(
         &mut self,
         step: &Step,
         frame: &Frame,
         listed: Option<Listed>,
+        origins: &mut Origins,
         mapping: &Mapping,
         body: SolvedBody,
     ) -> Result<(), ImportError> {
@@ -435,7 +483,7 @@ impl Reading {
             }
             None => (&[][..], PartKind::State(None)),
         };
-        let part = self.origins.add(&step.file, &step.named, kind);
+        let part = origins.add(&step.file, &step.named, kind);
         let line =
             |row: usize| records.get(row).map_or(0, |record| u32::try_from(record + 1).unwrap_or(u32::MAX));
         for columns in std::iter::once(&columns).chain(&beside) {
@@ -491,9 +539,9 @@ impl Reading {
     }
 
     /// The run, with its states by time.
-    fn done(self, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
-        let Self { mut run, start, rows, origins, .. } = self;
-        (run.states, run.contradictions) = states_of(&rows, &origins)?;
+    fn done(self, origins: &Origins, mapping: &Mapping, body: SolvedBody) -> Result<Run, ImportError> {
+        let Self { mut run, start, rows, .. } = self;
+        (run.states, run.contradictions) = states_of(&rows, origins)?;
         run.note_repeated(rows.len());
         drop(rows);
         if start.is_some() && run.states.len() < 2 {
@@ -508,6 +556,7 @@ impl Reading {
         }
         run.files_are_in_order(mapping)?;
         run.leave_out_unloaded();
+        run.weigh_nodes(mapping, body);
         run.attach_settlement(mapping, body)?;
         let mut seen = std::collections::BTreeSet::new();
         run.notes.retain(|note| seen.insert(note.clone()));
@@ -545,6 +594,27 @@ impl Run {
         self.states.retain(is_loaded);
         if self.states.len() < before && !self.states.is_empty() {
             let note = "the state at t = 0 is left out: its pressure is 0, so the load is not on yet";
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    /// Gives nodes of graded meshes the weights of the lengths that they stand for, where the file has no weights.
+    fn weigh_nodes(&mut self, mapping: &Mapping, body: SolvedBody) {
+        let sample = self.sample(mapping);
+        if mapping.columns.volume.is_some() {
+            return;
+        }
+        let mut is_weighed = false;
+        for state in &mut self.states {
+            let beside = state.beside.iter_mut().map(|set| (set.sample.unwrap_or(sample), &mut set.state));
+            let sets = beside.collect::<Vec<_>>();
+            for (_, set) in sets.into_iter().filter(|(sample, _)| *sample != Sample::Centres) {
+                is_weighed |= weigh(set, body.height, body.length);
+            }
+            is_weighed |= sample != Sample::Centres && weigh(state, body.height, body.length);
+        }
+        if is_weighed {
+            let note = "weight = the length that each node stands for, because they do not stand evenly";
             self.notes.push(note.to_owned());
         }
     }
@@ -665,9 +735,16 @@ mod tests {
 
     fn reading() -> Reading {
         let key = (PathBuf::new(), String::new(), None, 0);
-        let mapping = Mapping::convention(crate::import::mapping::Axes::Column).expect("a constant");
-        let (run, origins) = (Run::default(), Origins::new(&mapping));
-        Reading { key, are_folders: false, run, start: None, rows: Vec::new(), origins, steps: 0 }
+        let run = Run::default();
+        Reading {
+            key,
+            are_folders: false,
+            is_one_of_many: false,
+            run,
+            start: None,
+            rows: Vec::new(),
+            steps: 0,
+        }
     }
 
     const BODY: SolvedBody = SolvedBody { height: 1.0, length: None, seconds_per_time_factor: 1.0 };
@@ -682,7 +759,7 @@ mod tests {
                     SampleRow { pressure, ..SampleRow::at(time, height, Origin::default()) }
                 }));
             }
-            let run = reading.done(&mapping, BODY).expect("two states");
+            let run = reading.done(&Origins::new(&mapping), &mapping, BODY).expect("two states");
             assert_eq!(run.states.len(), states, "{at_start:?}");
             assert_eq!(run.notes.iter().any(|note| note.contains("is left out")), states == 1);
         }
@@ -714,9 +791,11 @@ mod tests {
                     arrays: names.iter().map(|name| array(name)).collect(),
                     ..Frame::default()
                 };
-                reading.take(&step, &frame, None, &mapping, BODY).expect("a state");
+                reading
+                    .take(&step, &frame, None, &mut Origins::new(&mapping), &mapping, BODY)
+                    .expect("a state");
             }
-            let run = reading.done(&mapping, BODY).expect("three states");
+            let run = reading.done(&Origins::new(&mapping), &mapping, BODY).expect("three states");
             let absent = run.expected.absent(&run.states);
             let told: Vec<_> = absent.iter().map(|one| (one.column, one.states.as_slice())).collect();
             assert_eq!(told, [(Some(Column::Up), &[lacking][..])]);
@@ -747,9 +826,10 @@ mod tests {
                 }],
                 ..Frame::default()
             };
-            reading.take(&step, &frame, None, &mapping, BODY).expect("a state");
+            reading.take(&step, &frame, None, &mut Origins::new(&mapping), &mapping, BODY).expect("a state");
         }
-        let last = reading.done(&mapping, BODY).expect("two states").states.remove(1);
+        let last =
+            reading.done(&Origins::new(&mapping), &mapping, BODY).expect("two states").states.remove(1);
         let found =
             [&last.initial_distance, &last.initial_height, &last.horizontal_displacement, &last.displacement];
         let near = |(found, wanted): (&&Vec<f64>, f64)| (found[0] - wanted).abs() < 1e-15;
@@ -892,5 +972,52 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A file of a list with levels of nodes and a time.
+    fn written(folder: &Path, name: &str, levels: usize) -> String {
+        let lines = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+        let places = lines(levels, &|at| format!("0 {} 0\n", at as f64 / (levels - 1) as f64));
+        let cells = lines(levels - 1, &|cell| format!("2 {cell} {}\n", cell + 1));
+        let text = format!(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {levels} double\n{places}CELLS {} {}\n\
+             {cells}CELL_TYPES {}\n{}POINT_DATA {levels}\nSCALARS p double\nLOOKUP_TABLE default\n{}",
+            levels - 1,
+            3 * (levels - 1),
+            levels - 1,
+            "3\n".repeat(levels - 1),
+            "1\n".repeat(levels)
+        );
+        std::fs::write(folder.join(name), text).expect("a file");
+        name.to_owned()
+    }
+
+    #[test]
+    fn a_mesh_that_changes_with_time_is_one_result_and_meshes_of_the_same_times_are_several() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let text = "columns = { y = \"coordinates[1]\", p = \"p\", u_y = \"\" }".to_owned();
+        let mapping = Mapping::read(&StudySource { name: "m.toml".to_owned(), text }).expect("a mapping");
+        let runs = |entries: &[(f64, usize)]| {
+            let listed = entries.iter().enumerate().map(|(at, (time, levels))| {
+                let name = written(folder.path(), &format!("s{at}_{levels}.vtk"), *levels);
+                format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{name}\"/>")
+            });
+            let path = folder.path().join("a.pvd");
+            let body: String = listed.collect();
+            std::fs::write(
+                &path,
+                format!("<VTKFile type=\"Collection\"><Collection>{body}</Collection></VTKFile>"),
+            )
+            .expect("a file");
+            let runs = runs_of(&[vec![path]], &mapping, BODY).expect("states");
+            runs.iter().map(|run| (run.cells, run.states.len(), run.has_changing_mesh)).collect::<Vec<_>>()
+        };
+        assert_eq!(runs(&[(1.0, 5), (2.0, 7), (3.0, 9)]), [(Some(8), 3, true)]);
+        assert_eq!(runs(&[(1.0, 9), (2.0, 5), (3.0, 9)]), [(Some(8), 3, true)], "it may grow coarser");
+        assert_eq!(runs(&[(1.0, 5), (2.0, 5), (3.0, 5)]), [(Some(4), 3, false)]);
+        assert_eq!(
+            runs(&[(1.0, 5), (2.0, 5), (1.0, 9), (2.0, 9)]),
+            [(Some(4), 2, false), (Some(8), 2, false)]
+        );
     }
 }
