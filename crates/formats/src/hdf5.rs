@@ -337,7 +337,34 @@ fn field_of(record: &[u8], from: u64, size: usize) -> Result<&[u8], String> {
 }
 
 fn damaged(error: &hdf5_pure::Error) -> String {
-    format!("its HDF5 is damaged: {error}")
+    let told = error.to_string();
+    if ["not supported", "nsupported", "virtual"].iter().any(|word| told.contains(word)) {
+        return format!(
+            "its HDF5 has what is not read ({told}): write the numbers themselves, like `g[\"p\"] = f[\"p\"][:]` of h5py"
+        );
+    }
+    format!("its HDF5 is damaged: {told}")
+}
+
+/// The file and path that an array of a name is linked to, where an HDF5 has such a link instead of the array: links to other
+/// files are not followed. Format: "HDF5 file format specification", IV.A.2.g, the link message.
+pub fn linked(file: &Path, name: &str) -> Option<(String, String)> {
+    let bytes = input_file::read(file).ok()?;
+    let length = u8::try_from(name.len()).ok().filter(|length| *length > 0)?;
+    let head = [&[length], name.as_bytes()].concat();
+    let target = |at: usize| {
+        let rest = bytes.get(at + head.len()..)?;
+        let size = usize::from(u16::from_le_bytes([*rest.first()?, *rest.get(1)?]));
+        let value = rest.get(2..2 + size)?.strip_prefix(&[0])?.strip_suffix(&[0])?;
+        let end = value.iter().position(|byte| *byte == 0)?;
+        let [file, path] = [&value[..end], &value[end + 1..]].map(|text| std::str::from_utf8(text).ok());
+        Some((file?.to_owned(), path.filter(|path| !path.contains('\0'))?.to_owned()))
+    };
+    let starts = |at: &usize| bytes[*at..].starts_with(&head);
+    (0..bytes.len())
+        .filter(starts)
+        .filter_map(target)
+        .find(|(file, path)| !file.is_empty() && !path.is_empty())
 }
 
 /// Type of the numbers of a field, and whether the lowest byte comes first.

@@ -33,6 +33,7 @@ pub use bytes::{bare_number, excerpt, with_exponent};
 pub use cells::Cells;
 pub use collections::collection_of;
 pub use frame::{Array, Association, Frame, OtherPoints, Wanted};
+pub use hdf5::linked;
 pub use steps::{Kind, Step, read_states, steps_of};
 pub use times::{Axis, States, Use, states_by_time};
 

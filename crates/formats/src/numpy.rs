@@ -36,6 +36,11 @@ pub(crate) fn read_npz(bytes: &[u8], wanted: Wanted) -> Result<Frame, String> {
             Some(_) => {
                 frame.arrays.push(header.array(name.to_owned(), &content, wanted).map_err(of_member)?);
             }
+            None if !header.fields.is_empty() => {
+                frame
+                    .arrays
+                    .extend(header.records(&format!("{name}/"), &content, wanted).map_err(of_member)?);
+            }
             None => skipped.push(format!("`{name}` ({})", excerpt(&header.kind))),
         }
     }
@@ -81,6 +86,9 @@ fn member<'a>(
 /// Reads an `.npy` as an array of a name.
 pub(crate) fn read_npy(bytes: &[u8], name: &str, wanted: Wanted) -> Result<Frame, String> {
     let header = header_of(bytes)?;
+    if !header.fields.is_empty() {
+        return Ok(Frame { arrays: header.records("", bytes, wanted)?, ..Frame::default() });
+    }
     if header.scalar.is_none() {
         return Err(format!("its type is `{}`: pickled objects are never opened", excerpt(&header.kind)));
     }
@@ -95,6 +103,43 @@ struct Header {
     is_by_columns: bool,
     shape: Vec<usize>,
     start: usize,
+    /// The fields of records.
+    fields: Vec<Field>,
+}
+
+/// A field of a record.
+struct Field {
+    name: String,
+    /// Its numbers; a text has none.
+    scalar: Option<Scalar>,
+    is_little: bool,
+    components: usize,
+    /// Bytes.
+    size: usize,
+}
+
+/// The fields of a type like `[('t', '<f8'), ('u', '<f8', (2,))]`; none where one of them is no number and no text.
+fn fields_of(descr: &str) -> Vec<Field> {
+    let list = descr.strip_prefix('[').and_then(|rest| rest.split(']').next()).unwrap_or_default();
+    let field = |text: &str| {
+        let mut parts = text.split('\'');
+        let (name, _, code, rest) = (parts.next()?, parts.next()?, parts.next()?, parts.next()?);
+        let counts = rest.split(|letter: char| !letter.is_ascii_digit()).filter(|digits| !digits.is_empty());
+        let counts = counts.map(|digits| digits.parse::<usize>().ok()).collect::<Option<Vec<usize>>>()?;
+        let components = counts.into_iter().try_fold(1_usize, usize::checked_mul)?;
+        let (order, kind) = code.split_at_checked(1)?;
+        let scalar = Scalar::of_code(kind);
+        let letters = kind.get(1..).and_then(|count| count.parse::<usize>().ok());
+        let each = match (scalar, kind.chars().next()?) {
+            (Some(scalar), _) => scalar.size(),
+            (None, 'S' | 'V') => letters?,
+            (None, 'U') => letters?.checked_mul(4)?,
+            _ => return None,
+        };
+        let size = each.checked_mul(components)?;
+        Some(Field { name: name.to_owned(), scalar, is_little: order != ">", components, size })
+    };
+    list.split("('").skip(1).map(field).collect::<Option<Vec<Field>>>().unwrap_or_default()
 }
 
 fn header_of(bytes: &[u8]) -> Result<Header, String> {
@@ -118,7 +163,9 @@ fn header_of(bytes: &[u8]) -> Result<Header, String> {
     let shape = shape
         .map(|entry| entry.trim_end_matches('L').parse().map_err(|_| format!("its shape has `{entry}`")));
     let scalar = kind.get(1..).and_then(Scalar::of_code);
+    let fields = if descr.starts_with('[') { fields_of(descr) } else { Vec::new() };
     Ok(Header {
+        fields,
         is_little: !kind.starts_with('>'),
         is_by_columns: value("'fortran_order'").starts_with("True"),
         shape: shape.collect::<Result<_, _>>()?,
@@ -152,6 +199,37 @@ impl Header {
         }
         let shape = if self.shape.len() > 2 { self.shape.clone() } else { Vec::new() };
         Ok(Array { name, on, components: components.max(1), tuples, values, shape })
+    }
+}
+
+impl Header {
+    /// The fields of records as arrays, their names behind a prefix.
+    fn records(&self, prefix: &str, bytes: &[u8], wanted: Wanted) -> Result<Vec<Array>, String> {
+        let too_many = || "its shape has more numbers than any file".to_owned();
+        let tuples =
+            self.shape.iter().try_fold(1_usize, |all, one| all.checked_mul(*one)).ok_or_else(too_many)?;
+        let record: usize = self.fields.iter().map(|field| field.size).sum();
+        let size = tuples.checked_mul(record).ok_or_else(too_many)?;
+        let data = &bytes[self.start..];
+        let data = data.get(..size).ok_or_else(|| {
+            format!("its records have {size} bytes and {} are there: the file is cut", data.len())
+        })?;
+        let mut offset = 0;
+        let mut arrays = Vec::new();
+        for Field { name, scalar, is_little, components, size } in &self.fields {
+            let name = format!("{prefix}{name}");
+            let from = offset;
+            offset += size;
+            let Some(scalar) = scalar else { continue };
+            let mut values = Vec::new();
+            if wanted.has(&name) {
+                let fields = data.chunks_exact(record.max(1)).map(|record| &record[from..from + size]);
+                values = scalar.decode(&fields.collect::<Vec<_>>().concat(), *is_little);
+            }
+            let (on, components) = (Association::Points, *components);
+            arrays.push(Array { name, on, components, tuples, values, shape: Vec::new() });
+        }
+        Ok(arrays)
     }
 }
 
@@ -204,6 +282,28 @@ mod tests {
         assert!(values(&npy(header, b"cos\nsystem\n")).is_err_and(|why| why.contains("never opened")));
         let header = "{'descr': '<f8', 'shape': (99999999999, 99999999999, 9), }";
         assert!(values(&npy(header, &[])).is_err_and(|why| why.contains("more numbers")));
+    }
+
+    #[test]
+    fn fields_of_records_are_arrays() {
+        let header = "{'descr': [('t', '<f8'), ('name', '<U1'), ('a', '>i2', (2,)), ('b', '|u1')], 'fortran_order': False, \
+                      'shape': (2,), }";
+        let record = |time: f64, [one, other]: [i16; 2], last: u8| -> Vec<u8> {
+            [&time.to_le_bytes()[..], b"x\0\0\0", &one.to_be_bytes(), &other.to_be_bytes(), &[last]].concat()
+        };
+        let data = [record(0.5, [1, -2], 9), record(1.5, [3, 4], 8)].concat();
+        let names = BTreeSet::from(["t", "a", "b"].map(str::to_owned));
+        let arrays = read_npy(&npy(header, &data), "file", Wanted(&names)).expect("records").arrays;
+        let told: Vec<(&str, usize, &[f64])> =
+            arrays.iter().map(|array| (array.name.as_str(), array.components, &array.values[..])).collect();
+        assert_eq!(
+            told,
+            [("t", 1, &[0.5, 1.5][..]), ("a", 2, &[1.0, -2.0, 3.0, 4.0]), ("b", 1, &[9.0, 8.0])]
+        );
+        let cut = read_npy(&npy(header, &data[..20]), "file", Wanted(&names));
+        assert!(cut.is_err_and(|why| why.contains("the file is cut")));
+        let objects = "{'descr': [('t', '<f8'), ('o', '|O')], 'fortran_order': False, 'shape': (1,), }";
+        assert!(values(&npy(objects, &[0; 16])).is_err_and(|why| why.contains("never opened")));
     }
 
     #[test]

@@ -282,6 +282,7 @@ mod runs {
         for (count, last) in [(6, "note 6"), (7, "and 1 note more"), (9, "and 3 notes more")] {
             let result = ReadResult {
                 states: Vec::new(),
+                has_changing_mesh: false,
                 sample: Sample::Nodes,
                 notes: (1..=count).map(|number| format!("note {number}")).collect(),
                 digest: "d".to_owned(),

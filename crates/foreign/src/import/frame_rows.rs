@@ -9,7 +9,7 @@ use crate::import::samples::{PlaceSet, SampleRow};
 use crate::import::spelling::spellings;
 use crate::solver::Preset;
 use oedometer_case::quantity::Sample;
-use oedometer_formats::{Array, Association, Cells, Frame, ImportError};
+use oedometer_formats::{Array, Association, Cells, Frame, ImportError, linked};
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
@@ -393,6 +393,26 @@ impl<'a> FrameRows<'a> {
         }
         if self.mapping.optional.iter().any(|optional| optional == key) {
             return Ok(None);
+        }
+        let link = spellings(typed).find_map(|spelled| linked(self.path, spelled.name.rsplit('/').next()?));
+        if let Some((file, path)) = link {
+            return Err(self.refused(format!(
+                "`{typed}` is a link to `{path}` of {file}, and links to other files are not followed: score a file that has the \
+                 numbers, as h5repack or `f[\"{typed}\"][:]` of h5py gives them"
+            )));
+        }
+        let is_state = |array: &&Array| {
+            let (above, number) = array.name.rsplit_once('/').unwrap_or_default();
+            number.parse::<usize>().is_ok()
+                && spellings(typed)
+                    .any(|spelled| above == spelled.name || above.ends_with(&format!("/{}", spelled.name)))
+        };
+        let states: Vec<&Array> = self.frame.arrays.iter().filter(is_state).collect();
+        if let [first, .., last] = &states[..] {
+            return Err(self.refused(format!(
+                "`{}` to `{}` are the states of `{typed}` by their numbers, and their times are in the XDMF beside them: score that",
+                first.name, last.name
+            )));
         }
         let has_times = self.frame.time.is_some() || !self.frame.times.is_empty();
         let otherwise = match key {
