@@ -555,7 +555,10 @@ impl<'a> FrameRows<'a> {
 
     /// The present places, from which later displacements count.
     pub fn start(&self) -> Start {
-        let of = |column: Column, row| self.columns[column as usize].map(|source| self.number(source, row));
+        let of = |column: Column, row| {
+            let number = self.columns[column as usize].map(|source| self.number(source, row));
+            number.map(|number| number * self.factors[column as usize])
+        };
         let place = |row| [of(Column::X, row).unwrap_or(0.0), of(Column::Y, row).unwrap_or(0.0)];
         let id = |row| self.id.map_or(row as u64, |id| self.number(id, row).to_bits());
         let places = (0..self.count).map(|row| (id(row), place(row))).collect();
