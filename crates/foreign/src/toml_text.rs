@@ -453,7 +453,8 @@ mod tests {
             ("a = { b = 1, c = 2", None, A_LINE),
             ("a = 0.3 0.4", None, A_LINE),
             ("load=5 kPa # soft", Some("`5 kPa` needs quotes"), "write `load = \"5 kPa\"`"),
-            ("load = 5kpa", Some("`5kpa` is not a plain number"), plain),
+            ("load = 5kpa", Some("`5kpa` needs quotes"), "write `load = \"5kpa\"`"),
+            ("load = 5 clay", Some("`5 clay` is not a plain number"), plain),
             ("n = 30%", Some("`30%` is not a plain number"), plain),
             ("law = linear\"", Some("`linear\"` needs quotes"), "write `law = \"linear\"`"),
             (
