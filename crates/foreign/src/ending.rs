@@ -274,17 +274,24 @@ pub(crate) fn states_at_outputs(
         ));
     }
     let states: Vec<SampledState> = found.into_iter().flatten().cloned().collect();
-    match case.time_factors.iter().zip(&states).find_map(|(factor, state)| lack(case, *factor, state)) {
+    match case
+        .time_factors
+        .iter()
+        .zip(&states)
+        .find_map(|(factor, state)| lack(case, *factor, state, has_changing_mesh))
+    {
         Some(lack) => Err(lack),
         None if has_changing_mesh => Ok(states),
         None => same_counts(case, &states).map_or(Ok(states), Err),
     }
 }
 
-/// What the samples of a state leave bare.
-fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
+/// What the samples of a state leave bare; the cells of a mesh that changes are no measure.
+fn lack(case: &Case, time_factor: f64, state: &SampledState, has_changing_mesh: bool) -> Option<String> {
     let when = format!("at T_v = {}", typed(time_factor));
-    if let Some(lack) = state.beside.iter().find_map(|set| lack(case, time_factor, &set.state)) {
+    if let Some(lack) =
+        state.beside.iter().find_map(|set| lack(case, time_factor, &set.state, has_changing_mesh))
+    {
         return Some(lack);
     }
     if state.repeated > 0 {
@@ -295,6 +302,9 @@ fn lack(case: &Case, time_factor: f64, state: &SampledState) -> Option<String> {
         // A settlement curve alone has none.
         let has_curve = state.surface_displacement.is_some();
         return (!has_curve).then(|| format!("{when}, there is no sample"));
+    }
+    if has_changing_mesh {
+        return None;
     }
     let column = &case.column;
     let size = case.cell_size();

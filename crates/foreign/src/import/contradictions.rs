@@ -45,6 +45,9 @@ pub struct Course<'a> {
     scales: [f64; 4],
     /// Step to which places are rounded, m.
     step: f64,
+    /// The rows in the order of their source, and the place of each in it.
+    order: Vec<usize>,
+    rank: Vec<usize>,
 }
 
 impl<'a> Course<'a> {
@@ -55,7 +58,11 @@ impl<'a> Course<'a> {
         };
         let scales = [0, 1, 2, 3].map(|quantity| largest(&|row| row.values()[quantity]));
         let extent = largest(&|row| row.initial_height).max(largest(&|row| row.initial_distance));
-        Self { rows, instants, origins, scales, step: SAME_PLACE * extent }
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        order.sort_by_key(|at| rows[*at].origin);
+        let mut rank = vec![0; rows.len()];
+        order.iter().enumerate().for_each(|(place, at)| rank[*at] = place);
+        Self { rows, instants, origins, scales, step: SAME_PLACE * extent, order, rank }
     }
 
     /// Leaves out states that repeat another one, and returns a sentence for each contradiction.
@@ -96,7 +103,7 @@ impl<'a> Course<'a> {
             match self.difference(&self.instants[at], &self.instants[at + 1], allowed) {
                 Difference::Explained { are_equal } => repeated.extend(are_equal.then_some(at + 1)),
                 Difference::Contradiction(values) => told.push(format!(
-                    "two states stand at one time, t = {} s and {} s, and contradict each other at {values}: keep the run that \
+                    "two states stand at one time, t = {} s and {} s, and contradict each other{values}: keep the run that \
                      counts",
                     typed(first),
                     typed(second),
@@ -163,7 +170,9 @@ impl<'a> Course<'a> {
             before.iter().filter_map(|(place, rows)| Some((rows, after.get(place)?))).collect();
         if 2 * common.len() < before.len().min(after.len()) {
             let misfit = (0..4).find_map(|quantity| self.misfit(quantity, one, other, allowed[quantity]));
-            return misfit.map_or(Difference::Explained { are_equal: false }, Difference::Contradiction);
+            return misfit.map_or(Difference::Explained { are_equal: false }, |told| {
+                Difference::Contradiction(format!(": {told}"))
+            });
         }
         let mut are_equal = before.len() == common.len() && after.len() == common.len();
         let mut worst: Option<(f64, usize, [usize; 2])> = None;
@@ -178,9 +187,10 @@ impl<'a> Course<'a> {
             }
         }
         match worst {
-            Some((_, quantity, ends)) => {
-                Difference::Contradiction(self.origins.two_values(quantity, ends.map(|at| &self.rows[at])))
-            }
+            Some((_, quantity, ends)) => Difference::Contradiction(format!(
+                " at {}",
+                self.origins.two_values(quantity, ends.map(|at| &self.rows[at]))
+            )),
             None => Difference::Explained { are_equal },
         }
     }
@@ -193,9 +203,9 @@ impl<'a> Course<'a> {
         }
         let mut passes: Vec<Vec<Vec<usize>>> = vec![Vec::new(); self.instants.len()];
         let mut before = None;
-        for (at, row) in self.rows.iter().enumerate() {
+        for at in self.order.iter().copied() {
             let Some(of_time) = passes.get_mut(instant_of[at]) else { continue };
-            let own = Some((instant_of[at], row.origin.part));
+            let own = Some((instant_of[at], self.rows[at].origin.part));
             match of_time.last_mut().filter(|_| before == own) {
                 Some(pass) => pass.push(at),
                 None => of_time.push(vec![at]),
@@ -268,9 +278,11 @@ impl<'a> Course<'a> {
     /// A state whose time falls behind that of one listed before it, at the same places: a restart. States that fall all
     /// through are sorted the other way round, and columns that are written place by place return to the start each time.
     fn times_that_go_back(&self) -> Vec<String> {
-        let mut listed: Vec<&Vec<usize>> = self.instants.iter().filter(|rows| is_one_block(rows)).collect();
-        listed.sort_by_key(|rows| rows.iter().min().copied());
-        let row = |rows: &[usize]| rows.iter().min().map(|at| &self.rows[*at]);
+        let mut listed: Vec<&Vec<usize>> =
+            self.instants.iter().filter(|rows| self.is_one_block(rows)).collect();
+        let first = |rows: &[usize]| rows.iter().map(|at| self.rank[*at]).min();
+        listed.sort_by_key(|rows| first(rows));
+        let row = |rows: &[usize]| first(rows).map(|place| &self.rows[self.order[place]]);
         let mut told = Vec::new();
         for source in 0..self.origins.sources() {
             let of_source: Vec<&Vec<usize>> = (listed.iter().copied())
@@ -298,6 +310,12 @@ impl<'a> Course<'a> {
         told
     }
 
+    /// Whether the rows of a state follow each other.
+    fn is_one_block(&self, rows: &[usize]) -> bool {
+        let ranks = || rows.iter().map(|at| self.rank[*at]);
+        ranks().min().zip(ranks().max()).is_some_and(|(first, last)| last - first + 1 == rows.len())
+    }
+
     /// Whether two states are at the same heights, or between each other's.
     fn overlap(&self, one: &[usize], other: &[usize]) -> bool {
         let ends = |rows: &[usize]| {
@@ -308,11 +326,6 @@ impl<'a> Course<'a> {
         let common = high.min(other_high) - low.max(other_low);
         common > self.step || (high - low).max(other_high - other_low) <= self.step && common >= -self.step
     }
-}
-
-/// Whether the rows of a state follow each other.
-fn is_one_block(rows: &[usize]) -> bool {
-    rows.iter().min().zip(rows.iter().max()).is_some_and(|(first, last)| last - first + 1 == rows.len())
 }
 
 /// Root of the mean of squares; 0 of none.

@@ -68,7 +68,11 @@ impl Origins {
             self.sources.push(source.to_owned());
             self.sources.len() - 1
         });
-        self.parts.push(Part { file: file.to_owned(), kind, source: place });
+        // Records of a file are one list, whatever their times.
+        let is_same = |part: &Part| kind == PartKind::Records && part.kind == kind && part.file == file;
+        if !self.parts.last().is_some_and(is_same) {
+            self.parts.push(Part { file: file.to_owned(), kind, source: place });
+        }
         u32::try_from(self.parts.len() - 1).unwrap_or(u32::MAX)
     }
 

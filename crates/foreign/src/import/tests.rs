@@ -472,3 +472,33 @@ fn runs_at_places_of_their_own_are_told_and_columns_place_by_place_are_not() {
         "{sentences:?}"
     );
 }
+
+#[test]
+fn records_keep_the_order_of_their_rows_and_tell_of_two_runs() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("a.npy");
+    let source = StudySource { name: "map.toml".to_owned(), text: CONVENTION.to_owned() };
+    let mapping = Mapping::read(&source).expect("a mapping");
+    let run = |places: &[f64], factor: f64| -> Vec<[f64; 4]> {
+        let row = |time: f64, y: f64| [time, y, factor * (16.0 - y * y) / time, 0.0];
+        [1.0, 2.0].iter().flat_map(|time| places.iter().map(move |y| row(*time, *y))).collect()
+    };
+    let (one, other) = ([0.5, 1.2, 1.7, 2.4, 2.9, 3.5], [0.6, 1.1, 1.8, 2.3, 3.0, 3.4]);
+    for (factor, told) in [(1.0, false), (0.8, true)] {
+        let rows = [run(&one, 1.0), run(&other, factor)].concat();
+        let header = format!(
+            "{{'descr': [('t', '<f8'), ('y', '<f8'), ('p', '<f8'), ('u_y', '<f8')], 'fortran_order': False, 'shape': ({},), }}\n",
+            rows.len()
+        );
+        let length = u16::try_from(header.len()).expect("short").to_le_bytes();
+        let numbers: Vec<u8> = rows.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+        std::fs::write(&path, [b"\x93NUMPY\x01\0", &length[..], header.as_bytes(), &numbers].concat())
+            .expect("a file");
+        let body = SolvedBody { height: 4.0, length: None, seconds_per_time_factor: 1.0 };
+        let found = runs_of(&[vec![path.clone()]], &mapping, body).expect("a run").remove(0).contradictions;
+        let is_told = found
+            .first()
+            .is_some_and(|first| first.contains("it holds two runs: p is") && first.contains("a.npy, row "));
+        assert!(is_told == told && found.is_empty() != told, "{found:?}");
+    }
+}
