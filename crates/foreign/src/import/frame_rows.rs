@@ -20,6 +20,8 @@ const COORDINATES: &str = "coordinates";
 const QUANTITIES: [Column; 4] = [Column::Pressure, Column::Up, Column::EffectiveStress, Column::Along];
 /// Volumes that differ by less than this share are equal.
 const SAME_VOLUME: f64 = 1e-9;
+/// Cells whose volumes differ by less than this share are even: round-off of single precision.
+const EVEN: f64 = 1e-3;
 /// Coordinates that differ by less than this share of the largest are equal.
 const SAME_PLACE: f64 = 1e-9;
 
@@ -275,7 +277,7 @@ impl<'a> FrameRows<'a> {
         }
         // A volume that is no number makes a share that is none.
         let are_known = shares.iter().all(|share| share.is_finite());
-        if highest == 0 || !are_known || range[0] <= 0.0 || range[0] >= (1.0 - SAME_VOLUME) * range[1] {
+        if highest == 0 || !are_known || range[0] <= 0.0 || range[0] >= (1.0 - EVEN) * range[1] {
             return None;
         }
         self.volumes = shares;
