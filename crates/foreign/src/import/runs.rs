@@ -22,6 +22,8 @@ use std::path::{Path, PathBuf};
 
 /// Most doubts that are kept of a run.
 const MOST_DOUBTS: usize = 4;
+/// Where a time comes from that the files do not say.
+const DECLARED: &str = "the mapping's [time] or --set-time-step";
 
 /// The states of one mesh.
 #[derive(Clone, Debug, Default)]
@@ -483,7 +485,9 @@ impl Reading {
             }
             None => (&[][..], PartKind::State(None)),
         };
-        let part = origins.add(&step.file, &step.named, kind);
+        // The order of a list says nothing of times that others declare.
+        let source = if from == DECLARED { &step.file } else { &step.named };
+        let part = origins.add(&step.file, source, kind);
         let line =
             |row: usize| records.get(row).map_or(0, |record| u32::try_from(record + 1).unwrap_or(u32::MAX));
         for columns in std::iter::once(&columns).chain(&beside) {
@@ -512,7 +516,7 @@ impl Reading {
         let named = if self.are_folders { step.named.as_path() } else { step.file.as_path() };
         let declared = declared_time(named, self.steps, self.are_folders, mapping, body).map_err(refused)?;
         if let Some(seconds) = declared {
-            return Ok((seconds, "the mapping's [time] or --set-time-step".to_owned()));
+            return Ok((seconds, DECLARED.to_owned()));
         }
         let of_array = match listed {
             Some(time) => Some(time),
