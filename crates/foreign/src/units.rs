@@ -46,6 +46,8 @@ const PLAIN: [(char, char); 15] = [
     ('μ', 'µ'),
     ('\u{a0}', ' '),
 ];
+/// How many of them stand above the line.
+const ABOVE: usize = 12;
 /// Signs of a product before a power of ten.
 const TIMES: [char; 5] = ['x', 'X', '×', '*', '·'];
 
@@ -110,11 +112,20 @@ impl Unit {
     }
 }
 
-/// A text without signs that stand for others.
+/// A text without signs that stand for others; digits above the line are an exponent.
 fn plain(text: &str) -> String {
-    let of =
-        |letter: char| PLAIN.iter().find(|(other, _)| *other == letter).map_or(letter, |(_, plain)| *plain);
-    text.chars().map(of).collect()
+    let mut found = String::with_capacity(text.len());
+    let mut is_above = false;
+    for letter in text.chars() {
+        let known = PLAIN.iter().position(|(other, _)| *other == letter);
+        let is_exponent = known.is_some_and(|place| place < ABOVE);
+        if is_exponent && !is_above && !found.ends_with('^') {
+            found.push('^');
+        }
+        is_above = is_exponent;
+        found.push(known.map_or(letter, |place| PLAIN[place].1));
+    }
+    found
 }
 
 /// A symbol in its own letters, and the power of ten of its prefix.
@@ -147,9 +158,9 @@ fn is_doubtful(typed: &str, symbol: &str) -> bool {
 
 /// The number that a text begins with as a decimal number, and the rest: `10^-9`, `1x10-9` and `1·10⁻⁹` are `1e-9`.
 fn number_and_rest(text: &str) -> (String, String) {
-    let text = plain(text);
-    let number = leading_number(&text);
-    let rest = &text[number.len()..];
+    let number = leading_number(text);
+    let own = &text[number.len()..];
+    let rest = plain(own);
     // A power of ten behind a factor, or alone.
     let base =
         rest.trim_start().strip_prefix(TIMES).map(str::trim_start).and_then(|rest| rest.strip_prefix("10"));
@@ -167,7 +178,7 @@ fn number_and_rest(text: &str) -> (String, String) {
             .ok()
             .map(|exponent| (format!("{factor}e{exponent}"), after[end..].to_owned()))
     });
-    exponent.unwrap_or_else(|| (number.to_owned(), rest.to_owned()))
+    exponent.unwrap_or_else(|| (number.to_owned(), own.to_owned()))
 }
 
 /// Whether a comma before these words may separate thousands.
