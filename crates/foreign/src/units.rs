@@ -166,7 +166,7 @@ fn number_and_rest(text: &str) -> (String, String) {
         rest.trim_start().strip_prefix(TIMES).map(str::trim_start).and_then(|rest| rest.strip_prefix("10"));
     let power = match base {
         Some(after) if !number.is_empty() => Some((number, after)),
-        None if number == "10" && rest.starts_with(['^', '*']) => Some(("1", rest)),
+        None if number == "10" && rest.starts_with(['^', '*']) => Some(("1", rest.as_str())),
         _ => None,
     };
     let exponent = power.and_then(|(factor, after)| {
