@@ -6,6 +6,7 @@ pub mod escape;
 pub(crate) mod marked_text;
 pub(crate) mod number;
 pub mod page;
+pub(crate) mod palette;
 pub(crate) mod script;
 pub mod table;
 

@@ -3,7 +3,8 @@
 use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
 use crate::render::chart::ends::{end_names, end_names_width};
-use crate::render::chart::looks::{Legend, Look, QUIET, TEXT, draw_marker, field_colour, looks};
+use crate::render::chart::looks::{Legend, Look, draw_marker, field_colour, looks};
+use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::chart::multiples::side_by_side;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
@@ -14,19 +15,15 @@ use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::element::Rectangle;
-use plotters::prelude::{Color, RGBColor};
-use plotters::style::colors::WHITE;
+use plotters::prelude::Color;
 use plotters::style::text_anchor::HPos;
 use std::collections::BTreeMap;
 
-const TITLE: Font = Font { size: 15.0, colour: TEXT, is_bold: true };
-const SUBTITLE: Font = Font { size: 12.0, colour: QUIET, is_bold: false };
-const LABEL: Font = Font { size: 13.0, colour: TEXT, is_bold: false };
-const TICK: Font = Font { size: TICK_FONT, colour: TEXT, is_bold: false };
-const NOTE: Font = Font { size: 11.0, colour: QUIET, is_bold: false };
-const FRAME: RGBColor = RGBColor(0x8A, 0x8A, 0x8A);
-const MAJOR: RGBColor = RGBColor(0xDC, 0xDC, 0xDC);
-const MINOR: RGBColor = RGBColor(0xF0, 0xF0, 0xF0);
+const TITLE: Font = Font { size: 15.0, colour: TEXT.light, is_bold: true };
+const SUBTITLE: Font = Font { size: 12.0, colour: QUIET.light, is_bold: false };
+const LABEL: Font = Font { size: 13.0, colour: TEXT.light, is_bold: false };
+const TICK: Font = Font { size: TICK_FONT, colour: TEXT.light, is_bold: false };
+const NOTE: Font = Font { size: 11.0, colour: QUIET.light, is_bold: false };
 /// Margin around the figure, px.
 const PAD: f64 = 14.0;
 /// Height of a line in sizes of its font.
@@ -221,7 +218,7 @@ impl Chart {
     fn axes(&self, layout: &Layout) -> Result<String, String> {
         let (plot, size) = (layout.plot, layout.size);
         let mut out = layer(size, |area| {
-            area.fill(&WHITE)?;
+            area.fill(&SCREEN.light)?;
             let mut chart = ChartBuilder::on(area)
                 .margin_left(units(PAD))
                 .margin_top(units(plot.top))
@@ -236,9 +233,9 @@ impl Chart {
             let (x_label, y_label) =
                 (|x: &i32| scripted(&layout.x.label_at(*x)), |y: &i32| scripted(&layout.y.label_at(*y)));
             let mut mesh = chart.configure_mesh();
-            mesh.bold_line_style(stroke(MAJOR, 1.0))
-                .light_line_style(stroke(MINOR, 1.0))
-                .axis_style(stroke(FRAME, 1.0))
+            mesh.bold_line_style(stroke(GRID.light, 1.0))
+                .light_line_style(stroke(FINE_GRID.light, 1.0))
+                .axis_style(stroke(FRAME.light, 1.0))
                 .set_all_tick_mark_size(units(4.0))
                 .label_style(TICK.style(HPos::Center))
                 .x_label_formatter(&x_label)
@@ -295,7 +292,7 @@ impl Chart {
             .configure_mesh()
             .disable_mesh()
             .disable_x_axis()
-            .axis_style(stroke(FRAME, 1.0))
+            .axis_style(stroke(FRAME.light, 1.0))
             .set_all_tick_mark_size(units(4.0))
             .label_style(TICK.style(HPos::Left))
             .y_label_formatter(&|y| scripted(&bar.label_at(*y)))

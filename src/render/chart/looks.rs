@@ -1,32 +1,16 @@
-//! Colours, markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
+//! Markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
 //! the colour-blind and readers of grey paper can tell them apart.
 use crate::case::grouping::distinct;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
+use crate::render::chart::slots::colour_and_shape;
 use crate::render::chart::{Chart, Naming, Series, Style, slots};
+use crate::render::palette::{FRAME, SCREEN, SERIES, TEXT, THEORY};
 use crate::render::script::{width, wrap};
 use plotters::element::Circle;
 use plotters::prelude::{Color, RGBColor};
-use plotters::style::colors::WHITE;
 use plotters::style::text_anchor::HPos;
-
-/// Okabe and Ito (2008), without the yellow that vanishes on white; black belongs to the theory.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0x00, 0x72, 0xB2),
-    RGBColor(0xD5, 0x5E, 0x00),
-    RGBColor(0x00, 0x9E, 0x73),
-    RGBColor(0xCC, 0x79, 0xA7),
-    RGBColor(0xE6, 0x9F, 0x00),
-    RGBColor(0x56, 0xB4, 0xE9),
-    RGBColor(0x7A, 0x7A, 0x7A),
-];
-
-pub(super) const DARK: RGBColor = RGBColor(0x1A, 0x1A, 0x1A);
-pub(super) const TEXT: RGBColor = RGBColor(0x26, 0x26, 0x26);
-pub(super) const QUIET: RGBColor = RGBColor(0x5F, 0x5F, 0x5F);
-/// Series that are coloured in another panel.
-const GREY: RGBColor = RGBColor(0xC8, 0xC8, 0xC8);
 
 /// Lengths of dashes and gaps in drawing units.
 const DASHES: [&str; 7] = ["", "75 35", "22 28", "95 30 22 30", "105 25", "60 25 20 25 20 25", "40 30"];
@@ -73,7 +57,7 @@ impl Look {
     /// Line width, px.
     pub fn width(&self) -> f64 {
         match self.colour {
-            GREY => 1.0,
+            colour if colour == FRAME.light => 1.0,
             _ if self.is_theory => 1.7,
             _ => 1.5,
         }
@@ -114,9 +98,9 @@ pub(super) fn looks(chart: &Chart) -> Vec<Look> {
 fn look(series: &Series, slot: usize) -> Look {
     Look {
         colour: match series.style {
-            Style::Theory => DARK,
-            Style::Context => GREY,
-            _ => COLOURS[slot % COLOURS.len()],
+            Style::Theory => THEORY.light,
+            Style::Context => FRAME.light,
+            _ => SERIES[colour_and_shape(slot).0].light,
         },
         is_theory: series.style == Style::Theory,
         has_line: series.style != Style::Markers,
@@ -144,13 +128,13 @@ fn outline(shape: usize) -> Vec<Px> {
     }
 }
 
-/// Draws a marker. After the seven full shapes come the same ones, hollow.
+/// Draws the marker of a slot.
 pub(super) fn draw_marker(area: &Area<'_>, at: Px, slot: usize, radius: f64, colour: RGBColor) -> Drawn {
-    let shape = outline(slot % 7);
-    let is_hollow = (slot / 7) % 2 == 1;
+    let (_, shape, is_hollow) = colour_and_shape(slot);
+    let shape = outline(shape);
     // A thin white edge keeps neighbours apart.
     let layers =
-        [(radius + 0.7, WHITE.mix(0.9)), (radius, colour.to_rgba()), (radius * 0.55, WHITE.to_rgba())];
+        [(radius + 0.7, SCREEN.light.mix(0.9)), (radius, colour.to_rgba()), (radius * 0.55, SCREEN.light.to_rgba())];
     for (radius, colour) in layers.into_iter().take(if is_hollow { 3 } else { 2 }) {
         if shape.is_empty() {
             area.draw(&Circle::new(spot(at), units(radius), colour.filled()))?;
@@ -163,7 +147,7 @@ pub(super) fn draw_marker(area: &Area<'_>, at: Px, slot: usize, radius: f64, col
     Ok(())
 }
 
-const FONT: Font = Font { size: 12.0, colour: TEXT, is_bold: false };
+const FONT: Font = Font { size: 12.0, colour: TEXT.light, is_bold: false };
 /// Width of the sample of a line, and of the gap behind it, px.
 const SAMPLE: f64 = 34.0;
 const GAP: f64 = 8.0;
@@ -264,7 +248,7 @@ mod tests {
     fn the_first_slots_differ_in_colour_dash_and_shape() {
         for a in 0..7 {
             for b in 0..a {
-                assert_ne!(COLOURS[a], COLOURS[b]);
+                assert_ne!(SERIES[a].light, SERIES[b].light);
                 assert_ne!(DASHES[a], DASHES[b]);
                 assert_ne!(outline(a), outline(b));
             }
@@ -274,7 +258,7 @@ mod tests {
     #[test]
     fn markers_are_full_for_seven_slots_and_hollow_for_the_next_seven() {
         let drawn = |slot: usize| {
-            let marker = |area: &Area<'_>| draw_marker(area, (10.0, 10.0), slot, 4.0, COLOURS[0]);
+            let marker = |area: &Area<'_>| draw_marker(area, (10.0, 10.0), slot, 4.0, SERIES[0].light);
             layer((20.0, 20.0), marker).expect("a marker")
         };
         for slot in 0..7 {
@@ -289,7 +273,7 @@ mod tests {
     #[test]
     fn zero_is_near_white_and_the_ends_are_blue_and_red() {
         let ends = [-1.0, 0.0, 99.0].map(field_colour);
-        assert_eq!(ends, [FIELD_COLOURS[0], FIELD_COLOURS[4], FIELD_COLOURS[8]]);
+        assert_eq!(ends, [FIELD_SERIES[0].light, FIELD_COLOURS[4], FIELD_COLOURS[8]]);
         assert_eq!(field_colour(f64::NAN), RGBColor(0xC9, 0xC9, 0xC9));
     }
 
@@ -318,7 +302,7 @@ mod tests {
         assert_eq!(looks[1], looks[4]);
         assert_eq!(looks[0], looks[3]);
         assert_ne!(looks[1], looks[2]);
-        assert!(looks[0].colour == DARK && looks[5].colour == DARK && looks[0].dash != looks[5].dash);
+        assert!(looks[0].colour == THEORY.light && looks[5].colour == THEORY.light && looks[0].dash != looks[5].dash);
         assert_eq!(Legend::of(&chart, &looks, |_| true, 500.0).entries.len(), 4);
     }
 }

@@ -1,55 +1,85 @@
-//! Which colour, dashes and marker a name gets: a method of the front page the same in every figure.
+//! Which colour, dashes and marker a name gets: a method the same in every figure.
 
-/// Methods with a slot of their own, which is their place here: those that the front page names.
-const METHODS: [&str; 6] =
-    ["GC-Bbar-patch", "GC-SRI-patch", "CE-SRI-patch-cells", "GIMP-SRI-patch", "VP-Bbar", "MPM"];
+/// Methods with a slot of their own; each pair of colour and marker is another. Colours follow the families of methods, as far as
+/// there are colours: blue for B-bar, vermilion for selective reduced integration, green where the mesh follows the soil.
+const METHODS: [(&str, usize); 19] = [
+    ("GC-Bbar-patch", 0),
+    ("GIMP-Bbar-patch", 7),
+    ("GIMP-Bbar", 14),
+    ("GC-SRI-patch", 1),
+    ("GIMP-SRI", 8),
+    ("TL-GC-Bbar-patch", 2),
+    ("TL-GC-SRI-patch", 9),
+    ("TL-GIMP-SRI-patch", 16),
+    ("CE-SRI-patch-cells", 3),
+    ("CE-SRI-patch", 10),
+    ("MPM-SRI-patch-moments", 4),
+    ("VP-Bbar", 11),
+    ("VP", 18),
+    ("GIMP-SRI-patch", 5),
+    ("PPP", 12),
+    ("B2-Bbar-patch", 19),
+    ("MPM", 6),
+    ("GIMP", 13),
+    ("GIMP-null-space", 20),
+];
 
-/// As many names as this can be told apart by colour.
-const COLOURS: usize = 7;
+/// Numbers of colours and of shapes of markers.
+pub(super) const COLOURS: usize = 7;
 
-/// The slot of each of these names, which are all different. A name may go on after its method, `GC-SRI-patch, implicit`; the
-/// total Lagrangian form of a method looks like the method. Names without a slot of their own take the free ones in their
-/// order; where there are more names than colours, all of them do.
+/// The colour and the shape of the marker of a slot: all pairs are passed through before one comes again, and neighbours differ
+/// in both. The shape is hollow in every second round.
+pub(super) fn colour_and_shape(slot: usize) -> (usize, usize, bool) {
+    let round = slot / COLOURS;
+    (slot % COLOURS, (slot + round) % COLOURS, round % 2 == 1)
+}
+
+/// The slot of each of these names, which are all different. A name may go on after its method, `GC-SRI-patch, implicit`. Names
+/// without a slot of their own take free ones in their order, of other colours as long as there are some.
 pub fn slots(names: &[&str]) -> Vec<usize> {
-    if names.len() > COLOURS {
-        return (0..names.len()).collect();
-    }
     let mut slots: Vec<Option<usize>> = Vec::with_capacity(names.len());
     for name in names {
-        let method = name.split(", ").next().map(|method| method.trim_start_matches("TL-"));
-        let reserved = METHODS.iter().position(|known| method == Some(*known));
+        let method = name.split(", ").next().unwrap_or(name);
+        let reserved = METHODS.iter().find(|(known, _)| *known == method).map(|(_, slot)| *slot);
         slots.push(reserved.filter(|slot| !slots.contains(&Some(*slot))));
     }
-    let mut free = (0..COLOURS).filter(|slot| !slots.contains(&Some(*slot))).collect::<Vec<_>>().into_iter();
-    slots.into_iter().map(|slot| slot.or_else(|| free.next()).unwrap_or_default()).collect()
+    for place in 0..slots.len() {
+        if slots[place].is_none() {
+            let taken = |slot: usize| slots.contains(&Some(slot));
+            let worn = |slot: usize| slots.iter().flatten().any(|other| other % COLOURS == slot % COLOURS);
+            let new_colour = (0..COLOURS).find(|slot| !worn(*slot));
+            slots[place] = new_colour.or_else(|| (0..).find(|slot| !taken(*slot)));
+        }
+    }
+    slots.into_iter().flatten().collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::slots;
+    use super::*;
+    use crate::case::contender::CONTENDERS;
+    use std::collections::BTreeSet;
 
     #[test]
-    fn the_methods_with_a_colour_are_those_that_the_front_page_names() {
-        let profile = include_str!("../../../report/figures/race-profile-moving-all.svg");
-        for method in super::METHODS {
-            assert!(profile.contains(&format!(">{method}<")), "{method}");
-        }
-        // And the title.
-        assert_eq!(profile.matches("font-weight=\"bold\"").count(), super::METHODS.len() + 1);
+    fn every_contender_of_the_race_has_a_look_of_its_own() {
+        let slot = |name: &str| METHODS.iter().find(|(known, _)| *known == name).map(|(_, slot)| *slot);
+        let looks: BTreeSet<(usize, usize)> = CONTENDERS
+            .iter()
+            .map(|contender| slot(contender.name).expect(contender.name))
+            .map(|slot| (colour_and_shape(slot).0, colour_and_shape(slot).1))
+            .collect();
+        assert_eq!(looks.len(), CONTENDERS.len());
     }
 
     #[test]
-    fn a_method_of_the_front_page_has_its_colour_in_any_company() {
-        let many: Vec<String> = (0..8).map(|place| format!("MPM, {place} cells")).collect();
-        let many: Vec<&str> = many.iter().map(String::as_str).collect();
-        let cases: [(&[&str], &[usize]); 7] = [
-            (&["GC-SRI-patch", "MPM"], &[1, 5]),
-            (&["MPM", "GC-SRI-patch, implicit"], &[5, 1]),
+    fn a_method_has_its_colour_in_any_company() {
+        let cases: [(&[&str], &[usize]); 6] = [
+            (&["GC-SRI-patch", "MPM"], &[1, 6]),
+            (&["MPM", "GC-SRI-patch, implicit"], &[6, 1]),
             (&["10 cells", "20 cells", "40 cells"], &[0, 1, 2]),
-            (&["GIMP-SRI", "GC-Bbar-patch", "PPP"], &[1, 0, 2]),
-            (&["MPM, explicit", "MPM, implicit", "MPM-cells"], &[5, 0, 1]),
-            (&["TL-GC-SRI-patch", "MPM", "TL-MPM"], &[1, 5, 0]),
-            (&many, &[0, 1, 2, 3, 4, 5, 6, 7]),
+            (&["uGIMP", "GC-Bbar-patch", "PPP"], &[1, 0, 12]),
+            (&["MPM, explicit", "MPM, implicit", "MPM-cells"], &[6, 0, 1]),
+            (&["a", "b", "c", "d", "e", "f", "g", "h", "MPM"], &[0, 1, 2, 3, 4, 5, 7, 8, 6]),
         ];
         for (names, expected) in cases {
             assert_eq!(slots(names), expected, "{names:?}");

@@ -2,7 +2,7 @@
 use crate::render::chart::Chart;
 use crate::render::chart::axis::Scale;
 use crate::render::chart::draw::Layout;
-use crate::render::chart::looks::{DARK, QUIET, TEXT};
+use crate::render::palette::{QUIET, TEXT, THEORY};
 use crate::render::chart::svg::{Drawn, Font, Px, group, layer, line, polygon, stroke, write};
 use crate::render::script::width;
 use oedometer_soil::elementary;
@@ -123,7 +123,7 @@ pub(super) fn rules(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
     for rule in &chart.rules {
         let Some(px) = layout.y.ends.visible(rule.at).ok().and_then(|at| layout.y.px(at)) else { continue };
         let across = [(plot.left, px), (plot.right, px)];
-        let drawn = layer(layout.size, |area| line(area, &across, stroke(QUIET, 1.0)))?;
+        let drawn = layer(layout.size, |area| line(area, &across, stroke(QUIET.light, 1.0)))?;
         out += &group(" stroke-dasharray=\"50 30\"", &rule.label, &drawn);
         let (w, h) = half_size(&rule.label);
         let offers = (0..=20).map(|step| f64::from(step) / 20.0).flat_map(|t| {
@@ -134,7 +134,7 @@ pub(super) fn rules(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
             })
         });
         if let Some(at) = space.take(offers.collect(), true) {
-            out += &words(layout.size, &rule.label, at, QUIET)?;
+            out += &words(layout.size, &rule.label, at, QUIET.light)?;
         }
     }
     Ok(out)
@@ -173,10 +173,10 @@ pub(super) fn names(space: &mut Space, chart: &Chart, layout: &Layout) -> Result
             if is_away {
                 // A thin line leads from the point to the nearest edge of its words.
                 let end = (x.clamp(at.0 - w, at.0 + w), y.clamp(at.1 - h, at.1 + h));
-                let leader = layer(layout.size, |area| line(area, &[(x, y), end], stroke(QUIET, 0.7)))?;
+                let leader = layer(layout.size, |area| line(area, &[(x, y), end], stroke(QUIET.light, 0.7)))?;
                 out += &group("", "", &leader);
             }
-            out += &words(layout.size, &one.name, at, TEXT)?;
+            out += &words(layout.size, &one.name, at, TEXT.light)?;
             written.push(&one.name);
         }
     }
@@ -213,13 +213,13 @@ pub(super) fn triangles(space: &mut Space, chart: &Chart, layout: &Layout) -> Re
         if let Some(found) = space.take(offers.collect(), true) {
             let [a, b, c] = found.corners;
             let drawn = layer(layout.size, |area| -> Drawn {
-                polygon(area, &found.corners, QUIET.mix(0.10))?;
-                line(area, &[a, b, c, a], stroke(QUIET, 1.1))
+                polygon(area, &found.corners, QUIET.light.mix(0.10))?;
+                line(area, &[a, b, c, a], stroke(QUIET.light, 1.1))
             })?;
             out += &group(" stroke-linejoin=\"round\"", "", &drawn);
             let label = format!("{}", (wanted.slope.abs() * 100.0).round() / 100.0);
-            out += &words(layout.size, &label, found.rise, DARK)?;
-            out += &words(layout.size, "1", found.run, DARK)?;
+            out += &words(layout.size, &label, found.rise, THEORY.light)?;
+            out += &words(layout.size, "1", found.run, THEORY.light)?;
         }
     }
     Ok(out)

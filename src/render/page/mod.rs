@@ -10,7 +10,7 @@ pub use writers::{render_html, render_markdown};
 
 use crate::render::chart::Chart;
 use crate::render::table::{Mood, Table};
-use crate::render::{RenderError, number};
+use crate::render::{RenderError, number, palette};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
@@ -164,7 +164,7 @@ impl Figure {
     /// # Errors
     /// If it cannot be drawn.
     pub fn standalone_svg(&self) -> Result<String, RenderError> {
-        let dark = "<style>@media (prefers-color-scheme: dark) { :root { filter: invert(.905) hue-rotate(180deg); } }</style>";
+        let dark = format!("<style>{}</style>", palette::dark_rules(":root"));
         Ok(self.svg()?.replacen('>', &format!(">\n{dark}"), 1))
     }
 

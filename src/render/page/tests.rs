@@ -231,7 +231,7 @@ fn a_figure_is_drawn_once_and_anew_where_its_chart_changes() {
     let (root, rest) = drawn.split_once('>').expect("a root");
     let file = written(figure.standalone_svg());
     let style = file.strip_prefix(root).and_then(|file| file.strip_suffix(rest)).expect("in between");
-    assert!(style.starts_with(">\n<style>@media (prefers-color-scheme: dark) { :root {"), "{style}");
+    assert!(style.starts_with(">\n<style>@media (prefers-color-scheme: dark) {\n:root [fill="), "{style}");
     assert_eq!(drawn.as_ptr(), written(figure.svg()).as_ptr());
     let other = figure.clone().with_chart(|chart| "Another".clone_into(&mut chart.title));
     assert!(written(other.svg()).contains("Another") && !drawn.contains("Another"));

@@ -4,7 +4,7 @@
 use crate::render::marked_text::{paragraphs, to_html, to_markdown};
 use crate::render::page::{Block, Figure, Page, Section, check, shown_rows, table_file};
 use crate::render::table::{Mood, Table};
-use crate::render::{RenderError, escape};
+use crate::render::{RenderError, escape, palette};
 use std::fmt::Write as _;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -60,7 +60,7 @@ pub fn render_html(page: &Page) -> Result<String, RenderError> {
         TEMPLATE,
         &[
             ("title", &escape::plain_html(&page.title)),
-            ("style", STYLE),
+            ("style", &(STYLE.to_owned() + &palette::dark_rules(".card"))),
             ("wide", if page.is_wide { " wide" } else { "" }),
             ("heading", &escape::html(&page.title)),
             ("lead", &html_text(&page.lead)),
