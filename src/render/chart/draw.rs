@@ -4,13 +4,13 @@ use crate::render::RenderError;
 use crate::render::chart::axis::{Ends, PlacedAxis, Reason, Scale, TICK_FONT};
 use crate::render::chart::ends::{end_names, end_names_width};
 use crate::render::chart::looks::{Legend, Look, draw_marker, field_colour, looks};
-use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::chart::multiples::side_by_side;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, document, group, layer, line, scripted, spot, stroke, units, write,
 };
 use crate::render::chart::words::{Frame, Space, names, rules, triangles};
 use crate::render::chart::{Chart, ChartAxis, Style};
+use crate::render::palette::{FINE_GRID, FRAME, GRID, QUIET, SCREEN, TEXT};
 use crate::render::script::{width, wrap};
 use oedometer_soil::wording::count_of;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};

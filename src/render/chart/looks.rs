@@ -1,10 +1,10 @@
 //! Markers and dashes by number, and the legend. Any two of the first six series differ in all three, so that
 //! the colour-blind and readers of grey paper can tell them apart.
 use crate::case::grouping::distinct;
+use crate::render::chart::slots::colour_and_shape;
 use crate::render::chart::svg::{
     Area, Drawn, Font, Px, group, layer, line, polygon, spot, stroke, units, write,
 };
-use crate::render::chart::slots::colour_and_shape;
 use crate::render::chart::{Chart, Naming, Series, Style, slots};
 use crate::render::palette::{FRAME, SCREEN, SERIES, TEXT, THEORY};
 use crate::render::script::{width, wrap};
@@ -133,8 +133,11 @@ pub(super) fn draw_marker(area: &Area<'_>, at: Px, slot: usize, radius: f64, col
     let (_, shape, is_hollow) = colour_and_shape(slot);
     let shape = outline(shape);
     // A thin white edge keeps neighbours apart.
-    let layers =
-        [(radius + 0.7, SCREEN.light.mix(0.9)), (radius, colour.to_rgba()), (radius * 0.55, SCREEN.light.to_rgba())];
+    let layers = [
+        (radius + 0.7, SCREEN.light.mix(0.9)),
+        (radius, colour.to_rgba()),
+        (radius * 0.55, SCREEN.light.to_rgba()),
+    ];
     for (radius, colour) in layers.into_iter().take(if is_hollow { 3 } else { 2 }) {
         if shape.is_empty() {
             area.draw(&Circle::new(spot(at), units(radius), colour.filled()))?;
@@ -302,7 +305,11 @@ mod tests {
         assert_eq!(looks[1], looks[4]);
         assert_eq!(looks[0], looks[3]);
         assert_ne!(looks[1], looks[2]);
-        assert!(looks[0].colour == THEORY.light && looks[5].colour == THEORY.light && looks[0].dash != looks[5].dash);
+        assert!(
+            looks[0].colour == THEORY.light
+                && looks[5].colour == THEORY.light
+                && looks[0].dash != looks[5].dash
+        );
         assert_eq!(Legend::of(&chart, &looks, |_| true, 500.0).entries.len(), 4);
     }
 }

@@ -2,8 +2,8 @@
 use crate::render::chart::Chart;
 use crate::render::chart::axis::Scale;
 use crate::render::chart::draw::Layout;
-use crate::render::palette::{QUIET, TEXT, THEORY};
 use crate::render::chart::svg::{Drawn, Font, Px, group, layer, line, polygon, stroke, write};
+use crate::render::palette::{QUIET, TEXT, THEORY};
 use crate::render::script::width;
 use oedometer_soil::elementary;
 use plotters::prelude::{Color, RGBColor};
