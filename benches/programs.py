@@ -1,4 +1,4 @@
-"""Whole programs in turn: least `wall_seconds` of the runs of docs/cost.md, as a Markdown table.
+"""Whole programs in turn: least `wall_seconds` of the runs of benches/README.md, as a Markdown table.
 
     python3 benches/programs.py 9 old=/path/to/oedometer new=target/release/oedometer
 

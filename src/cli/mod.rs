@@ -49,7 +49,7 @@ enum Command {
     Score(score::Arguments),
     /// Predict and observe the critical time step
     Stability(stability::Arguments),
-    /// List the cases of studies with their hashes
+    /// List a study's cases and estimate the run time
     Plan(plan::Arguments),
     /// List the content of a folder of results, or print single records
     Records(records::Arguments),
@@ -59,7 +59,7 @@ enum Command {
     List(list::Arguments),
     /// Write a commented study, or an adapter for another solver
     New(new::Arguments),
-    /// Show where the error of a case comes from and what changed
+    /// Show where the error of a case comes from, and what changed
     Explain(explain::Arguments),
     /// Compare two states: folders of records or git revisions
     Compare(compare::Arguments),

@@ -36,7 +36,7 @@ impl StudyBar {
             Progress::Planned { cases, resumed, work, seconds, jobs, longest } => {
                 self.tell_of_time(cases, seconds, jobs, longest.as_deref());
                 self.0.set_length(work);
-                let taken_up = if resumed > 0 { format!(", {resumed} from disk") } else { String::new() };
+                let taken_up = if resumed > 0 { format!(", {resumed} reused") } else { String::new() };
                 let beyond = if work == u64::MAX { ", more work than can be counted" } else { "" };
                 self.0.set_message(format!("{}{taken_up}{beyond}", count_of(cases, "case", "cases")));
             }

@@ -160,7 +160,7 @@ fn tell_of(study: &Study, report: &RunReport, table: &Path) {
         skipped => format!(", {skipped} skipped"),
     };
     say!(
-        "{}: {} ({} from disk, {} failed{skipped}), {}",
+        "{}: {} ({} reused, {} failed{skipped}), {}",
         study.name,
         count_of(report.tally.recorded + report.errors.len(), "case", "cases"),
         report.resumed,

@@ -150,7 +150,7 @@ time_step = [{ growth = 0.05 }]
         }
         assert_eq!(said(|record| record.balance[0].solid_mass_drift = 0.9e-9), "");
         let gap = said(|record| record.balance[0].settlement_curve_gap = 2.1e-3);
-        assert!(gap.contains("settlement off the settlement curve is 2.10e-3"), "{gap}");
+        assert!(gap.contains("final settlement against settlement curve is 2.10e-3"), "{gap}");
         assert_eq!(said(|record| record.balance[0].settlement_curve_gap = 1.9e-3), "");
         let nonsense = said(|record| record.errors[0].value = f64::NAN);
         assert!(nonsense.contains("is NaN"), "{nonsense}");

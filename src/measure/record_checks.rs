@@ -130,12 +130,12 @@ pub fn balance_checks(record: &Record, balance: &Balance) -> Vec<RecordCheck> {
     let mut checks = vec![
         RecordCheck::of("mass of solids, drift", balance.solid_mass_drift, ROUND_OFF),
         RecordCheck::judged(
-            "water balance, over what the load presses out",
+            "water-mass error / expelled water",
             balance.water_imbalance,
             water_bound(record),
         ),
         RecordCheck::of("sum of internal forces, relative", balance.internal_force_imbalance, ROUND_OFF),
-        RecordCheck::of("settlement off the settlement curve", balance.settlement_curve_gap, CURVE_GAP),
+        RecordCheck::of("final settlement against settlement curve", balance.settlement_curve_gap, CURVE_GAP),
         // With constant recovery both stresses have the same error: a zero difference proves nothing.
         RecordCheck::judged(
             "equilibrium (σ' − p + q)/q, rms",

@@ -174,7 +174,7 @@ pub struct SweepTable {
     #[serde(default)]
     #[schemars(schema_with = "times")]
     pub times: Typed<Vec<Placed<f64>>>,
-    /// Lists that are tied instead of multiplied out.
+    /// Lists combined element by element, not as a Cartesian product.
     #[serde(default)]
     #[schemars(schema_with = "axes")]
     pub path: Typed<Vec<Placed<String>>>,
@@ -245,7 +245,7 @@ pub struct ExpectCaseTable {
     pub critical_step_within: Typed<f64>,
     /// Largest relative drift of the solid mass.
     pub solid_drift_below: Typed<f64>,
-    /// Largest imbalance of the water, over the water that the load presses out.
+    /// Largest water-mass error, over the water that the load expels.
     pub water_drift_below: Typed<f64>,
     /// Bounds on the largest volume of the water over that of the pores, minus one, with two point sets.
     pub pore_water: Typed<RangeTable>,

@@ -34,7 +34,7 @@ fn table(name: &str) -> Option<String> {
         "columns of profiles" => columns("profiles"),
         "keys of a study" => own_keys("/properties"),
         _ => match name.strip_prefix("keys of ")? {
-            "[[sweep]]" => inputs("sweep") + &own_rows("/properties/sweep/items/properties"),
+            "[[sweep]]" => inputs("sweep") + &own_keys("/properties/sweep/items/properties"),
             "[[expect]]" => own_keys(EXPECT),
             // What both take is said once.
             "[[expect_case]]" => {
@@ -45,7 +45,7 @@ fn table(name: &str) -> Option<String> {
             "[output]" => own_keys("/properties/output/properties"),
             "[timing]" => own_keys("/properties/timing/properties"),
             "time_step" => own_keys("/properties/sweep/items/properties/time_step/items/properties"),
-            "[column]" => inputs("column") + &own_rows("/properties/column/properties"),
+            "[column]" => inputs("column") + &own_keys("/properties/column/properties"),
             of => {
                 let table = of.strip_prefix('[')?.strip_suffix(']')?;
                 Key::in_table(table).next()?;
@@ -59,19 +59,7 @@ fn code(word: &str) -> String {
     format!("`{word}`")
 }
 
-/// A cell as Markdown has it.
-fn cell(text: &str) -> String {
-    text.replace('|', "\\|")
-}
-
-fn markdown(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
-    let columns = header.split(" | ").count();
-    let rows =
-        rows.map(|row| format!("| {} |\n", row.iter().map(|one| cell(one)).collect::<Vec<_>>().join(" | ")));
-    format!("| {header} |\n|{}\n{}", " :-- |".repeat(columns), rows.collect::<String>())
-}
-
-/// The inputs of a case that a table takes.
+/// The inputs of a case that a table takes: meaning, values and what is taken where one is left out.
 fn inputs(table: &str) -> String {
     let scene = match table {
         "layer" => SceneKind::CosineLayer,
@@ -99,9 +87,9 @@ fn inputs(table: &str) -> String {
             _ => value_of(key, &seed),
         };
         let values = format!("{} {}", values(key), key.unit);
-        vec![code(key.name), format!("{} ({left_out})", values.trim_end()), key.meaning.to_owned()]
+        [code(key.name), format!("{}; {} ({left_out})", key.meaning, values.trim_end())]
     });
-    markdown("key | values (default) | meaning", rows)
+    list(rows)
 }
 
 fn value_of(key: &Key, seed: &Case) -> String {
@@ -168,12 +156,6 @@ fn list(rows: impl IntoIterator<Item = [String; 2]>) -> String {
     rows.into_iter().map(line).collect()
 }
 
-/// Keys of the schema as further rows of a table of inputs.
-fn own_rows(pointer: &str) -> String {
-    let row = |[name, meaning]: [String; 2]| format!("| {name} |  | {} |\n", cell(&meaning));
-    own_of(pointer).into_iter().map(row).collect()
-}
-
 fn methods() -> String {
     let row = |name: String| [code(&name), code(&Method::named(&name).expect("a method").choices())];
     // Prefixes and suffixes are explained beside the list.
@@ -186,9 +168,10 @@ fn methods() -> String {
 fn scenes() -> String {
     let row = |scene: SceneKind| {
         let references = scene.references().iter().map(|kind| code(kind.name()));
-        vec![code(scene.name()), scene.summary().to_owned(), references.collect::<Vec<_>>().join(", ")]
+        let references = references.collect::<Vec<_>>().join(", ");
+        [code(scene.name()), format!("{}; {references}", scene.summary())]
     };
-    markdown("scene | problem | exact solutions, the first one its own", SceneKind::ALL.into_iter().map(row))
+    list(SceneKind::ALL.into_iter().map(row))
 }
 
 fn columns(of: &str) -> String {

@@ -41,7 +41,7 @@ terzaghi ¦ solver = [{ name = 'a', command = ['b'], result = '{out}/c', solve_s
 cosine-layer ¦  ¦ cells = [4, 8, 16] ¦ reference = 'none'⏎probe = 0.5⏎uncertainty = { below = 0.1 } ¦ a probe is for a field of a column that is compared with no reference ¦ add `reference = "none"`, or leave the key out
 terzaghi ¦  ¦ cells = [4, 8]⏎height = [1.0, 2.0] ¦ at = { cells = 8, below = 0.5 } ¦ the cases have several heights, and the expectation names none ¦ add the one that it is about, like `height = 2.0`
 terzaghi ¦  ¦ cells = [4, 8]⏎[[sweep]]⏎method = ['MPM']⏎integrator = ['implicit']⏎cells = [4, 8]⏎porosity = [0.4] ¦ method = 'GIMP'⏎porosity = 0.4⏎at = { cells = 8, below = 0.5 } ¦ no case of the study has `porosity = 0.4` and the other inputs of the expectation ¦ the cases have 0.3
-terzaghi ¦  ¦ cells = [4]⏎time_step = [{ seconds = 1.0 }, { seconds = 0.5 }] ¦ axis = 'time_step'⏎class = 'asymptotic'⏎at = { cells = 4, below = 0.5 } ¦ the bound names no level of its axis, or no bound ¦ write like { cells = 10, below = 5.0e-3 }
+terzaghi ¦  ¦ cells = [4]⏎time_step = [{ seconds = 1.0 }, { seconds = 0.5 }] ¦ axis = 'time_step'⏎class = 'asymptotic'⏎at = { cells = 4, below = 0.5 } ¦ the bound names no level of its axis, or no bound ¦ write it like { cells = 10, below = 5.0e-3 }
 terzaghi ¦  ¦ cells = [4, 8] ¦ quantity = 'settlement'⏎norm = 'l2'⏎at = { cells = 8, below = 0.5 } ¦ a settlement has no `norm = "l2"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
 footing ¦  ¦ cells = [4, 8] ¦ quantity = 'load_factor'⏎sample = 'nodes'⏎at = { cells = 8, below = 0.5 } ¦ a load factor has no `sample = "nodes"` ¦ it is measured at the "surface", "relative" to the exact one: leave the key out
 "#;
@@ -288,7 +288,7 @@ fn who_names_no_integrator_is_told_both_times() {
     let taken = study("cells = [640, 5]\ntime_factors = [1.0]");
     let explicit = study("integrator = ['explicit']\ncells = [640, 5]\ntime_factors = [1.0]");
     let told = format!(
-        "the sweep names no integrator, and `explicit` would take {} for its longest case: `implicit` is used, {}",
+        "no integrator is given, and `explicit` would take {} for its longest case: `implicit` is used, {}",
         longest(&explicit),
         longest(&taken)
     );

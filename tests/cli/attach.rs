@@ -187,15 +187,15 @@ fn finished_cases_are_taken_up_failed_ones_are_run_again_and_so_are_those_of_ano
     let sweep = "[[sweep]]\nmethod = [\"toy\"]\ncells = [10, 20]\n";
     write_study(folder.path(), "again.toml", &solver("toy", "fail", ""), sweep);
     let run = || call(folder.path(), &["run", "again.toml", "--resume", "--keep-unproven"]);
-    assert!(run().err.contains("2 cases (0 from disk, 1 failed)"));
+    assert!(run().err.contains("2 cases (0 reused, 1 failed)"));
     let again = run().err;
-    assert!(again.contains("2 cases (1 from disk, 1 failed)"), "the failed one ran again: {again}");
+    assert!(again.contains("2 cases (1 reused, 1 failed)"), "the failed one ran again: {again}");
     // A file of the adapter that is mended makes other cases.
     let mended = solver("toy", "right", "");
     write_study(folder.path(), "again.toml", &mended, sweep);
     let after = run().err;
-    assert!(after.contains("2 cases (0 from disk, 0 failed)"), "{after}");
-    assert!(run().err.contains("2 cases (2 from disk, 0 failed)"));
+    assert!(after.contains("2 cases (0 reused, 0 failed)"), "{after}");
+    assert!(run().err.contains("2 cases (2 reused, 0 failed)"));
     let kept = fs::read_dir(folder.path().join("out/again/cases")).expect("cases");
     let whole = kept.flatten().filter(|case| case.path().join("solver/out/result.csv").is_file()).count();
     assert_eq!(whole, 3, "one of the first study, two of the second");

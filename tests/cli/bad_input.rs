@@ -204,7 +204,7 @@ fn time_steps_that_are_none_are_refused() {
         ("{ stable = 0 }", ["a time step of 0", "positive and finite"]),
         ("{ seconds = nan }", ["a time step of NaN", "positive and finite"]),
         ("{ courant = inf }", ["a time step of inf", "positive and finite"]),
-        ("{ growth = 0.05 }", ["cannot let its steps grow", "tie both axes with `path`"]),
+        ("{ growth = 0.05 }", ["cannot let its steps grow", "zip both axes with `path`"]),
     ] {
         assert_says(&refused_with("{ stable = 0.8 }", rule), &parts);
     }

@@ -471,7 +471,7 @@ fn a_report_shows_verdicts_and_does_not_gate_on_them() {
     }
     assert!(place.path().join("out/short/records").is_dir(), "records are kept");
     let again = place.call(&[], &["report", "short.toml", "--out", "made"]);
-    assert!(again.err.contains("3 cases (3 from disk"), "{}", again.err);
+    assert!(again.err.contains("3 cases (3 reused"), "{}", again.err);
     let kept = place.call(&[], &["report", "short.toml", "--out", "other", "--from-records"]);
     assert_eq!(kept.code, 0, "{}", kept.err);
     let none = place.call(&[], &["report", "short.toml", "--from-records", "--records", "nowhere"]);

@@ -348,9 +348,9 @@ fn checks_and_references_are_the_worst_of_all_runs() {
                 .iter()
                 .map(|balance| match name {
                     "mass of solids, drift" => balance.solid_mass_drift,
-                    "water balance, over what the load presses out" => balance.water_imbalance,
+                    "water-mass error / expelled water" => balance.water_imbalance,
                     "sum of internal forces, relative" => balance.internal_force_imbalance,
-                    "settlement off the settlement curve" => balance.settlement_curve_gap,
+                    "final settlement against settlement curve" => balance.settlement_curve_gap,
                     _ => balance.equilibrium_residual,
                 })
                 .collect()

@@ -194,11 +194,11 @@ fn a_given_result_is_explained_reported_and_planned_like_a_case() {
     assert!(told.code == 2 && told.err.contains("does not declare the unit of stresses"), "{}", told.err);
 }
 
-/// The command that docs/gate.md gives for CI.
+/// The command that the page gives for CI.
 fn recipe() -> String {
-    let page =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gate.md")).expect("a page");
-    let (_, rest) = page.split_once("## In CI").expect("the recipe");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gate.md");
+    let page = fs::read_to_string(page).expect("a page");
+    let (_, rest) = page.split_once("In CI run ").expect("the recipe");
     let command = rest.split('`').find(|code| code.starts_with("oedometer ")).expect("a command");
     command.to_owned()
 }

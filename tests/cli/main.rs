@@ -18,6 +18,7 @@ mod gate;
 mod gone;
 mod impossible_results;
 mod inputs_first;
+mod manual;
 mod manufactured;
 mod mapping;
 mod over_time;

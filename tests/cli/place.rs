@@ -133,7 +133,7 @@ fn a_check_takes_what_this_build_has_solved_and_nothing_of_another() {
     assert_eq!(call(at, &["run", "studies/first.toml"]).code, 0);
     let told = check();
     assert_eq!(told.code, 0, "{}", told.out);
-    assert!(told.err.contains("2 of 2 cases taken from out, where this build solved them"), "{}", told.err);
+    assert!(told.err.contains("reused 2 of 2 cases from out (same build)"), "{}", told.err);
     assert!(!call(at, &["check", "studies/first.toml", "--records", "none"]).err.contains("taken from"));
     // What a record says is what is judged: it was not solved again.
     changed(at, |record| record.errors[0].value *= 2.0);

@@ -148,7 +148,7 @@ fn a_clock_that_jumps_changes_no_result() {
         let pack = fs::File::options().write(true).open(&path).expect("a pack");
         pack.set_modified(time).expect("a date");
         let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
-        assert!(code == 0 && told.contains("9 from disk"), "{told}");
+        assert!(code == 0 && told.contains("9 reused"), "{told}");
     }
     assert!(results(folder.path()) == expected);
 }
@@ -189,7 +189,7 @@ fn a_record_that_is_damaged_or_was_tampered_with_is_run_again_to_the_same_values
     for damaged in [cut, zeroed, digit, changed("\"cells\":3", "\"cells\":4"), no_number, Vec::new()] {
         fs::write(&pack, &damaged).expect("a file");
         let (code, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
-        assert!(code == 0 && told.contains("0 from disk"), "{told}");
+        assert!(code == 0 && told.contains("0 reused"), "{told}");
         assert!(results(folder.path()) == expected);
     }
 }
@@ -203,7 +203,7 @@ fn a_case_that_takes_too_long_ends_with_a_name_and_is_tried_again() {
     assert_eq!(code, 3, "{told}");
     assert!(told.contains("timed-out") && told.contains("0.001 s that its study allows"), "{told}");
     let (_, told) = run_in(folder.path(), &["run", "short.toml", "--out", "out", "--resume"]);
-    assert!(told.contains("0 from disk"), "{told}");
+    assert!(told.contains("0 reused"), "{told}");
 }
 
 /// A study with a piece cut out, doubled or overwritten.

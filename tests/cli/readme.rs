@@ -1,12 +1,9 @@
-//! What README, the manual and CONTRIBUTING show is what the program does: every command of a text block is run and
-//! its printed output compared, words as words and numbers to the digits shown; study files are run under
-//! the names given; figures in the text that a command prints are held against it; what is named exists.
-//!
-//! In a printed output a line `…` stands for any lines, and `…` at the end of a line for the rest of it.
-//! A wall time at the end of a line is the machine's own.
+//! What README, the manual and CONTRIBUTING name exists: links, options, studies, places in the code; README's first table and
+//! its study are what the program prints and writes. `manual.rs` runs what they show.
 #![cfg(unix)]
 
-use crate::program::{Told, call};
+use crate::manual::{blocks, documents, is_equal, root, text_of, tokens};
+use crate::program::call;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -15,226 +12,19 @@ use tempfile::TempDir;
 const COARSE: usize = 20;
 /// Where the project is.
 const ADDRESS: &str = env!("CARGO_PKG_REPOSITORY");
-/// Units of a wall time.
-const UNITS: [&str; 6] = ["ns", "µs", "ms", "s", "min", "h"];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+/// Most words of README, and of the manual without theory and the pages for developers.
+const MOST_WORDS: [usize; 2] = [1_000, 12_500];
 
 fn readme() -> String {
     text_of("README.md")
 }
 
-fn text_of(document: &str) -> String {
-    fs::read_to_string(root().join(document)).expect(document)
-}
-
-/// README and the pages of the manual.
-fn documents() -> Vec<String> {
-    let pages =
-        fs::read_dir(root().join("docs")).expect("docs/").map(|entry| entry.expect("a page").file_name());
-    let is_page = |name: &std::ffi::OsString| Path::new(name).extension().is_some_and(|end| end == "md");
-    let pages = pages.filter(is_page).map(|name| format!("docs/{}", name.to_string_lossy()));
-    let mut names: Vec<String> = pages.collect();
-    names.sort();
-    names.insert(0, "README.md".to_owned());
-    names
-}
-
-/// A scratch folder that looks like the repository.
-fn place() -> TempDir {
-    let folder = TempDir::new().expect("a folder");
-    for name in ["studies", "golden", "examples"] {
-        std::os::unix::fs::symlink(root().join(name), folder.path().join(name)).expect("a link");
-    }
-    folder
-}
-
-/// Fenced blocks of a language, each with the number of its first line.
-fn blocks(text: &str, language: &str) -> Vec<(usize, Vec<String>)> {
-    let mut found = Vec::new();
-    let mut lines = text.lines().enumerate();
-    while let Some((number, line)) = lines.next() {
-        let Some(of) = line.trim_start().strip_prefix("```") else { continue };
-        let inside = lines.by_ref().map(|(_, line)| line).take_while(|line| line.trim_start() != "```");
-        let inside = inside.map(str::to_owned).collect();
-        if of == language {
-            found.push((number + 2, inside));
-        }
-    }
-    found
-}
-
-/// A command as it is typed, and what README prints below it.
-struct Shown {
-    line: usize,
-    words: Vec<String>,
-    output: Vec<String>,
-}
-
-/// The commands of a text block, lines that end in `\` put together.
-fn commands(first: usize, lines: &[String]) -> Vec<Shown> {
-    let mut all: Vec<Shown> = Vec::new();
-    let mut is_open = false;
-    for (place, line) in lines.iter().enumerate() {
-        let typed = line.strip_prefix("$ ");
-        if typed.is_none() && !is_open {
-            if let Some(shown) = all.last_mut() {
-                shown.output.push(line.clone());
-            }
-            continue;
-        }
-        let part = typed.unwrap_or(line).trim_end();
-        let (part, goes_on) = part.strip_suffix('\\').map_or((part, false), |part| (part, true));
-        if !is_open {
-            all.push(Shown { line: first + place, words: Vec::new(), output: Vec::new() });
-        }
-        if let Some(shown) = all.last_mut() {
-            shown.words.extend(part.split_whitespace().map(str::to_owned));
-        }
-        is_open = goes_on;
-    }
-    all
-}
-
-/// Lines that a program printed, without what it says of a slow machine.
-fn printed(told: &Told) -> Vec<String> {
-    let lines = told.out.lines().chain(told.err.lines());
-    lines.filter(|line| !line.contains("of wall time in all")).map(str::to_owned).collect()
-}
-
-/// Where a line differs from what is shown; `None` where it does not.
-fn difference(shown: &str, found: &str) -> Option<String> {
-    let (shown, is_open) = shown.trim_end().strip_suffix('…').map_or((shown, false), |shown| (shown, true));
-    let (shown, found) = (tokens(shown), tokens(found));
-    if found.len() < shown.len() || found.len() > shown.len() && !is_open {
-        return Some("another number of words".to_owned());
-    }
-    let is_wall_time = |place: usize| {
-        place + 2 == shown.len() && shown[place].parse::<f64>().is_ok() && UNITS.contains(&shown[place + 1])
-    };
-    let differs = |place: &usize| !is_wall_time(*place) && !is_equal(shown[*place], found[*place]);
-    let place = (0..shown.len())
-        .filter(|place| place + 1 != shown.len() || !is_wall_time_unit(&shown))
-        .find(differs)?;
-    Some(format!("`{}` instead of `{}`", found[place], shown[place]))
-}
-
-/// Whether a line ends in a number and a unit of time.
-fn is_wall_time_unit(shown: &[&str]) -> bool {
-    matches!(shown, [.., number, unit] if number.parse::<f64>().is_ok() && UNITS.contains(unit))
-}
-
-/// Words and numbers; a rule under a table's head is as wide as its numbers, and is left out.
-fn tokens(line: &str) -> Vec<&str> {
-    let all = line.split(|c: char| c.is_whitespace() || c == ',').filter(|token| !token.is_empty());
-    all.filter(|token| !token.chars().all(|c| matches!(c, '-' | '|' | ':'))).collect()
-}
-
-/// Words are equal, numbers to the digits shown.
-fn is_equal(shown: &str, found: &str) -> bool {
-    if shown == found {
-        return true;
-    }
-    let plain = |text: &str| text.replace('−', "-").parse::<f64>().ok();
-    let (Some(value), Some(other)) = (plain(shown), plain(found)) else { return false };
-    (value - other).abs() <= 0.500_000_1 * last_digit(shown)
-}
-
-/// Size of one unit of the last digit of a number as it is written.
-fn last_digit(number: &str) -> f64 {
-    let (mantissa, exponent) = number.split_once('e').unwrap_or((number, "0"));
-    let decimals = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len());
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    10_f64.powi(exponent - i32::try_from(decimals).unwrap_or(0))
-}
-
-/// Why printed lines are not those shown; `None` where they are.
-fn mismatch(shown: &[String], found: &[String]) -> Option<String> {
-    let mut found = found.iter();
-    let mut skips = false;
-    for line in shown {
-        if line.trim() == "…" {
-            skips = true;
-            continue;
-        }
-        if skips {
-            if !found.any(|one| difference(line, one).is_none()) {
-                return Some(format!("no line is `{line}`"));
-            }
-        } else {
-            let Some(one) = found.next() else { return Some(format!("nothing is left for `{line}`")) };
-            if let Some(what) = difference(line, one) {
-                return Some(format!("{what} in `{one}`"));
-            }
-        }
-        skips = false;
-    }
-    match found.next() {
-        Some(rest) if !skips => Some(format!("`{rest}` is printed and not shown")),
-        _ => None,
-    }
-}
-
-#[test]
-fn lines_are_compared_by_words_and_by_the_digits_shown() {
-    let is_same = |shown: &str, found: &str| difference(shown, found).is_none();
-    assert!(is_same("| p | 3.98e-2 |", "| p   |  3.98e-2 |"));
-    assert!(is_same("error 3.98e-2", "error 3.984e-2") && !is_same("error 3.98e-2", "error 3.986e-2"));
-    assert!(is_same("settlement −0.63 %", "settlement -0.63 %"));
-    assert!(!is_same("unstable at step 64", "unstable at step 8") && !is_same("a b", "a c"));
-    assert!(
-        is_same("10 steps, 0.677 s", "10 steps, 12.1 s")
-            && !is_same("10 steps, 0.677 s", "11 steps, 0.677 s")
-    );
-    assert!(is_same("a b …", "a b c d") && !is_same("a b …", "a c") && !is_same("a b", "a b c"));
-    let lines = |text: &str| text.split('/').map(str::to_owned).collect::<Vec<_>>();
-    assert_eq!(mismatch(&lines("a/…/d"), &lines("a/b/c/d")), None);
-    assert_eq!(mismatch(&lines("a/…"), &lines("a/b")), None);
-    assert!(mismatch(&lines("a"), &lines("a/b")).is_some() && mismatch(&lines("a/b"), &lines("a")).is_some());
-    assert!(mismatch(&lines("…/x"), &lines("a/b")).is_some());
-}
-
-#[test]
-fn every_command_shown_prints_what_is_shown() {
-    let mut run = 0;
-    let mut wrong = Vec::new();
-    for document in documents() {
-        // The commands of a document see what those before them left.
-        let folder = place();
-        for (first, lines) in blocks(&text_of(&document), "text") {
-            let mut at = folder.path().to_owned();
-            for shown in commands(first, &lines) {
-                let words: Vec<&str> = shown.words.iter().map(String::as_str).collect();
-                match words.as_slice() {
-                    ["cd", to] => at = at.join(to),
-                    ["oedometer", arguments @ ..] => {
-                        run += 1;
-                        let found = printed(&call(&at, arguments));
-                        if let Some(what) = mismatch(&shown.output, &found) {
-                            wrong.push(format!(
-                                "{document}:{}: {}: {what}\n--- shown\n{}\n--- printed\n{}\n",
-                                shown.line,
-                                words.join(" "),
-                                shown.output.join("\n"),
-                                found.join("\n")
-                            ));
-                        }
-                    }
-                    other => panic!("{document}:{}: no command of a test: {other:?}", shown.line),
-                }
-            }
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(run >= 8, "{run} commands");
-}
-
 #[test]
 fn every_link_leads_to_a_file_and_a_heading() {
     let mut led = 0;
-    for document in documents() {
+    let developers =
+        ["CONTRIBUTING.md", "docs/dev/extending.md", "docs/dev/verification.md", "docs/dev/laws.md"];
+    for document in documents().into_iter().chain(developers.map(str::to_owned)) {
         let text = text_of(&document);
         let folder = root().join(&document).parent().expect("a folder").to_owned();
         for target in
@@ -276,17 +66,13 @@ fn anchor(heading: &str) -> String {
 }
 
 #[test]
-fn readme_is_read_in_one_sitting_and_the_manual_knows_its_pages() {
-    let length = readme().len();
-    assert!(length < 12_000, "README has {length} bytes: the manual has room for more");
-    let contents = text_of("docs/README.md");
-    for page in documents()
-        .iter()
-        .filter_map(|name| name.strip_prefix("docs/"))
-        .filter(|name| !["README.md", "SUMMARY.md"].contains(name))
-    {
-        assert!(contents.contains(&format!("]({page})")), "docs/README.md does not name {page}");
-    }
+fn readme_and_manual_are_short() {
+    let words = |document: &String| text_of(document).split_whitespace().count();
+    let length = words(&"README.md".to_owned());
+    assert!(length <= MOST_WORDS[0], "README has {length} words: the manual has room for more");
+    let manual = documents().into_iter().filter(|name| name.starts_with("docs/") && name != "docs/theory.md");
+    let length: usize = manual.map(|name| words(&name)).sum();
+    assert!(length <= MOST_WORDS[1], "the manual has {length} words: what does a reader do with them?");
 }
 
 /// The numbers of a table's cell: `3.98e-2 → 1.98e-2 → 9.90e-3`.
@@ -304,8 +90,8 @@ fn the_first_table_is_what_solve_prints() {
         .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
         .collect();
     let [head, _, rows @ ..] = table.as_slice() else { panic!("the table has gone") };
-    assert_eq!(rows.len(), 4, "{rows:?}");
-    let folder = place();
+    assert_eq!(rows.len(), 2, "{rows:?}");
+    let folder = TempDir::new().expect("a folder");
     let mut held = 0;
     for (column, name) in head.iter().enumerate().skip(1).step_by(2) {
         let method = name.trim_matches('`');
@@ -326,12 +112,9 @@ fn the_first_table_is_what_solve_prints() {
                     "terzaghi",
                 ],
             );
-            for (row, (quantity, sample)) in rows.iter().zip([
-                ("pressure", "points"),
-                ("pressure", "centres"),
-                ("effective_stress", "points"),
-                ("settlement", "surface"),
-            ]) {
+            for (row, (quantity, sample)) in
+                rows.iter().zip([("pressure", "points"), ("pressure", "centres")])
+            {
                 let line = told.out.lines().find(|line| {
                     let words = tokens(line);
                     words.contains(&quantity) && words.contains(&sample)
@@ -356,7 +139,7 @@ fn the_first_table_is_what_solve_prints() {
             assert!(((errors[1] / errors[2]).log2() - order).abs() < 0.1, "{row:?}");
         }
     }
-    assert!(held >= 16, "{held} figures");
+    assert!(held == 8, "{held} figures");
 }
 
 /// What stands between two pieces of README's text, which may be broken into lines.
@@ -367,102 +150,34 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> &'a str {
 
 #[test]
 fn figures_in_the_text_are_what_their_commands_print() {
-    let on_one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let text = on_one_line(readme());
-    let folder = place();
-    let told = call(folder.path(), &["solve", "terzaghi", "--time-step", "seconds=1e-4"]);
-    assert_eq!(told.code, 3);
-    let step = between(&text, "`unstable` at step ", " (`solve terzaghi --time-step seconds=1e-4`");
-    assert!(told.err.contains(&format!("(unstable) at step {step}, ")), "step {step}: {}", told.err);
-    let share = between(&text, "A step of 10⁻⁴ s is reported as ", " times the predicted critical one");
-    let found = between(&told.err, "1.0000e-4 s is ", " of the predicted critical one");
-    assert!(is_equal(share, found), "{share}: {}", told.err);
-    let text = on_one_line(text_of("docs/methods.md"));
+    let text = text_of("docs/methods.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let folder = TempDir::new().expect("a folder");
     let told = call(folder.path(), &["solve", "terzaghi", "--integrator", "implicit"]);
     assert!(!told.out.contains("critical"), "no critical step bounds it: {}", told.out);
     let steps = between(&text, "`solve terzaghi --integrator implicit` takes ", " steps");
-    assert!(
-        told.out.lines().any(|line| line.starts_with(&format!("{steps} steps of"))),
-        "{steps}: {}",
-        told.out
-    );
-    assert_eq!(
-        call(folder.path(), &["solve", "cosine-layer", "--integrator", "implicit", "--cells", "4"]).code,
-        0
-    );
+    let line = format!("{steps} steps of");
+    assert!(told.out.lines().any(|one| one.starts_with(&line)), "{steps}: {}", told.out);
 }
 
-/// README's study file under its name.
-fn with_my_study(change: impl Fn(&str) -> String) -> TempDir {
-    let text = readme();
-    let (_, lines) = blocks(&text, "toml")
-        .into_iter()
-        .find(|(_, lines)| lines.first().is_some_and(|line| line.starts_with("title = ")))
-        .expect("a study file");
-    let folder = place();
-    let file = folder.path().join("my-study.toml");
-    fs::write(file, change(&(lines.join("\n") + "\n"))).expect("a file");
-    folder
+/// README's study.
+fn my_study() -> Vec<String> {
+    let named = |name: &Option<String>| name.as_deref() == Some("my-study.toml");
+    blocks(&readme()).into_iter().find(|block| named(&block.file)).expect("a study file").lines
 }
 
 #[test]
-fn the_study_file_is_the_one_that_new_writes_and_runs_is_judged_and_is_reported() {
-    let folder = with_my_study(str::to_owned);
-    let shown = fs::read_to_string(folder.path().join("my-study.toml")).expect("a file");
-    let other = place();
-    assert_eq!(call(other.path(), &["new", "my-study"]).code, 0);
-    let written = fs::read_to_string(other.path().join("my-study.toml")).expect("a file");
+fn the_study_file_is_the_one_that_new_writes() {
+    let folder = TempDir::new().expect("a folder");
+    assert_eq!(call(folder.path(), &["new", "my-study"]).code, 0);
+    let written = fs::read_to_string(folder.path().join("my-study.toml")).expect("a file");
+    let shown = my_study().join("\n") + "\n";
     assert_eq!(written.split_once("\n\n").map(|(_, body)| body), Some(shown.as_str()));
-    let told = call(folder.path(), &["run", "my-study.toml"]);
-    assert_eq!(told.code, 0, "{}", told.err);
-    let told = call(folder.path(), &["check", "my-study.toml"]);
-    assert_eq!(told.code, 5, "{}{}", told.out, told.err);
-    assert!(told.out.starts_with("my-study: 1 of 1 expectations met"), "{}", told.out);
-    let told = call(folder.path(), &["report", "my-study.toml", "--out", "my-report"]);
-    assert_eq!(told.code, 0, "{}", told.err);
-    assert!(folder.path().join("my-report/index.html").is_file());
-}
-
-#[test]
-fn a_mistake_in_the_study_file_is_told_as_shown() {
-    let (key, typed) = ("hydraulic_conductivity = 1.0e-4", "hydraulic_conductivty = 1.0e-4");
-    let folder = with_my_study(|text| text.replace(key, typed));
-    let told = call(folder.path(), &["check", "my-study.toml"]);
-    assert_eq!(told.code, 2);
-    let text = readme();
-    let (line, shown) = blocks(&text, "text")
-        .into_iter()
-        .find(|(_, lines)| lines.first().is_some_and(|line| line.starts_with("error: ")))
-        .expect("an error");
-    let found: Vec<String> = told.err.lines().map(str::to_owned).collect();
-    assert_eq!(mismatch(&shown, &found), None, "README.md:{line}: {}", told.err);
-}
-
-#[test]
-fn the_mapping_and_the_other_files_shown_are_read() {
-    let mut read = 0;
-    for document in documents() {
-        let folder = place();
-        for (line, lines) in blocks(&text_of(&document), "toml") {
-            let text = lines.join("\n") + "\n";
-            if text.starts_with("sample = ") || text.starts_with("[[solver]]") {
-                // Mappings of pages of their own name arrays of many programs at once; a solver needs its files.
-                continue;
-            }
-            let title = if text.starts_with("title = ") { "" } else { "title = \"shown\"\n" };
-            fs::write(folder.path().join("shown.toml"), format!("{title}{text}")).expect("a file");
-            let told = call(folder.path(), &["plan", "shown.toml"]);
-            assert_eq!(told.code, 0, "{document}:{line}: {}", told.err);
-            read += 1;
-        }
-    }
-    assert!(read >= 5, "{read} files");
 }
 
 /// The `oedometer` commands of shell and YAML blocks: their words behind the program's name.
 fn commands_of_scripts(text: &str) -> Vec<Vec<String>> {
-    let scripts = ["sh", "yaml"].into_iter().flat_map(|language| blocks(text, language));
-    let lines = scripts.flat_map(|(_, lines)| lines);
+    let scripts = blocks(text).into_iter().filter(|block| ["sh", "yaml"].contains(&block.language.as_str()));
+    let lines = scripts.flat_map(|block| block.lines);
     let command = |line: String| {
         let line = line.split(" #").next().unwrap_or_default().replace(" && ", "\n");
         let of =
@@ -505,9 +220,12 @@ fn quoted_commands(text: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn every_option_and_study_that_is_named_exists() {
-    let folder = place();
+    let folder = TempDir::new().expect("a folder");
     let mut seen = 0;
-    for document in documents().into_iter().chain(["CONTRIBUTING.md".to_owned()]) {
+    for document in documents()
+        .into_iter()
+        .chain(["CONTRIBUTING.md", "docs/dev/extending.md", "docs/dev/verification.md"].map(str::to_owned))
+    {
         let text = text_of(&document);
         for words in quoted_commands(&text).into_iter().chain(commands_of_scripts(&text)) {
             let help = call(folder.path(), &[&words[0], "--help"]);
@@ -562,7 +280,7 @@ fn defines(source: &str, name: &str) -> bool {
 
 #[test]
 fn every_place_in_the_code_that_contributing_names_exists() {
-    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
+    let text = text_of("CONTRIBUTING.md") + &text_of("docs/dev/extending.md");
     let whole = sources(&root().join("src")) + &sources(&root().join("crates"));
     let prose = text.split("```").step_by(2).collect::<Vec<_>>().join(" ");
     let mut named = 0;
@@ -617,7 +335,7 @@ fn the_study_from_rust_is_that_of_the_readme() {
         let lines = lines.map(|line| line.split('#').next().unwrap_or_default().trim_end().to_owned());
         lines.filter(|line| !line.is_empty()).collect()
     };
-    let (_, study) = blocks(&readme(), "toml").remove(0);
+    let study = my_study();
     let page = text_of("src/lib.rs");
     let shown = page.lines().skip_while(|line| !line.ends_with("r#\"")).skip(1);
     let shown = shown

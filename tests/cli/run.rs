@@ -88,7 +88,7 @@ fn a_run_leaves_one_record_a_case_and_one_tidy_table() {
     let place = Place::with(STUDY);
     let told = place.run(&[]);
     assert_eq!(told.code, 0, "{}", told.err);
-    assert!(told.err.contains("short: 8 cases (0 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.err.contains("short: 8 cases (0 reused, 0 failed)"), "{}", told.err);
     let planned = place.hashes_planned();
     assert_eq!(planned.len(), 8);
     let records = place.records("out");
@@ -137,7 +137,7 @@ fn resuming_takes_finished_records_and_runs_the_rest() {
     let (records, table) = (place.records("out"), place.table("out"));
     let told = place.run(&["--resume"]);
     assert_eq!(told.code, 0);
-    assert!(told.err.contains("8 cases (8 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.err.contains("8 cases (8 reused, 0 failed)"), "{}", told.err);
     assert_eq!(place.records("out"), records);
     // What is spoilt in any way is run again: one that is gone, garbage, half a record, nothing, that of another case.
     let (path, pack) = only_pack(&place.path().join("out"), "short");
@@ -152,12 +152,12 @@ fn resuming_takes_finished_records_and_runs_the_rest() {
     fs::write(path, [&garbage, half, &nothing, &other, rest].concat()).expect("written");
     let told = place.run(&["--resume"]);
     assert_eq!(told.code, 0);
-    assert!(told.err.contains("8 cases (3 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.err.contains("8 cases (3 reused, 0 failed)"), "{}", told.err);
     assert_eq!(place.records("out"), records);
     assert_eq!(place.table("out"), table);
     // Without being asked to, nothing is taken up.
     let told = place.run(&[]);
-    assert!(told.err.contains("(0 from disk"), "{}", told.err);
+    assert!(told.err.contains("(0 reused"), "{}", told.err);
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn a_record_of_other_sources_or_of_an_older_layout_is_run_again() {
         _ => {}
     });
     let told = place.run(&["--resume"]);
-    assert!(told.err.contains("(6 from disk"), "{}", told.err);
+    assert!(told.err.contains("(6 reused"), "{}", told.err);
     assert_eq!(place.records("out"), records);
 }
 
@@ -183,11 +183,11 @@ fn a_resumed_run_follows_the_study_and_not_the_folder() {
     let reworded =
         STUDY.replace("Eight", "8").replace("[0.01, 0.02]", "[0.02, 1e-2]").replace("[3, 4]", "[4, 3]");
     fs::write(place.path().join("short.toml"), reworded).expect("written");
-    assert!(place.run(&["--resume"]).err.contains("(8 from disk"));
+    assert!(place.run(&["--resume"]).err.contains("(8 reused"));
     // Another load: other cases.
     let other = STUDY.replace("[output]", "[column]\nload = 2.0\n\n[output]");
     fs::write(place.path().join("short.toml"), other).expect("written");
-    assert!(place.run(&["--resume"]).err.contains("8 cases (0 from disk"));
+    assert!(place.run(&["--resume"]).err.contains("8 cases (0 reused"));
 }
 
 #[test]
@@ -214,7 +214,7 @@ fn a_failed_case_is_told_and_the_others_go_on() {
     let place = Place::with(&text);
     let told = place.run(&["--jobs", "2"]);
     assert_eq!(told.code, 3, "{}", told.err);
-    assert!(told.err.contains("8 cases (0 from disk, 4 failed)"), "{}", told.err);
+    assert!(told.err.contains("8 cases (0 reused, 4 failed)"), "{}", told.err);
     let failures: Vec<&str> = told.err.lines().filter(|line| line.contains("unstable at step")).collect();
     assert_eq!(failures.len(), 4, "{}", told.err);
     assert!(failures.iter().all(|line| line.contains("stable=1.2") && line.contains("t = ")), "{}", told.err);
@@ -227,7 +227,7 @@ fn a_failed_case_is_told_and_the_others_go_on() {
     // Resuming does not hide the failures.
     let told = place.run(&["--resume"]);
     assert_eq!(told.code, 3);
-    assert!(told.err.contains("(8 from disk, 4 failed)"), "{}", told.err);
+    assert!(told.err.contains("(8 reused, 4 failed)"), "{}", told.err);
 }
 
 #[test]

@@ -140,7 +140,7 @@ fn control_c_ends_a_solver_with_its_children_and_a_resume_goes_on() {
     assert!(records(at) == 1 && left.is_empty(), "nothing of the case that was ended: {left:?}");
     fs::remove_file(at.join("slow")).expect("it was there");
     let told = call(at, &["run", "s.toml", "--resume"]);
-    assert!(told.code == 0 && told.err.contains("2 cases (1 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("2 cases (1 reused, 0 failed)"), "{}", told.err);
 }
 
 #[test]

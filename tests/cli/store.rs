@@ -274,13 +274,13 @@ fn resuming_runs_cases_of_other_sources_again_and_says_how_many() {
     });
     let told = call(at, &["run", "short.toml", "--resume"]);
     assert_eq!(told.code, 0);
-    assert!(told.err.contains("8 cases (5 from disk"), "{}", told.err);
+    assert!(told.err.contains("8 cases (5 reused"), "{}", told.err);
     let sentence =
         "short: 3 records of another version or of other sources were not reused; their cases were run again";
     assert!(told.err.contains(sentence), "{}", told.err);
     assert_eq!(table_without_times(&at.join("out/short/short.csv")), table);
     let told = call(at, &["run", "short.toml", "--resume"]);
-    assert!(told.err.contains("(8 from disk") && !told.err.contains("reused"), "{}", told.err);
+    assert!(told.err.contains("(8 reused") && !told.err.contains("reused"), "{}", told.err);
 }
 
 #[test]
@@ -295,7 +295,7 @@ fn resuming_takes_up_records_of_another_build_and_says_so_without_their_wall_tim
     });
     let told = call(at, &["run", "short.toml", "--resume"]);
     assert_eq!(told.code, 0);
-    assert!(told.err.contains("8 cases (8 from disk"), "{}", told.err);
+    assert!(told.err.contains("8 cases (8 reused"), "{}", told.err);
     let lines: Vec<&str> = told.err.lines().filter(|line| line.contains("other builds")).collect();
     assert_eq!(lines.len(), 1, "{}", told.err);
     assert!(lines[0].contains("compiler `rustc 0.0.0` in 1 instead of"), "{}", lines[0]);
@@ -323,7 +323,7 @@ fn a_case_that_was_late_is_run_again() {
         }
     });
     let told = call(at, &["run", "short.toml", "--resume"]);
-    assert!(told.code == 0 && told.err.contains("8 cases (7 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("8 cases (7 reused, 0 failed)"), "{}", told.err);
 }
 
 /// The profile is the folder that cargo builds it in; `PROFILE` of a build script knows two only.
@@ -434,7 +434,7 @@ fn every_column_of_the_table_is_what_the_record_says() {
 fn tables_have_the_records_of_other_sources_too_and_say_how_many() {
     let folder = folder_with(STUDY);
     let at = folder.path();
-    let end = |cases: &str| format!("short: {cases} (0 from disk, 0 failed), out/short/short.csv\n");
+    let end = |cases: &str| format!("short: {cases} (0 reused, 0 failed), out/short/short.csv\n");
     assert_eq!(call(at, &["run", "short.toml"]).err, end("8 cases"));
     let mut files: Vec<String> = fs::read_dir(at.join("out/short"))
         .expect("a folder")
@@ -504,8 +504,8 @@ fn a_reference_that_refuses_fails_its_case_and_no_other() {
     let told = call(at, &["run", "refusing.toml", "short.toml"]);
     assert_eq!(told.code, 3, "{}", told.err);
     assert!(told.err.contains("refusing: GC-SRI-patch implicit cells=2"), "{}", told.err);
-    assert!(told.err.contains("refusing: 2 cases (0 from disk, 1 failed)"), "{}", told.err);
-    assert!(told.err.contains("short: 8 cases (0 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.err.contains("refusing: 2 cases (0 reused, 1 failed)"), "{}", told.err);
+    assert!(told.err.contains("short: 8 cases (0 reused, 0 failed)"), "{}", told.err);
     assert!(at.join("out/refusing/refusing.csv").is_file() && at.join("out/short/short.csv").is_file());
     // Wherever the study stands, and though nothing else is left to run.
     fs::write(at.join("other.toml"), STUDY).expect("a file");

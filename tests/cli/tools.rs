@@ -192,7 +192,7 @@ fn one_case_can_be_explained_and_run_again() {
     let arguments: Vec<&str> = command.split(' ').collect();
     let again = call(at, &arguments);
     assert_eq!(again.code, 0, "{}", again.err);
-    assert!(again.err.contains("short: 1 case (0 from disk"), "{}", again.err);
+    assert!(again.err.contains("short: 1 case (0 reused"), "{}", again.err);
     assert_eq!(table_without_times(&at.join("out/short/short.csv")), before, "the table keeps the others");
     let several = call(at, &["explain", "cells=4", "short.toml"]);
     assert_eq!(several.code, 2);

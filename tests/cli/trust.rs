@@ -103,7 +103,7 @@ fn no_command_starts_what_nobody_allowed_and_each_says_how_to() {
         told.err
     );
     let told = untrusting(at, &["run", "s.toml", "--resume", "--keep-unproven"]);
-    assert!(told.code == 0 && told.err.contains("3 cases (3 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.code == 0 && told.err.contains("3 cases (3 reused, 0 failed)"), "{}", told.err);
 }
 
 #[test]

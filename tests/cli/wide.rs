@@ -95,7 +95,7 @@ fn packed_records_are_taken_up_and_what_is_missing_runs() {
     let (folder, table_of_whole) = whole();
     let at = folder.path();
     let told = run(at, &["--resume"]);
-    assert!(told.err.contains("72 cases (72 from disk, 0 failed)"), "{}", told.err);
+    assert!(told.err.contains("72 cases (72 reused, 0 failed)"), "{}", told.err);
     // Cut in its last third, as a kill would leave it, and once more in the middle of a record.
     let (pack, bytes) = only_pack(&at.join("out"), "short");
     fs::write(&pack, &bytes[..bytes.len() * 2 / 3]).expect("written");
@@ -109,7 +109,7 @@ fn packed_records_are_taken_up_and_what_is_missing_runs() {
     assert!(told.err.contains("is cut at byte"), "{}", told.err);
     let told = run(at, &["--resume"]);
     let from_disk = CASES - missing;
-    assert!(told.err.contains(&format!("72 cases ({from_disk} from disk, 0 failed)")), "{}", told.err);
+    assert!(told.err.contains(&format!("72 cases ({from_disk} reused, 0 failed)")), "{}", told.err);
     assert_eq!(table(at, "out"), table_of_whole);
     assert_eq!(packs(&at.join("out"), "short").len(), 1, "the pack was taken up");
     assert!(!call(at, &["records", "out/short"]).err.contains("cut"), "and its end mended");
@@ -143,7 +143,7 @@ fn a_packed_record_with_any_damaged_part_is_run_again_and_no_other_is() {
         damaged[place] ^= flipped;
         fs::write(&pack, &damaged).expect("written");
         let told = run(at, &["--resume"]);
-        let expected = format!("72 cases ({from_disk} from disk, 0 failed)");
+        let expected = format!("72 cases ({from_disk} reused, 0 failed)");
         assert!(
             told.code == 0 && told.err.contains(&expected),
             "{part}, byte {place}, bits {flipped}: {}",
@@ -195,7 +195,7 @@ fn a_late_case_of_many_is_run_again_and_a_failed_one_is_not_hidden() {
     assert!(told.err.starts_with("1 case: about "), "{}", told.err);
     let told = run(at, &["--resume"]);
     assert_eq!(told.code, 3, "{}", told.err);
-    assert!(told.err.contains("72 cases (71 from disk, 2 failed)"), "{}", told.err);
+    assert!(told.err.contains("72 cases (71 reused, 2 failed)"), "{}", told.err);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn shares_by_cost_part_the_cases_exactly_and_merge_to_the_table_of_one_machine()
         let words: Vec<&str> = line.split(' ').collect();
         assert_eq!(&words[..3], &["oedometer", "run", "short.toml"]);
         let told = call(at, &words[1..]);
-        assert!(told.code == 0 && told.err.contains("short: 24 cases (0 from disk"), "{}", told.err);
+        assert!(told.code == 0 && told.err.contains("short: 24 cases (0 reused"), "{}", told.err);
     }
     assert!(!at.join("parts/short/short.csv").exists(), "shares leave the table to the merge");
     let told = call(at, &["merge", "short.toml", "parts", "--out", "parts"]);

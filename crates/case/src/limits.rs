@@ -20,7 +20,7 @@ pub struct Refusal {
     pub help: &'static str,
 }
 
-const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or tie both axes with `path`";
+const OWN_BLOCK: &str = "give each integrator a [[sweep]] block of its own, or zip both axes with `path`";
 const NAME_THE_STEP: &str = "name the step: `time_step = [{ courant = 0.4 }]`, or in seconds";
 
 /// A refusal with its reason, if there is one.

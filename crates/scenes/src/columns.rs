@@ -47,7 +47,7 @@ pub(super) static TERZAGHI: SceneDefinition = SceneDefinition {
 
 /// The slowest mode of an unloaded column: smooth in space and time.
 pub(super) static SINGLE_MODE: SceneDefinition = SceneDefinition {
-    summary: "slowest consolidation mode, no load: smooth, for formal orders",
+    summary: "first eigenmode of consolidation, no load: smooth, for formal orders",
     references: &[ReferenceKind::SingleMode],
     start: SceneStart::OverDepth(mode_without_inertia),
     start_pressure: StartPressure::OfReference,
@@ -129,7 +129,7 @@ pub(super) static DYNAMIC_COLUMN: SceneDefinition = SceneDefinition {
 
 /// The slowest mode of an unloaded column, with the inertia that it has.
 pub(super) static DYNAMIC_SINGLE_MODE: SceneDefinition = SceneDefinition {
-    summary: "slowest consolidation mode with its inertia, no load: smooth",
+    summary: "first eigenmode of consolidation with inertia, no load: smooth",
     references: &[ReferenceKind::DynamicSingleMode, ReferenceKind::SingleMode],
     model_difference: |reference, _| (reference == ReferenceKind::SingleMode).then_some("the inertia"),
     has_waves: true,
@@ -163,7 +163,7 @@ pub(super) static STANDING_WAVE: SceneDefinition = SceneDefinition {
 
 /// A column at rest under its own weight: nothing acts that its start does not balance, and nothing may move.
 pub(super) static AT_REST: SceneDefinition = SceneDefinition {
-    summary: "column without load at rest under its own weight: whatever moves is an error of the method",
+    summary: "column in hydrostatic equilibrium under its own weight, no load: any motion is numerical error",
     references: &[ReferenceKind::AtRest],
     ..SceneDefinition::UNLOADED
 };
@@ -186,7 +186,7 @@ pub(super) static YIELD_FRONT: SceneDefinition = SceneDefinition {
 
 /// A sealed column: no water leaves, so it carries its load undrained.
 pub(super) static SEALED_ELEMENT: SceneDefinition = SceneDefinition {
-    summary: "column under a sudden load that no water leaves, small strain",
+    summary: "sealed (undrained) column under a sudden load, small strain",
     references: &[ReferenceKind::SealedElement],
     ..SceneDefinition::LOADED
 };

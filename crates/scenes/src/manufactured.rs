@@ -34,7 +34,7 @@ pub(crate) static SHEAR: SceneDefinition = SceneDefinition {
 };
 
 pub(crate) static VORTEX: SceneDefinition = SceneDefinition {
-    summary: "a disc that turns inside a square at rest, and back: tells domains that turn from those that do not",
+    summary: "a disc that rotates inside a square and back: separates rotating from non-rotating particle domains",
     references: &[ReferenceKind::Manufactured(ManufacturedModel::with_default_law(Motion::Vortex))],
     ..OF_ALL
 };

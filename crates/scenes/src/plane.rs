@@ -49,7 +49,7 @@ pub(super) static MANDEL: SceneDefinition = SceneDefinition {
 /// The plate settles by its own width in the time of `T_v = 1`, so that time factors are settlements over the width; the
 /// soil is without inertia, and how fast it goes makes no difference.
 pub(super) static FOOTING: SceneDefinition = SceneDefinition {
-    summary: "strip footing on undrained soil that yields: its load shows what locks",
+    summary: "strip footing on undrained soil that yields: its collapse load reveals locking",
     references: &[ReferenceKind::Footing],
     body: SceneBody::Footing,
     ..SceneDefinition::UNLOADED

@@ -29,7 +29,7 @@ pub struct PointState {
 
 /// A stress–strain law at a point.
 ///
-/// docs/laws.md has a complete example, Drucker & Prager's law.
+/// docs/dev/laws.md has a complete example, Drucker & Prager's law.
 pub trait PointLaw: Debug + Send + Sync {
     /// The state after a strain increment from an accepted state, and the derivative of its stress by the increment (the
     /// consistent tangent of Simo & Taylor 1985), with which Newton's iteration converges quadratically.
@@ -38,7 +38,7 @@ pub trait PointLaw: Debug + Send + Sync {
 
 /// The page on laws, whose example is compiled and run.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/laws.md")]
+#[doc = include_str!("../../../docs/dev/laws.md")]
 struct CustomLaws;
 
 /// `a : b`.

@@ -143,7 +143,7 @@ fn reports_of(
     if taken > 0 {
         let all: usize = studies.iter().map(|study| study.cases(Tier::Ci).len()).sum();
         say!(
-            "{taken} of {} taken from {}, where this build solved them; `--fresh` solves them anew",
+            "reused {taken} of {} from {} (same build); `--fresh` runs them again",
             count_of(all, "case", "cases"),
             arguments.records.display()
         );

@@ -15,7 +15,7 @@ use oedometer_exact::parameters::ColumnParameters;
 use oedometer_exact::reference::{Reference, ReferenceKind};
 use oedometer_exact::{ShelfProblem, consolidation};
 use oedometer_scenes::SceneKind;
-use oedometer_soil::wording::typed;
+use oedometer_soil::wording::{count_of, typed};
 
 /// Distances from the middle of a slab if none are given.
 const DEFAULT_DISTANCES: &str = "0,0.25,0.5,0.75,1";
@@ -39,6 +39,7 @@ enum Format {
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Exact solution: terzaghi (compressible water), terzaghi-incompressible, single-mode, …
+    #[arg(value_name = "SOLUTION")]
     scene: String,
     /// Time factors `T_v` = `c_v` t/H², comma-separated [default: 0.05,0.1,0.2,0.5,1.0]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
@@ -114,8 +115,9 @@ impl Truncation {
     fn told(&self) -> String {
         let Self { time_factor, terms, tail_bound, round_off, seconds, settlement } = self;
         let seconds = seconds.map_or(String::new(), |seconds| format!("t = {seconds:.6e} s, "));
+        let terms = count_of(*terms, "term", "terms");
         format!(
-            "T_v = {time_factor}: {seconds}s = {settlement:.6e} m, {terms} terms, tail below {tail_bound:.1e}, \
+            "T_v = {time_factor}: {seconds}s = {settlement:.6e} m, {terms}, tail below {tail_bound:.1e}, \
              round-off below {round_off:.0e}"
         )
     }

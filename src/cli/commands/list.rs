@@ -78,7 +78,7 @@ fn show(name: &str) -> anyhow::Result<Exit> {
     let near = nearest(name, names.iter().map(String::as_str));
     let help =
         near.map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
-    Err(Ended::usage(format!("no method and no shipped study is called `{name}`: {help}")))
+    Err(Ended::usage(format!("no method and no built-in study is called `{name}`: {help}")))
 }
 
 /// A method in words: a line for each of its parts, and how to write it in a study.

@@ -354,7 +354,7 @@ impl Checker<'_> {
             self.complain(
                 level.span(),
                 "the bound names no level of its axis, or no bound",
-                "write like { cells = 10, below = 5.0e-3 }",
+                "write it like { cells = 10, below = 5.0e-3 }",
             );
             return None;
         };

@@ -388,7 +388,7 @@ impl Checker<'_> {
                 "the load strains the column by m_vl q = {strain:.2e}: this scene is small-strain theory, and real soil \
                  departs from it by about that fraction"
             ),
-            "the errors printed are against small-strain theory all the same; the scene `xie-leo` is of large strain",
+            "the errors are taken against small-strain theory; `xie-leo` is the problem at large strain",
         );
         self.warn(&diagnostic);
     }

@@ -252,7 +252,7 @@ impl Checker<'_> {
         self.warn(&Diagnostic::at(
             start.clone(),
             format!(
-                "the sweep names no integrator, and `explicit` would take {} for its longest case: `{implicit}` \
+                "no integrator is given, and `explicit` would take {} for its longest case: `{implicit}` \
                  is used, {}",
                 duration(explicit),
                 duration(slowest(sweep)),
@@ -462,7 +462,7 @@ mod tests {
     #[test]
     fn one_case_that_would_take_minutes_makes_its_whole_sweep_implicit_wherever_it_stands() {
         use IntegratorKind::{Explicit, Implicit};
-        let told = |warnings: &str| warnings.contains("the sweep names no integrator");
+        let told = |warnings: &str| warnings.contains("no integrator is given");
         for list in ["[640, 5, 10]", "[5, 640, 10]", "[5, 10, 640]"] {
             let (found, warnings) = integrators(&format!("cells = {list}"), "");
             assert_eq!(found, [Implicit; 3], "{list}");

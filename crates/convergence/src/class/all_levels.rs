@@ -266,7 +266,7 @@ fn least(exponent: Exponent, value: impl Fn(f64) -> f64) -> f64 {
 
 fn classified(case: &EvaluableSeries, candidate: &Candidate) -> Option<Classification> {
     let window = &case.pairs[case.pairs.len() - 2..];
-    let window = format!("order {} on the finest window ({})", order(case.order), orders(window));
+    let window = format!("order {} on the three finest levels ({})", order(case.order), orders(window));
     let finest = case.finest().0 / case.coarsest().0;
     let percent = 100.0 * candidate.share(finest);
     let levels = case.points.len();

@@ -41,7 +41,7 @@ const LOOK_FOR_NOISE: &str = "look for cell crossing, waves or a start that diff
 ///    missing, too few or too close (`not-evaluable`), a body that hardly moves (`locked`);
 /// 2. a finest error of round-off, errors within a tolerance that do not fall, and a limit that is not zero
 ///    (`floor-limited`; `pre-asymptotic` where only three levels say so), before any growth;
-/// 3. signs that change on the finest window (`oscillatory`; `pre-asymptotic` for a single change), growth
+/// 3. signs that change on the three finest levels (`oscillatory`; `pre-asymptotic` for a single change), growth
 ///    (`divergent`), plateaus (`floor-limited`; `pre-asymptotic` on three levels), ups and downs
 ///    (`oscillatory`, `divergent`), alternating orders (`oscillatory`);
 /// 4. a series that falls steadily is judged on its finest window: `asymptotic`, `pre-asymptotic`,
@@ -209,7 +209,7 @@ impl EvaluableSeries<'_> {
             Classification::new(Class::Oscillatory, reason).advise(LOOK_FOR_NOISE)
         } else {
             let reason =
-                format!("the sign changes on the finest window, where no order is defined: {values}");
+                format!("the sign changes on the three finest levels, where no order is defined: {values}");
             Classification::new(Class::PreAsymptotic, reason)
                 .advise("add a finer level: it tells a single passage through zero from an oscillation")
         })

@@ -23,7 +23,8 @@ pub fn judge_window(case: &EvaluableSeries) -> Classification {
     let [.., coarse, fine] = *case.pairs.as_slice() else {
         return Classification::new(Class::NotEvaluable, "fewer than two pairs of levels");
     };
-    let window = format!("order {} on the finest window ({})", order(case.order), orders(&[coarse, fine]));
+    let window =
+        format!("order {} on the three finest levels ({})", order(case.order), orders(&[coarse, fine]));
     let classification = match case.formal {
         Some(formal) => with_formal(case, &window, formal, coarse, fine),
         None => without_formal(case, &window, fine),
@@ -89,7 +90,7 @@ fn without_formal(case: &EvaluableSeries, window: &str, fine: f64) -> Classifica
         }
     }
     if drift.abs() <= SETTLED && !may_be_floor {
-        return Classification::new(Class::Asymptotic, format!("{window}, no formal order known"));
+        return Classification::new(Class::Asymptotic, window);
     }
     unsettled(format!("{window}: not settled"))
 }

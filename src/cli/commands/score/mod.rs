@@ -192,8 +192,8 @@ fn quantities_of(typed: &[String]) -> anyhow::Result<Vec<Quantity>> {
 fn groups_of(case: &Case) -> String {
     let soil = &case.material;
     format!(
-        "groups: storage n E_oed/K_w = {:.2e}, finite strain m_vl q = {:.2e}; an error of their size can be due to \
-         the model, not to the solver",
+        "groups: storage n E_oed/K_w = {:.2e}, finite strain m_vl q = {:.2e}; errors of this size can come from \
+         the reference's assumptions",
         soil.oedometric_modulus() / soil.coupling_modulus(),
         case.column.load / soil.oedometric_modulus()
     )
