@@ -144,7 +144,7 @@ fn tables_of_checks_show_the_worst_of_all_outputs_and_runs() {
         assert_eq!(table_of_checks(&burst(place)), rows, "at output {place}");
         let mut records = [calm(), calm(), calm()];
         records[place] = burst(1);
-        assert_eq!((value(&records, "burst"), value(&records, "water balance")), (7.25, -0.5), "run {place}");
+        assert_eq!((value(&records, "burst"), value(&records, "water-mass")), (7.25, -0.5), "run {place}");
     }
 }
 
