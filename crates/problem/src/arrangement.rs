@@ -29,7 +29,6 @@ pub fn single_set() -> usize {
 }
 
 /// Whether a count is one.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
 pub fn is_single_set(count: &usize) -> bool {
     *count == 1
 }

@@ -96,7 +96,7 @@ pub(crate) fn forcing(
     let solution = Manufactured::new(model, &column_parameters(square, soil))?;
     Ok(Arc::new(move |places| {
         let spots = places.iter().map(|place| Spot::new(*place)).collect();
-        Arc::new(MadeMotion { solution: solution.clone(), spots })
+        Arc::new(MadeMotion { solution, spots })
     }))
 }
 
@@ -199,7 +199,7 @@ impl Forcing<2> for MadeMotion {
             #[inline(always)]
             |sites, count| {
                 let guesses = sites.map(|site| places[site]);
-                let there = sites.map(|site| present(site));
+                let there = sites.map(present);
                 let material = self.solution.material_places(&there, &moment, &guesses);
                 for place in 0..count {
                     places[sites[place]] = material[place];

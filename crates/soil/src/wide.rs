@@ -19,7 +19,10 @@ pub fn are_alike(numbers: &[u8], first: usize) -> bool {
     numbers.get(first..first + LANES).is_some_and(|some| *some == [some[0]; LANES])
 }
 
-/// `N` neighbours of a field from one on, all of which there are.
+/// `N` neighbours of a field from one on.
+///
+/// # Panics
+/// Where the field ends before them.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
@@ -27,6 +30,9 @@ pub fn some_of<T, const N: usize>(field: &[T], first: usize) -> &[T; N] {
 }
 
 /// The same, to be written.
+///
+/// # Panics
+/// Where the field ends before them.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "the step's innermost loop; a call costs more than its body")]
 pub fn some_mut<T, const N: usize>(field: &mut [T], first: usize) -> &mut [T; N] {
