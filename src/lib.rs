@@ -170,6 +170,7 @@ use oedometer_foreign::import;
 /// assert!((at_the_base - 0.949_3).abs() < 1e-4);
 /// # Ok::<(), oedometer::exact::ExactError>(())
 /// ```
+pub use measure::soundness;
 pub use oedometer_exact as exact;
 
 // What a study is, and how it is run and judged.
@@ -186,7 +187,6 @@ pub use golden::compare::compare;
 pub use golden::tolerance::{LastDigit, spread_by_group};
 pub use golden::{GoldenError, GoldenFile, values_of};
 pub use import::SampledState;
-pub use judge::soundness;
 pub use judge::study_check::{CheckEnd, StudyCheck};
 pub use measure::record_checks::{balance_checks, start_checks};
 pub use questions::answers::ReportFindings;

@@ -28,21 +28,29 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Reads study files, whose names must be valid and differ.
 pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<Vec<StudySource>> {
-    let sources = paths.iter().map(|path| read(path)).collect::<anyhow::Result<Vec<StudySource>>>()?;
-    for (number, source) in sources.iter().enumerate() {
+    read_each(paths).into_iter().collect()
+}
+
+/// Each study file, or why it cannot be taken.
+pub fn read_each(paths: &[PathBuf]) -> Vec<anyhow::Result<StudySource>> {
+    let mut names: Vec<String> = Vec::new();
+    let mut read_one = |path: &PathBuf| {
+        let source = read(path)?;
         let name = name_of(&source.name);
         if let Some(why) = refused_name(&name) {
             let file = &source.name;
             return Err(Ended::usage(format!("the study {file} cannot be called `{name}`: {why}")));
         }
-        if let Some(other) = sources[..number].iter().find(|other| name_of(&other.name) == name) {
+        if let Some(other) = names.iter().find(|other| name_of(other) == name) {
             return Err(Ended::usage(format!(
-                "{} and {} are both called `{name}`, and one would overwrite the results of the other: rename one",
-                other.name, source.name
+                "{other} and {} are both called `{name}`, and one would overwrite the results of the other: rename one",
+                source.name
             )));
         }
-    }
-    Ok(sources)
+        names.push(source.name.clone());
+        Ok(source)
+    };
+    paths.iter().map(&mut read_one).collect()
 }
 
 /// The shipped study of a name, unless there is a file of that name.
@@ -67,8 +75,16 @@ fn not_there(path: &Path) -> String {
         let entries = std::fs::read_dir(searched).into_iter().flatten().flatten();
         let files = entries.map(|entry| folder.join(entry.file_name()));
         let files = files.filter(|file| file.extension().is_some_and(|end| end == "toml"));
-        known.extend(files.map(|file| file.display().to_string()));
-        match nearest(&told, known.iter().map(String::as_str)) {
+        let files: Vec<PathBuf> = files.collect();
+        let stem_of = |file: &PathBuf| file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        // By their names: that both end alike makes no two files alike.
+        known.extend(files.iter().filter_map(stem_of));
+        let near = nearest(&stem, known.iter().map(String::as_str)).map(str::to_owned);
+        let near = near.map(|near| {
+            let file = files.iter().find(|file| stem_of(file).as_ref() == Some(&near));
+            file.map_or(near, |file| file.display().to_string())
+        });
+        match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`oedometer list` prints the shipped ones, and `oedometer new NAME` writes a new one"
                 .to_owned(),
@@ -123,17 +139,37 @@ pub fn load_after_run(paths: &[PathBuf], results: &Path) -> anyhow::Result<Vec<S
     Ok(studies)
 }
 
+/// The studies among several that can run, with their warnings, and why each of the others cannot.
+///
+/// # Errors
+/// Where none can run.
+pub fn load_sound(paths: &[PathBuf], results: &Path) -> anyhow::Result<(Vec<Study>, Vec<anyhow::Error>)> {
+    let (mut studies, mut refused) = (Vec::new(), Vec::new());
+    for study in read_each(paths).into_iter().map(|source| checked_source(&source?)) {
+        match study {
+            Ok(study) => studies.push(study),
+            Err(error) => refused.push(error),
+        }
+    }
+    if studies.is_empty() && !refused.is_empty() {
+        return Err(refused.remove(0));
+    }
+    studies.iter().filter(|study| !results.join(&study.name).is_dir()).for_each(tell_warnings);
+    Ok((studies, refused))
+}
+
 /// Studies that can run, with the mappings of their solvers.
 fn checked(paths: &[PathBuf]) -> anyhow::Result<Vec<Study>> {
-    let sources = read_all(paths)?;
-    let of = |source: &StudySource| {
-        let study = Study::check_for(source, Purpose::Solving)?;
-        for solver in &study.solvers {
-            mapping_of(solver, Axes::of(study.scene)).map_err(|error| Ended::usage(error.to_string()))?;
-        }
-        Ok(study)
-    };
-    sources.iter().map(of).collect()
+    read_all(paths)?.iter().map(checked_source).collect()
+}
+
+/// A study that can run, with the mappings of its solvers.
+fn checked_source(source: &StudySource) -> anyhow::Result<Study> {
+    let study = Study::check_for(source, Purpose::Solving)?;
+    for solver in &study.solvers {
+        mapping_of(solver, Axes::of(study.scene)).map_err(|error| Ended::usage(error.to_string()))?;
+    }
+    Ok(study)
 }
 
 /// What is odd about a study, on standard error.

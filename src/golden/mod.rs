@@ -83,6 +83,9 @@ pub struct GoldenFile {
     /// Signed errors and work counters by case and measure.
     #[serde(skip)]
     pub values: BTreeMap<String, f64>,
+    /// Change of each value, and of the part of 1 that it is, that the study lets pass.
+    #[serde(skip)]
+    pub wider: f64,
 }
 
 /// An error behind another one.
@@ -148,6 +151,7 @@ impl GoldenFile {
             inputs: CaseInputs::of(records.iter().map(|record| &record.case)),
             spread: BTreeMap::new(),
             values: values_of(records),
+            wider: 0.0,
         }
     }
 

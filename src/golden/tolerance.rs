@@ -4,7 +4,8 @@
 
 use crate::case::planned::PlannedCase;
 use crate::golden::{GoldenFile, is_counter, parts};
-use crate::study::check::Study;
+use crate::study::check::{MOST_TOLERANCE, Study};
+use crate::study::file::GoldenRule;
 use oedometer_soil::wording::words;
 use std::collections::BTreeMap;
 
@@ -69,7 +70,14 @@ impl GoldenFile {
         let seen = spread_group(name).and_then(|group| self.spread.get(&group)).copied().unwrap_or(0.0);
         let relative = self.relative_tolerance.max(RELATIVE_FLOOR);
         let absolute = self.absolute_tolerance.max(ABSOLUTE_FLOOR);
-        (absolute + relative * size).max(ROOM * seen)
+        (absolute + relative * size).max(ROOM * seen).max(self.wider * (1.0 + size))
+    }
+
+    /// The file with the tolerance that its study gives all values.
+    #[must_use]
+    pub fn allowing(self, rule: GoldenRule) -> Self {
+        let wider = if let GoldenRule::Within(tolerance) = rule { tolerance } else { 0.0 };
+        Self { wider, ..self }
     }
 
     /// Widens the tolerances to measured spreads and narrows none: tolerances widened by hand stay. Spreads
@@ -110,8 +118,8 @@ impl GoldenFile {
         self.wide_spread()
     }
 
-    /// The first spread that is wider than round-off can be.
-    fn wide_spread(&self) -> Option<String> {
+    /// The largest value of each group that shares a spread.
+    fn largest_by_group(&self) -> BTreeMap<String, f64> {
         let mut largest: BTreeMap<String, f64> = BTreeMap::new();
         for (name, value) in &self.values {
             if let Some(group) = spread_group(name) {
@@ -119,9 +127,39 @@ impl GoldenFile {
                 *size = size.max(value.abs());
             }
         }
+        largest
+    }
+
+    /// The value that a changed last digit moves farthest beyond what round-off explains and the study's tolerance lets pass;
+    /// none where no value is moved so far. `others` are the values with each changed digit.
+    pub fn jump(&self, others: &[(LastDigit, BTreeMap<String, f64>)]) -> Option<Jump> {
+        let largest = self.largest_by_group();
+        let jump = |(digit, name, after): (LastDigit, &String, f64)| {
+            let before = *self.values.get(name)?;
+            let size = spread_group(name).and_then(|group| largest.get(&group).copied())?;
+            let (change, most) = ((after - before).abs(), most_spread(size));
+            let is_allowed = change <= most.max(self.wider * (1.0 + before.abs().max(after.abs())));
+            (!is_allowed).then(|| Jump { name: name.clone(), digit, before, after, most })
+        };
+        let all = others
+            .iter()
+            .flat_map(|(digit, values)| values.iter().map(move |(name, value)| (*digit, name, *value)));
+        all.filter_map(jump).max_by(|a, b| a.needed().total_cmp(&b.needed()))
+    }
+
+    /// The measured spreads without those that only the study's tolerance covers.
+    pub fn explained(&self, mut spread: BTreeMap<String, f64>) -> BTreeMap<String, f64> {
+        let largest = self.largest_by_group();
+        spread.retain(|group, change| *change <= most_spread(largest.get(group).copied().unwrap_or(0.0)));
+        spread
+    }
+
+    /// The first spread that is wider than round-off can be.
+    fn wide_spread(&self) -> Option<String> {
+        let largest = self.largest_by_group();
         self.spread.iter().find_map(|(group, spread)| {
             let size = largest.get(group).copied().unwrap_or(0.0);
-            let most = (MOST_OF_THE_LARGEST * size / ROOM).max(ROUND_OFF);
+            let most = most_spread(size);
             let holds = (0.0..=most).contains(spread);
             (!holds).then(|| {
                 format!(
@@ -130,6 +168,59 @@ impl GoldenFile {
                 )
             })
         })
+    }
+}
+
+/// Largest spread that round-off explains in values of a size.
+fn most_spread(size: f64) -> f64 {
+    (MOST_OF_THE_LARGEST * size / ROOM).max(ROUND_OFF)
+}
+
+/// A value that jumps where the last digit of an input changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// Its name.
+    pub name: String,
+    /// The digit.
+    pub digit: LastDigit,
+    /// The value.
+    pub before: f64,
+    /// The value with the other digit.
+    pub after: f64,
+    /// Largest change that round-off explains.
+    pub most: f64,
+}
+
+impl Jump {
+    /// Tolerance of a study that lets it pass, twice over, in one digit.
+    pub fn needed(&self) -> f64 {
+        let size = self.before.abs().max(self.after.abs());
+        let needed = 2.0 * (self.after - self.before).abs() / (1.0 + size);
+        let digit = 10.0_f64
+            .powi(format!("{needed:e}").split('e').nth(1).map_or(0, |power| power.parse().unwrap_or(0)));
+        format!("{:e}", (needed / digit).ceil() * digit).parse().unwrap_or(needed)
+    }
+
+    /// What jumps, why, and what can be done.
+    pub fn sentence(&self) -> String {
+        let Self { name, digit, before, after, most } = self;
+        let needed = self.needed();
+        let accepted = if needed <= MOST_TOLERANCE {
+            format!(
+                "let the values scatter by that much: `[golden]` with `tolerance = {needed:e}` in the study, and accept again; \
+                 without golden values `golden = \"none\"` leaves the verdict to the expectations"
+            )
+        } else {
+            "leave the verdict to the expectations: `golden = \"none\"` in the study".to_owned()
+        };
+        format!(
+            "`{name}` changes from {before:.6e} to {after:.6e}, by {:.2e}, when the {} changes ({}), and round-off moves \
+             such values by {most:.1e} at most. A solver does so that rounds a number to a whole one, most often the number \
+             of its steps, as in ceil((T − t)/Δt): give that some room, as in ceil((T − t)/Δt − 1e-6). Or {accepted}",
+            (after - before).abs(),
+            digit.name(),
+            digit.input(),
+        )
     }
 }
 
@@ -148,6 +239,14 @@ words!(
 );
 
 impl LastDigit {
+    /// The key of the input, and where its digit goes.
+    fn input(self) -> &'static str {
+        match self {
+            Self::Stiffness => "`youngs_modulus` to the next larger number",
+            Self::Conductivity => "`hydraulic_conductivity` to the next smaller number",
+        }
+    }
+
     /// Changes the digit.
     pub fn change(self, youngs_modulus: &mut f64, hydraulic_conductivity: &mut f64) {
         match self {

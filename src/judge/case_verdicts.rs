@@ -3,21 +3,20 @@
 use crate::judge::error_place::place_in_kept;
 use crate::judge::verdict::{BELOW, Check, IN, Judgement, Verdict, VerdictOutcome};
 use crate::measure::other_measures::pressure_peak;
+use crate::measure::soundness::is_sound;
 use crate::measure::statistics::{larger, largest};
 use crate::record::{Balance, LayerBalance, Record};
 use crate::study::expectation::{Bounds, CaseDemand, CaseExpectation, ErrorRange};
 use oedometer_convergence::{Class, Classification};
 use oedometer_soil::wording::{short, typed};
+use std::collections::HashSet;
 
 impl CaseExpectation {
     /// One judgement for each case that it selects; where it selects none, one that fails.
     pub fn judge(&self, records: &[Record]) -> Vec<Judgement> {
-        let judge = |record: &Record| {
-            let mut checks = self.demand.checks(record);
-            let within = self.demand.one_set_within;
-            checks.extend(within.map(|within| one_set_found(within, record, records)));
-            self.judgement(record.case.label(), checks)
-        };
+        let all: Vec<&Record> = records.iter().collect();
+        let judge =
+            |record: &Record| self.judgement(record.case.label(), self.demand.all_checks(record, &all));
         let selected = records.iter().filter(|record| self.selection.fits(&record.case));
         let judgements: Vec<Judgement> = selected.map(judge).collect();
         if judgements.is_empty() {
@@ -38,7 +37,28 @@ impl CaseExpectation {
     }
 }
 
+/// Hashes of the records that may be recommended: sound ones that meet every expectation of their cases.
+pub fn recommendable<'a>(
+    expectations: &[CaseExpectation],
+    records: impl IntoIterator<Item = &'a Record>,
+) -> HashSet<&'a str> {
+    let records: Vec<&Record> = records.into_iter().collect();
+    let meets = |record: &Record| {
+        let of_case = expectations.iter().filter(|one| one.selection.fits(&record.case));
+        of_case.flat_map(|one| one.demand.all_checks(record, &records)).all(|check| check.pass)
+    };
+    let sound = records.iter().copied().filter(|record| is_sound(record) && meets(record));
+    sound.map(|record| record.hash.as_str()).collect()
+}
+
 impl CaseDemand {
+    /// Every part of the demand, with the comparison of a double-point case with its twin among all records.
+    fn all_checks(&self, record: &Record, records: &[&Record]) -> Vec<Check> {
+        let mut checks = self.checks(record);
+        checks.extend(self.one_set_within.map(|within| one_set_found(within, record, records)));
+        checks
+    }
+
     /// Every part of the demand, judged; comparisons are written so that NaN fails.
     fn checks(&self, record: &Record) -> Vec<Check> {
         let mut checks = Vec::new();
@@ -89,7 +109,7 @@ impl CaseDemand {
 }
 
 /// Every error of a double-point case against that of the same case with one point set.
-fn one_set_found(within: f64, record: &Record, records: &[Record]) -> Check {
+fn one_set_found(within: f64, record: &Record, records: &[&Record]) -> Check {
     const NAME: &str = "one point set";
     let mut twin = record.case.clone();
     twin.column.points.sets = 1;
@@ -170,10 +190,15 @@ fn critical_step_found(within: f64, record: &Record) -> Check {
 }
 
 fn error_found(range: &ErrorRange, record: &Record) -> Check {
-    let measure = &range.measure;
+    let own = if range.any_places { range.measure.at_places_of(record) } else { range.measure.clone() };
+    let measure = &own;
     let time = typed(measure.time_factor);
     let Some(row) = measure.error(record) else {
-        return Check::failed("error", format!("no error at T_v = {time}"));
+        let why = measure
+            .elsewhere(record)
+            .or_else(|| measure.unjudged(record))
+            .map_or(String::new(), |why| format!(": {why}"));
+        return Check::failed("error", format!("no error at T_v = {time}{why}"));
     };
     let (quantity, sample) = (measure.quantity.name(), measure.sample.name());
     let what = format!("{quantity} {} {sample} at T_v = {time}", measure.norm);
@@ -194,6 +219,9 @@ fn value_found(what: &str, found: Option<f64>, Bounds { above, below }: Bounds) 
     let told = format!("{what}: {}", short(value));
     if above == 0.0 && (value.is_nan() || value >= 0.0) {
         return Check::compared(what, pass, value, &told, BELOW, &short(below));
+    }
+    if below == f64::MAX {
+        return Check::compared(what, pass, value, &told, ["at least", "less than"], &short(above));
     }
     Check::compared(what, pass, value, &told, IN, &format!("{} … {}", short(above), short(below)))
 }

@@ -11,6 +11,7 @@ pub mod path_context;
 pub mod path_labels;
 pub mod paths;
 pub mod proposals;
-pub mod soundness;
+pub mod reaching;
 pub mod study_check;
+pub mod thinning;
 pub mod verdict;

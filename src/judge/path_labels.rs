@@ -1,5 +1,6 @@
 //! Labels of paths that stand side by side: what differs, and what all share.
 
+use crate::case::step_label;
 use crate::judge::paths::Path;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +23,13 @@ fn short(part: &str) -> String {
 
 /// Splits the labels of paths into what differs and what is shared; the method is always named.
 pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
-    let parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
+    let mut parts: Vec<Vec<String>> = paths.iter().map(Path::parts).collect();
+    // Explicit steps follow their limit and are told only where nothing else tells two paths apart.
+    let alike = |own: &Vec<String>| parts.iter().filter(|other| *other == own).count() > 1;
+    let alike: Vec<bool> = parts.iter().map(alike).collect();
+    for ((own, path), _) in parts.iter_mut().zip(paths).zip(alike).filter(|(_, is_alike)| *is_alike) {
+        own.push(step_label(&path.records[0].case.time_step));
+    }
     let mut paths_with: BTreeMap<&str, usize> = BTreeMap::new();
     for own in &parts {
         let once: BTreeSet<&str> = own.iter().map(String::as_str).collect();
@@ -44,6 +51,20 @@ pub fn path_labels(paths: &[Path<'_>]) -> PathLabels {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::runner::records_of;
+    use crate::judge::paths::paths;
+    use crate::study::expectation::Axis;
+
+    #[test]
+    fn runs_that_differ_in_their_explicit_steps_alone_are_told_apart_by_them() {
+        let records = records_of(
+            "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.001]\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['explicit']\ncells = [2, 4]\ntime_step = [{ stable = 0.5 }, { stable = 0.9 }]\n\
+             water_bulk_modulus = [1e7]\n",
+        );
+        let labels = path_labels(&paths(&records, Axis::Cells));
+        assert_eq!(labels.each, ["MPM, stable=0.5", "MPM, stable=0.9"]);
+    }
 
     #[test]
     fn a_long_number_is_written_as_a_study_has_it() {

@@ -169,12 +169,7 @@ impl<'a> Path<'a> {
     pub fn own_measure(&self, measure: &Measure) -> Measure {
         let own =
             self.records.iter().find(|record| record.outside_run().is_some_and(|run| run.sample.is_some()));
-        match own {
-            Some(record) if measure.sample == Sample::Points => {
-                Measure { sample: record.main_sample(), ..measure.clone() }
-            }
-            _ => measure.clone(),
-        }
+        own.map_or(measure.clone(), |record| measure.at_places_of(record))
     }
 
     /// The level that a demand bounds, else the finest.

@@ -6,6 +6,7 @@
 use crate::case::{Case, KEYS, Key, Quantity, Sample, Tier, Value};
 use crate::judge::paths::{Path, StudyPaths, first_measure};
 use crate::judge::verdict::judge_expectation;
+use crate::measure::soundness::is_sound;
 use crate::study::check::Study;
 use crate::study::check::outputs::output_at;
 use crate::study::expectation::{Axis, Measure, NEXT_FINER, Selection, SeriesExpectation};
@@ -41,12 +42,24 @@ pub fn proposals(study: &Study, paths: &StudyPaths<'_>) -> Vec<String> {
 
 /// The strictest expectation that a series meets.
 fn proposal(study: &Study, path: &Path<'_>) -> Option<SeriesExpectation> {
+    // What a check speaks against is nothing to hold to.
+    if !path.records.iter().all(|record| is_sound(record)) {
+        return None;
+    }
     let selection = Selection(selection_of(study, path)?);
     let meets = |(measure, demand): (Measure, SeriesDemand)| {
         let selection = selection.clone();
         let tier = tier_of(study, path);
-        let one =
-            SeriesExpectation { selection, measure, reference: None, axis: path.axis, demand, tier, line: 0 };
+        let one = SeriesExpectation {
+            selection,
+            measure,
+            reference: None,
+            axis: path.axis,
+            any_places: false,
+            demand,
+            tier,
+            line: 0,
+        };
         let judged = judge_expectation(&one, std::slice::from_ref(path));
         (!judged.is_empty() && judged.iter().all(|judgement| judgement.verdict.pass)).then_some(one)
     };
@@ -249,6 +262,17 @@ mod tests {
                 assert_eq!(judgements.len(), judged, "{tiers:?} {tier:?}");
             }
         }
+    }
+
+    #[test]
+    fn nothing_is_proposed_of_runs_that_a_check_speaks_against() {
+        let text =
+            HEAD.to_owned() + "[[sweep]]\nmethod = ['MPM']\nintegrator = ['implicit']\ncells = [4, 8, 16]\n";
+        let study = study_with(&text);
+        let mut records = run(&study, Tier::Full);
+        assert_eq!(proposals(&study, &StudyPaths::of(&records)).len(), 1);
+        records[1].balance[0].solid_mass_drift = 1.0;
+        assert_eq!(proposals(&study, &StudyPaths::of(&records)), Vec::<String>::new());
     }
 
     /// 20 s are `T_v` = 0.244648… in the default column.

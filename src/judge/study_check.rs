@@ -13,17 +13,20 @@ use crate::golden::{GoldenError, GoldenFile, measure_name, parts, seconds_of, va
 use crate::import::SampledState;
 use crate::import::mapping::Axes;
 use crate::judge::error_place::place_in_kept;
-use crate::judge::paths::StudyPaths;
+use crate::judge::paths::{StudyPaths, grouped};
 use crate::judge::proposals::proposals;
-use crate::judge::soundness;
 use crate::judge::verdict::{Absent, Judgement, differing_repeats, judge_paths};
+use crate::measure::soundness::{self, PoorOutput};
 use crate::record::{Record, Status};
 use crate::score::diagnosis::diagnosis;
 use crate::study::check::Study;
+use crate::study::file::GoldenRule;
 use oedometer_exact::ReferenceKind;
 use oedometer_problem::snapshot::Snapshot;
 use oedometer_scenes::column::column_parameters;
+use oedometer_soil::wording::count_of;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Wall time over the golden one from which on a warning is given.
 const SLOW: f64 = 2.0;
@@ -52,7 +55,9 @@ pub struct StudyCheck {
     pub inputs: Vec<InputChange>,
     /// Expectations that the records meet, as TOML, for a study that has none.
     pub proposals: Vec<String>,
-    /// Differences from the golden values, or why golden values are missing.
+    /// Whether golden values are compared; the study may leave the verdict to its expectations.
+    pub compares_golden: bool,
+    /// Differences from the golden values, or why golden values are missing; none where they are not compared.
     pub golden: Result<Vec<Difference>, GoldenError>,
     /// The differences by kind, with what those of a kind have in common.
     pub groups: Vec<DifferenceGroup>,
@@ -62,6 +67,8 @@ pub struct StudyCheck {
     pub agreeing: usize,
     /// Expectations of the study.
     pub expected: usize,
+    /// Expectations of this tier that are not judged, because none of their cases was run.
+    pub unjudged: usize,
     /// Cases that were not begun, because nobody allowed their programs to start.
     pub held_back: usize,
     /// Results that were not made for this check.
@@ -109,6 +116,12 @@ impl StudyCheck {
     ) -> Self {
         let absent = Absent::among(records);
         let inputs = CaseInputs::of(records.iter().map(|record| &record.case));
+        let compares_golden = study.golden != GoldenRule::None;
+        let unused = (golden.is_ok() && !compares_golden).then(|| {
+            "the golden values of this study are not compared, because it says `golden = \"none\"`".to_owned()
+        });
+        let golden = golden.map(|golden| golden.allowing(study.golden));
+        let golden = if compares_golden { golden } else { Err(GoldenError::Missing(PathBuf::new())) };
         let golden = golden.map(|golden| absent.without(golden).beside(&inputs));
         let changes = golden.as_ref().map(|(_, pairing)| pairing.changes.clone()).unwrap_or_default();
         let golden = golden.map(|(golden, _)| golden);
@@ -123,7 +136,7 @@ impl StudyCheck {
             };
             records.iter().flat_map(of_record).collect::<Vec<_>>()
         };
-        Self {
+        let mut check = Self {
             failed_cases: notes(&|record| {
                 let is_foreseen = record.status.is_skipped() || study.foresees(record);
                 let failure = record.status.failure().filter(|_| !is_foreseen);
@@ -139,11 +152,22 @@ impl StudyCheck {
             }),
             judgements: judge_paths(study, records, paths, tier),
             expected: study.expectations.len() + study.case_expectations.len(),
+            unjudged: absent.unjudged(study, tier),
             held_back: absent.held_back(study),
-            warnings: (slow.into_iter()).chain(absent.warnings()).chain(differing_repeats(records)).collect(),
+            warnings: (slow.into_iter())
+                .chain(unused)
+                .chain(unjudged_outputs(study, records))
+                .chain(absent.warnings())
+                .chain(differing_repeats(records))
+                .collect(),
             diagnoses: diagnoses(study, records),
+            compares_golden,
             ..Self::of_values(&study.name, &values, golden).with_places(records)
+        };
+        if !compares_golden {
+            check.golden = Ok(Vec::new());
         }
+        check
     }
 
     /// Adds the places with the largest errors of records that cannot be made again.
@@ -212,7 +236,9 @@ impl StudyCheck {
             groups,
             changes: golden.as_deref().map(case_changes).unwrap_or_default(),
             golden,
+            compares_golden: true,
             expected: 0,
+            unjudged: 0,
             held_back: 0,
             taken_over: Vec::new(),
             warnings: Vec::new(),
@@ -243,7 +269,9 @@ impl StudyCheck {
             CheckEnd::Failed
         } else if !self.failed_cases.is_empty() {
             CheckEnd::CaseFailed
-        } else if self.held_back > 0 && matches!(&self.golden, Err(error) if error.is_missing()) {
+        } else if self.held_back > 0
+            && (!self.compares_golden || matches!(&self.golden, Err(error) if error.is_missing()))
+        {
             CheckEnd::HeldBack
         } else if self.golden.is_err() || !self.differences().is_empty() || !self.inputs.is_empty() {
             CheckEnd::Golden
@@ -251,6 +279,25 @@ impl StudyCheck {
             CheckEnd::Pass
         }
     }
+}
+
+/// One sentence for each reference that is too inaccurate at some outputs, of the record that it suits least.
+fn unjudged_outputs(study: &Study, records: &[Record]) -> Vec<String> {
+    let ended = records.iter().filter(|record| record.status == Status::Ok && !study.is_race);
+    let sound = ended.filter(|record| soundness::complaints(record).is_empty());
+    let poor = sound.flat_map(|record| {
+        soundness::unjudged_outputs(record).into_iter().map(move |output| (record, output))
+    });
+    let groups = grouped(poor, |(_, output)| (output.reference.clone(), output.time_factor.to_bits()));
+    let sentence = |(_, cases): (_, Vec<(&Record, PoorOutput)>)| {
+        let (record, output) = cases.iter().min_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+        let more = match cases.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {} more)", count_of(more, "case", "cases")),
+        };
+        Some(format!("{}{more}: {}; this output is not judged", record.case.label(), output.sentence()))
+    };
+    groups.into_iter().filter_map(sentence).collect()
 }
 
 /// A warning about a wall time far beyond the golden one; not a verdict.

@@ -8,7 +8,7 @@ use crate::golden::GoldenFile;
 use crate::judge::paths::{Path, StudyPaths};
 use crate::record::Record;
 use crate::study::check::Study;
-use crate::study::expectation::SeriesExpectation;
+use crate::study::expectation::{CaseExpectation, Measure, SeriesExpectation};
 use oedometer_convergence::{
     Class, Classification, Context, ErrorBound, ErrorSeries, FLOOR_LEVELS, FloorBand, NumericalUncertainty,
     OrderBand, SeriesDemand, Undefined, classify, hidden_floor,
@@ -317,10 +317,8 @@ pub fn judge_paths(study: &Study, records: &[Record], paths: &StudyPaths<'_>, ti
     let series = study.expectations.iter().filter(|expectation| expectation.tier <= tier);
     let cases = study.case_expectations.iter().filter(|expectation| expectation.tier <= tier);
     // Cases that were not run because their solver is missing are not judged; the check says so.
-    let series =
-        series.filter(|one| !absent.holds_all(|case| one.selection.fits_along(one.axis.name(), case)));
-    let cases =
-        cases.filter(|one| one.asks_for_a_skip() || !absent.holds_all(|case| one.selection.fits(case)));
+    let series = series.filter(|one| !absent.holds_series(one));
+    let cases = cases.filter(|one| !absent.holds_cases(one));
     series
         .flat_map(|expectation| judge_expectation(expectation, paths.along(expectation.axis)))
         .chain(cases.flat_map(|expectation| expectation.judge(records)))
@@ -329,22 +327,28 @@ pub fn judge_paths(study: &Study, records: &[Record], paths: &StudyPaths<'_>, ti
 
 /// One judgement for each path that the expectation selects; where it selects none, one that fails.
 pub(super) fn judge_expectation(expectation: &SeriesExpectation, all: &[Path<'_>]) -> Vec<Judgement> {
-    let SeriesExpectation { measure, demand, selection, axis, line, .. } = expectation;
-    let judge_path = |path: &Path<'_>, series: ErrorSeries| {
+    let SeriesExpectation { measure, any_places, demand, selection, axis, line, .. } = expectation;
+    let judge_path = |path: &Path<'_>, measure: &Measure, series: ErrorSeries| {
         let context = path.context(measure);
         let beside = path.beside(demand, measure, context.formal_order);
         let mut verdict = judge(demand, &series, &context, &beside);
-        if let Some(place) = path.place(demand, measure).filter(|_| !verdict.pass) {
+        let missing = |record: &&Record| measure.elsewhere(record).or_else(|| measure.unjudged(record));
+        let elsewhere = path.records.iter().find_map(missing);
+        if let Some(place) = elsewhere.or_else(|| path.place(demand, measure)).filter(|_| !verdict.pass) {
             verdict.reason = format!("{}; {place}", verdict.reason);
         }
         let uncertainty = beside.uncertainty.and_then(Result::ok);
         Judgement { line: *line, subject: format!("{}: {measure}", path.label()), verdict, uncertainty }
     };
     let selected = all.iter().filter(|path| selection.fits_along(axis.name(), &path.records[0].case));
-    let with_series = selected.map(|path| (path, path.series(measure)));
+    let with_series = selected.map(|path| {
+        let measure = if *any_places { path.own_measure(measure) } else { measure.clone() };
+        let series = path.series(&measure);
+        (path, measure, series)
+    });
     let judgements: Vec<Judgement> = with_series
-        .filter(|(_, series)| !series.levels().is_empty())
-        .map(|(path, series)| judge_path(path, series))
+        .filter(|(_, _, series)| !series.levels().is_empty())
+        .map(|(path, measure, series)| judge_path(path, &measure, series))
         .collect();
     if !judgements.is_empty() {
         return judgements;
@@ -378,6 +382,23 @@ impl<'a> Absent<'a> {
     pub fn holds_all(&self, is_selected: impl Fn(&Case) -> bool) -> bool {
         self.skipped.iter().any(|record| is_selected(&record.case))
             && !self.others.iter().any(|record| is_selected(&record.case))
+    }
+
+    /// Whether all cases of an expectation of series were skipped.
+    fn holds_series(&self, one: &SeriesExpectation) -> bool {
+        self.holds_all(|case| one.selection.fits_along(one.axis.name(), case))
+    }
+
+    /// Whether all cases of an expectation of cases were skipped, and it does not ask for that.
+    fn holds_cases(&self, one: &CaseExpectation) -> bool {
+        !one.asks_for_a_skip() && self.holds_all(|case| one.selection.fits(case))
+    }
+
+    /// Expectations of a tier that are not judged.
+    pub fn unjudged(&self, study: &Study, tier: Tier) -> usize {
+        let series = study.expectations.iter().filter(|one| one.tier <= tier && self.holds_series(one));
+        let cases = study.case_expectations.iter().filter(|one| one.tier <= tier && self.holds_cases(one));
+        series.count() + cases.count()
     }
 
     /// Golden values without those of skipped cases.

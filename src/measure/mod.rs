@@ -7,5 +7,6 @@ pub mod other_measures;
 pub mod record;
 pub mod record_checks;
 pub mod round_off;
+pub mod soundness;
 pub mod statistics;
 pub mod theory;

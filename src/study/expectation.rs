@@ -2,6 +2,7 @@
 //! end, where their critical step lies, how large an error or a drift is.
 
 use crate::case::{Case, Key, Norm, Quantity, Sample, SolverName, Tier, Value};
+use crate::measure::soundness::{PoorOutput, is_unjudged, unjudged_outputs};
 use crate::record::{ErrorRow, Record};
 use oedometer_convergence::SeriesDemand as Demand;
 use oedometer_exact::reference::ReferenceKind;
@@ -87,8 +88,35 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The error of a record, where it was measured.
+    /// The measure at the places of another program's result, where that is not at the points.
+    #[must_use]
+    pub fn at_places_of(&self, record: &Record) -> Self {
+        let is_elsewhere = self.sample == Sample::Points && record.main_sample() != Sample::Points;
+        if is_elsewhere { Self { sample: record.main_sample(), ..self.clone() } } else { self.clone() }
+    }
+
+    /// Why a record has no error to judge at this output, where its reference is too inaccurate there.
+    pub fn unjudged(&self, record: &Record) -> Option<String> {
+        let is_this =
+            |one: &PoorOutput| one.reference == self.reference && one.time_factor == self.time_factor;
+        unjudged_outputs(record).iter().find(|one| is_this(one)).map(PoorOutput::sentence)
+    }
+
+    /// Where a record has this error instead, with what to write; none where that is not the reason why it is missing.
+    pub fn elsewhere(&self, record: &Record) -> Option<String> {
+        let there = self.at_places_of(record);
+        let is_there = there != *self && self.error(record).is_none() && there.error(record).is_some();
+        is_there.then(|| {
+            let place = there.sample.name();
+            format!("the result is at {place}: leave `sample` out, or write `sample = \"{place}\"`")
+        })
+    }
+
+    /// The error of a record, where it was measured and the reference is accurate enough to judge it.
     pub fn error<'a>(&self, record: &'a Record) -> Option<&'a ErrorRow> {
+        if is_unjudged(record, &self.reference, self.time_factor) {
+            return None;
+        }
         record.error(self.quantity, self.sample, self.norm, &self.reference, self.time_factor)
     }
 }
@@ -142,6 +170,8 @@ pub struct SeriesExpectation {
     pub reference: Option<ReferenceKind>,
     /// Axis of the series.
     pub axis: Axis,
+    /// Whether it names no places, so that those of a result count that is not at the points.
+    pub any_places: bool,
     /// What is wanted of the series.
     pub demand: Demand,
     /// Smallest tier whose cases can answer it.
@@ -164,6 +194,8 @@ pub struct Bounds {
 pub struct ErrorRange {
     /// Which error.
     pub measure: Measure,
+    /// Whether it names no places, so that those of a result count that is not at the points.
+    pub any_places: bool,
     /// What it must be.
     pub bounds: Bounds,
 }

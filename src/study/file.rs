@@ -75,6 +75,10 @@ pub struct StudyFile {
     /// How the cases are timed.
     #[serde(default)]
     pub timing: TimingTable,
+    /// Golden values: `"none"` where expectations alone judge, or a table with the tolerance of all values.
+    #[serde(default)]
+    #[schemars(schema_with = "golden")]
+    pub golden: Typed<GoldenRule>,
 }
 
 impl StudyFile {
@@ -159,6 +163,53 @@ pub struct OutputTable {
 pub struct TimingTable {
     /// Number of runs of each case, alone, for its wall time.
     pub repeats: Typed<i64>,
+}
+
+/// Whether values are compared with golden ones, and how closely.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum GoldenRule {
+    /// Within the tolerances that were measured when they were accepted.
+    #[default]
+    Measured,
+    /// The same, and a change of each value, and of the part of 1 that it is, that always passes.
+    Within(f64),
+    /// There are none: the expectations judge.
+    None,
+}
+
+impl<'de> Deserialize<'de> for GoldenRule {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(GoldenRuleVisitor)
+    }
+}
+
+/// Reads `"none"` or `{ tolerance = 1e-6 }`.
+struct GoldenRuleVisitor;
+
+impl<'de> serde::de::Visitor<'de> for GoldenRuleVisitor {
+    type Value = GoldenRule;
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        formatter.write_str("\"none\", or a table [golden] with `tolerance`")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<GoldenRule, E> {
+        match word {
+            "none" => Ok(GoldenRule::None),
+            _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
+        }
+    }
+
+    fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<GoldenRule, A::Error> {
+        let mut rule = GoldenRule::Measured;
+        while let Some(key) = map.next_key::<String>()? {
+            if key != "tolerance" {
+                return Err(serde::de::Error::unknown_field(&key, &["tolerance"]));
+            }
+            rule = GoldenRule::Within(map.next_value()?);
+        }
+        Ok(rule)
+    }
 }
 
 /// One block of cases: lists of inputs, and the keys of the block.
@@ -445,6 +496,17 @@ fn times(_: &mut SchemaGenerator) -> Schema {
 fn axes(_: &mut SchemaGenerator) -> Schema {
     let names: Vec<&str> = Key::in_table("sweep").map(|key| key.name).collect();
     json_schema!({ "type": "array", "items": { "enum": names } })
+}
+
+fn golden(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "anyOf": [
+        { "enum": ["none"] },
+        { "type": "object", "additionalProperties": false, "properties": { "tolerance": {
+            "type": "number",
+            "description": "Change of a value, and of the part of 1 that it is, that always passes: for solvers that do not \
+                            reproduce their last digits"
+        } } },
+    ] })
 }
 
 fn presets(_: &mut SchemaGenerator) -> Schema {

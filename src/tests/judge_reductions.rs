@@ -7,10 +7,10 @@ use crate::case::Case;
 use crate::case::planned::Tier;
 use crate::case::quantity::{Quantity, Sample};
 use crate::golden::GoldenError;
-use crate::judge::soundness;
 use crate::judge::study_check::{CheckEnd, StudyCheck};
 use crate::judge::verdict::{Beside, Verdict, judge};
 use crate::measure::record_checks::worst_of;
+use crate::measure::soundness;
 use crate::questions::answers::paper::largest_pressure_error;
 use crate::questions::blocks::checks::RecordChecks;
 use crate::questions::comparison::stability_map::maps_of;
@@ -180,13 +180,13 @@ fn the_cheapest_is_chosen_by_the_worst_of_all_outputs() {
             record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
         for turn in 0..2 {
-            let soils = mapped_soils(&records, REFERENCE);
+            let soils = mapped_soils(&records, REFERENCE, &[]);
             assert_eq!(soils.len(), 4);
             assert!(
                 soils.iter().all(|soil| soil.cheapest().is_some_and(|way| way.cells == 8)),
                 "output {place}"
             );
-            let precision = WorkPrecision::of(&records, REFERENCE).expect("timed runs");
+            let precision = WorkPrecision::of(&records, REFERENCE, &[]).expect("timed runs");
             let cheapest = precision.cheapest[0].run.as_ref().expect("within a percent");
             assert_eq!((cheapest.record.case.cells, cheapest.error), (8, 1e-3), "output {place}");
             assert!(

@@ -2,8 +2,8 @@
 //! that are made of them.
 
 use crate::campaign::runner::records_of;
-use crate::judge::soundness;
 use crate::measure::record_checks::{balance_checks, start_checks};
+use crate::measure::soundness;
 use crate::record::csv::long_tables::{LongTable, columns_csv};
 use crate::record::csv::tidy;
 use crate::record::{Record, WallSample};

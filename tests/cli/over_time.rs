@@ -360,7 +360,7 @@ fn records_of_earlier_states_of_a_study_are_left_out_and_each_case_keeps_its_lab
         "{}",
         told.err
     );
-    assert!(!told.err.contains("in fresh"), "{}", told.err);
+    assert!(!told.err.contains("`gate` in fresh"), "{}", told.err);
     assert_eq!((told.code, &json[0]["unpaired"]), (0, &serde_json::json!(0)), "{}", told.out);
     change_records(&at.join("kept"), "gate", |_, record| {
         for row in record.errors.iter_mut().filter(|_| record.case.material.porosity == 0.4) {

@@ -3,7 +3,7 @@
 use crate::case::planned::Tier;
 use crate::cli::exit::{Ended, Exit};
 use crate::cli::output::{TableFormat, is_on, print_tables, say};
-use crate::cli::place::{golden_folder, named};
+use crate::cli::place::{StudyArguments, golden_folder};
 use crate::cli::running::jobs_of;
 use crate::cli::running::run_quietly;
 use crate::cli::study_files::load;
@@ -18,15 +18,15 @@ use crate::record::provenance::Provenance;
 use crate::report::checks::verdicts::objections_of;
 use crate::report::history_tables::comparison_tables;
 use crate::study::check::Study;
+use crate::study::file::GoldenRule;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `accept`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study files, folders of them, or names of shipped studies
-    #[arg(required = true, value_name = "STUDY.toml")]
-    studies: Vec<PathBuf>,
+    #[command(flatten)]
+    studies: StudyArguments,
     /// Accept the values even if expectations or cases of the study fail
     #[arg(long)]
     despite_failing: bool,
@@ -50,8 +50,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     refuse_without_origin()?;
     let reason = arguments.reason.trim();
-    let chosen = named(&arguments.studies)?;
-    let mut studies = load(&chosen)?;
+    let chosen = arguments.studies.chosen()?;
+    let mut studies = with_golden(load(&chosen)?, !arguments.studies.names_none())?;
     arguments.trust.mark_all(&mut studies, &chosen)?;
     let folder_of = |study: &str| golden_folder(arguments.golden.as_deref(), study, &chosen);
     let older = studies.iter().map(|study| older_of(&folder_of(&study.name), &study.name));
@@ -64,20 +64,47 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         let studies: Vec<Study> = studies.iter().map(|study| study.perturbed(digit)).collect();
         perturbed.push(run_quietly(&studies, jobs_of(arguments.jobs))?);
     }
-    for ((number, study), older) in studies.iter().enumerate().zip(older) {
+    let mut accepted = Vec::new();
+    for (number, study) in studies.iter().enumerate() {
         let reason = with_lost_orders(reason, &lost[number]);
-        let golden = GoldenFile::of(&study.name, &records[number], &reason);
+        let golden = GoldenFile::of(&study.name, &records[number], &reason).allowing(study.golden);
         let others: Vec<&[Record]> = perturbed.iter().map(|records| &records[number][..]).collect();
-        let spread = spread_over(&golden, &others);
-        keep(golden.widened_by(spread), older.as_ref(), &folder_of(&study.name))?;
+        accepted.push(with_spread(golden, &others)?);
+    }
+    for (golden, older) in accepted.into_iter().zip(older) {
+        let folder = folder_of(&golden.study);
+        keep(golden, older.as_ref(), &folder)?;
     }
     Ok(Exit::Pass)
 }
 
-/// What the last digits of every input move.
-fn spread_over(golden: &GoldenFile, others: &[&[Record]]) -> BTreeMap<String, f64> {
-    let values: Vec<_> = others.iter().map(|records| values_of(records)).collect();
-    spread_by_group(&golden.values, &values)
+/// Golden values with what the last digits of every input move; refused where a value jumps.
+fn with_spread(golden: GoldenFile, others: &[&[Record]]) -> anyhow::Result<GoldenFile> {
+    let values = others.iter().map(|records| values_of(records));
+    let others: Vec<(LastDigit, BTreeMap<String, f64>)> = LastDigit::ALL.into_iter().zip(values).collect();
+    if let Some(jump) = golden.jump(&others) {
+        let sentence = format!("nothing was accepted: {}: {}", golden.study, jump.sentence());
+        return Err(Ended::with(Exit::Golden, sentence));
+    }
+    let spread = spread_by_group(&golden.values, others.iter().map(|(_, values)| values));
+    let spread = golden.explained(spread);
+    Ok(golden.widened_by(spread))
+}
+
+/// The studies that have golden values: without names those of the project, of named ones all.
+///
+/// # Errors
+/// When a study that was named, or each of the project, says that it has none.
+fn with_golden(studies: Vec<Study>, are_named: bool) -> anyhow::Result<Vec<Study>> {
+    let (without, kept): (Vec<Study>, Vec<Study>) =
+        studies.into_iter().partition(|study| study.golden == GoldenRule::None);
+    match without.first() {
+        Some(study) if are_named || kept.is_empty() => Err(Ended::usage(format!(
+            "{}: the study says `golden = \"none\"`: leave that out to accept its values",
+            study.name
+        ))),
+        _ => Ok(kept),
+    }
 }
 
 /// Says which expectations and cases fail, and refuses to accept values of their studies unless asked to.
@@ -280,9 +307,29 @@ mod tests {
         };
         for changes in [[3e-6, 1e-6], [1e-6, 3e-6]] {
             let others = changes.map(moved);
-            let spread = spread_over(&golden, &others.each_ref().map(Vec::as_slice));
-            assert_eq!(spread.len(), 1);
-            assert!(spread.values().all(|one| (one / 3e-6 - 1.0).abs() < 1e-6), "{changes:?}: {spread:?}");
+            let found =
+                with_spread(golden.clone(), &others.each_ref().map(Vec::as_slice)).expect("round-off");
+            assert_eq!(found.spread.len(), 1);
+            assert!(found.spread.values().all(|one| (one / 3e-6 - 1.0).abs() < 1e-6), "{changes:?}");
         }
+        // A jump is told with its digit, and taken with the tolerance that it names.
+        let jumping = [moved(0.0), moved(3e-2)];
+        let jumping = jumping.each_ref().map(Vec::as_slice);
+        let told = with_spread(golden.clone(), &jumping).expect_err("no round-off").to_string();
+        for words in ["by 3.00e-2, when the last digit of the conductivity", "ceil(", "golden = \"none\""] {
+            assert!(told.contains(words), "{words}: {told}");
+        }
+        let jumping = [moved(3e-3), moved(0.0)];
+        let jumping = jumping.each_ref().map(Vec::as_slice);
+        let told = with_spread(golden.clone(), &jumping).expect_err("no round-off").to_string();
+        assert!(
+            told.contains("last digit of the stiffness") && told.contains("`tolerance = 6e-3`"),
+            "{told}"
+        );
+        let found =
+            with_spread(golden.allowing(GoldenRule::Within(6e-3)), &jumping).expect("as the study says");
+        let name = found.values.keys().find(|name| name.contains(" | pressure points l1")).expect("a value");
+        assert_eq!(found.out_of_bounds(), None);
+        assert_eq!(found.tolerance(name, 1.0), 1.2e-2);
     }
 }

@@ -10,13 +10,13 @@ use crate::cli::output::{
 use crate::cli::place::DEFAULT_RESULTS;
 use crate::cli::place::{StudyArguments, chosen_as, golden_of};
 use crate::cli::running::{jobs_of, run_ci_tier};
-use crate::cli::study_files::load_after_run;
+use crate::cli::study_files::load_sound;
 use crate::cli::trust::{self, TrustArguments};
 use crate::golden::compare::{CaseChange, Difference, DifferenceGroup};
 use crate::golden::inputs::InputChange;
 use crate::golden::{GoldenError, GoldenFile};
-use crate::judge::soundness::thin;
 use crate::judge::study_check::{CaseNote, CheckEnd, StudyCheck};
+use crate::judge::thinning::thin;
 use crate::judge::verdict::Judgement;
 use crate::questions::finding::Place;
 use crate::questions::findings::study_answers::StudyAnswers;
@@ -71,7 +71,7 @@ pub struct Arguments {
 /// Runs, judges, compares and prints.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let chosen = arguments.studies.chosen()?;
-    let mut studies = load_after_run(&chosen, &arguments.records)?;
+    let (mut studies, bad) = load_sound(&chosen, &arguments.records)?;
     arguments.trust.mark(&mut studies, &chosen);
     let (reports, golden) = reports_of(arguments, &studies, &chosen)?;
     let (results, tally) = results_of(&studies, &reports, golden);
@@ -90,7 +90,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let verdict = worst_of(&checks);
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
-    let mut refused = Vec::new();
+    // A study that cannot be read keeps no other from being judged.
+    let mut refused = bad;
     let printed = if arguments.quiet {
         print_coloured(&checks.iter().map(verdicts::verdict_on).collect::<String>())
     } else {
@@ -291,6 +292,38 @@ mod tests {
         ] {
             assert_eq!(worst_of(&all), exit);
         }
+    }
+
+    #[test]
+    fn a_study_without_golden_values_passes_by_its_expectations_alone() {
+        for (below, exit) in [("0.9", Exit::Pass), ("1e-9", Exit::VerdictFailed)] {
+            let expects = format!("[[expect_case]]\ntime_factor = 0.1\nerror = {{ below = {below} }}\n");
+            let text = format!("golden = 'none'\n{STUDY}{expects}");
+            let study = Study::check(&StudySource { name: "t.toml".to_owned(), text }).expect("sound");
+            let records = run_quietly(std::slice::from_ref(&study), 1).expect("records").remove(0);
+            let missing = GoldenFile::read(std::path::Path::new("no-such-folder"), "t");
+            let check = StudyCheck::new(&study, &records, Tier::Ci, missing);
+            assert_eq!(worst_of(std::slice::from_ref(&check)), exit);
+            assert!(!junit(&[check]).expect("a document").contains("t/golden"));
+        }
+    }
+
+    #[test]
+    fn a_study_that_cannot_be_read_keeps_no_other_from_being_judged() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).expect("a file");
+            path
+        };
+        let [bad, good] = [file("bad.toml", "title = 1"), file("good.toml", STUDY)];
+        let (studies, refused) = load_sound(&[bad.clone(), good], folder.path()).expect("one is sound");
+        let names: Vec<&str> = studies.iter().map(|study| study.name.as_str()).collect();
+        assert_eq!(
+            (names, refused.iter().map(Exit::of).collect::<Vec<_>>()),
+            (vec!["good"], vec![Exit::Usage])
+        );
+        assert!(load_sound(&[bad], folder.path()).is_err(), "nothing is left to judge");
     }
 
     #[test]

@@ -48,6 +48,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
             named.map(|name| state_of(name, arguments.golden.as_deref(), &arguments.studies));
         ([before?, after?], &arguments.studies[..])
     };
+    if !arguments.commands {
+        let [before, after] = named.map(what_of);
+        say!("compared: {before} with {after}; nothing was solved");
+    }
     let (mut found, notes) = compare_states(&before, &after, studies);
     for note in &notes {
         say!("{note}");
@@ -69,6 +73,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let regressed: Vec<&StudyComparison> = found.iter().filter(|one| one.is_regression()).collect();
     say!("{} of {} studies got worse", regressed.len(), found.len());
     Ok(if regressed.is_empty() { Exit::Pass } else { Exit::VerdictFailed })
+}
+
+/// What is compared of a state as it is named.
+fn what_of(named: &str) -> String {
+    let what = if Path::new(named).is_dir() { "the records in" } else { "the golden values in" };
+    format!("{what} {named}")
 }
 
 /// The states of two commands on the one study that is named.

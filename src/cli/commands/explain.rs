@@ -50,7 +50,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         None => (arguments.case.as_str(), None),
     };
     let (study, case) = the_one(&studies, description)?;
-    let record = record_of(study, case, &arguments.records)?;
+    let file = chosen_as(&study.name, &chosen).unwrap_or(Path::new(&study.name));
+    let record = record_of(study, case, file, &arguments.records)?;
     let golden = match golden_of(arguments.golden.as_deref(), &study.name, &chosen) {
         Ok(golden) => Some(golden.beside(&CaseInputs::of(study.cases(Tier::Ci))).0),
         Err(GoldenError::Missing(_)) => None,
@@ -64,7 +65,6 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         print_tables(&explanation::tables_of(&record, &found), arguments.format)?;
     }
     say!("{}: {}", study.name, explanation::golden_sentence(&found));
-    let file = chosen_as(&study.name, &chosen).unwrap_or(Path::new(&study.name));
     say!("run it again: oedometer run {} --case {}", file.display(), case.hash());
     Ok(Exit::Pass)
 }
@@ -125,14 +125,16 @@ fn the_one<'a>(studies: &'a [Study], description: &str) -> anyhow::Result<(&'a S
 
 /// The stored record, if this program made it; or else the case is solved and nothing is stored. The record of
 /// another program is used as it is, because no solver starts here.
-fn record_of(study: &Study, case: &Case, results: &Path) -> anyhow::Result<Record> {
+fn record_of(study: &Study, case: &Case, file: &Path, results: &Path) -> anyhow::Result<Record> {
     let store = RecordStore::new(results, &study.name);
     if study.solver_of(case).is_some_and(|solver| !solver.is_given()) {
         return store.kept(case).ok_or_else(|| {
             let reason = format!(
-                "there is no record of `{}` in {}, and `explain` starts no solver: `oedometer run … --case {}` does",
+                "there is no record of `{}` in {}, which `check` does not write, and `explain` starts no solver: first \
+                 `oedometer run {} --case {} --allow-solvers`",
                 case.label(),
                 store.folder().display(),
+                file.display(),
                 case.hash()
             );
             Ended::with(Exit::NothingSelected, reason)

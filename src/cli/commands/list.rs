@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// Arguments of `list`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Explain a method in words, or print the file of a shipped study
+    /// Explain a method or a scene in words, or print the file of a shipped study
     #[arg(long, value_name = "METHOD|STUDY")]
     show: Option<String>,
     /// Print all methods, also those outside the race
@@ -74,11 +74,24 @@ fn show(name: &str) -> anyhow::Result<Exit> {
         print_data(&study.text)?;
         return Ok(Exit::Pass);
     }
-    let names: Vec<String> = shipped_names().into_iter().chain(Method::names()).collect();
+    if let Some(scene) = SceneKind::ALL.into_iter().find(|scene| scene.name() == name) {
+        print_data(&scene_in_words(scene))?;
+        return Ok(Exit::Pass);
+    }
+    let scenes = SceneKind::ALL.map(|scene| scene.name().to_owned());
+    let names: Vec<String> = shipped_names().into_iter().chain(Method::names()).chain(scenes).collect();
     let near = nearest(name, names.iter().map(String::as_str));
     let help =
         near.map_or("`oedometer list` names them".to_owned(), |near| format!("did you mean `{near}`?"));
-    Err(Ended::usage(format!("no method and no built-in study is called `{name}`: {help}")))
+    Err(Ended::usage(format!("no method, scene or built-in study is called `{name}`: {help}")))
+}
+
+/// A scene in words, with its exact solutions, and how to write it in a study.
+fn scene_in_words(scene: SceneKind) -> String {
+    let (name, summary) = (scene.name(), scene.summary());
+    let solutions: Vec<&str> = scene.references().iter().map(|kind| kind.name()).collect();
+    let solutions = if solutions.is_empty() { "none".to_owned() } else { solutions.join(", ") };
+    format!("{name}\n\n  {summary}\n\nexact solutions: {solutions}\nin a study: scene = \"{name}\"\n")
 }
 
 /// A method in words: a line for each of its parts, and how to write it in a study.

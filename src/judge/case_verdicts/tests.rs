@@ -35,7 +35,10 @@ fn an_error_is_held_from_both_sides_and_a_missing_one_fails() {
     };
     let error = row.value.abs();
     let found = |record: &Record, above: f64, below: f64| {
-        error_found(&ErrorRange { measure: measure.clone(), bounds: Bounds { above, below } }, record)
+        error_found(
+            &ErrorRange { measure: measure.clone(), any_places: false, bounds: Bounds { above, below } },
+            record,
+        )
     };
     assert!(found(&record, 0.9 * error, 1.1 * error).pass);
     assert!(found(&record, error, 1.1 * error).pass, "the lower end belongs to the range");
@@ -310,7 +313,11 @@ fn a_judgement_tells_all_that_passed_or_what_failed_alone() {
     record.balance[0].solid_mass_drift = 2e-9;
     let demand = |status: &str, below: f64, drift: f64| CaseDemand {
         status: Some(status.to_owned()),
-        error: Some(ErrorRange { measure: measure.clone(), bounds: Bounds { above: 0.0, below } }),
+        error: Some(ErrorRange {
+            measure: measure.clone(),
+            any_places: false,
+            bounds: Bounds { above: 0.0, below },
+        }),
         solid_drift_below: Some(drift),
         ..CaseDemand::default()
     };
@@ -367,7 +374,7 @@ fn errors_beside_those_of_one_set_are_told_with_both_numbers() {
             let kinds = [Quantity::Pressure, Quantity::Displacement];
             record.errors = kinds.into_iter().zip(values).map(|(kind, value)| row(kind, value)).collect();
         }
-        let check = one_set_found(1e-9, &records[1], &records);
+        let check = one_set_found(1e-9, &records[1], &[&records[0], &records[1]]);
         (check.pass, check.reason)
     };
     let all = "2 errors are those of one point set within";
@@ -378,7 +385,7 @@ fn errors_beside_those_of_one_set_are_told_with_both_numbers() {
                  2.5000000000e-1 with one, more than 1e-9 allowed";
     assert_eq!(told([0.5, 0.250_001], [0.5, 0.25]), (false, apart.to_owned()));
     let [one, two] = [0, 1].map(|place| records[place].clone());
-    let alone = |record: &Record, records: &[Record]| one_set_found(1.0, record, records).reason;
-    assert_eq!(alone(&one, &[one.clone(), two.clone()]), "the case has one point set itself");
-    assert_eq!(alone(&two, std::slice::from_ref(&two)), "the study has no such case with one point set");
+    let alone = |record: &Record, records: &[&Record]| one_set_found(1.0, record, records).reason;
+    assert_eq!(alone(&one, &[&one, &two]), "the case has one point set itself");
+    assert_eq!(alone(&two, &[&two]), "the study has no such case with one point set");
 }

@@ -4,10 +4,12 @@
 use crate::case::contender::PAPERS;
 use crate::case::{Case, Quantity, Sample};
 use crate::judge::paths::{Path, first_measure, grouped, shown_time};
+use crate::judge::reaching::QuotedRuns;
 use crate::measure::statistics::largest;
 use crate::questions::answers::{CONVERGENCE, QUOTED_CELLS, study_with_most};
 use crate::questions::blocks::error_figure::ErrorFigure;
 use crate::questions::study_results::StudyResults;
+use crate::record::Record;
 use crate::study::expectation::{Axis, Measure};
 use oedometer_convergence::Class;
 use oedometer_soil::elementary;
@@ -120,6 +122,9 @@ pub struct CoarsestWithin {
     pub method: String,
     /// Cells over the height.
     pub cells: usize,
+    /// Whether a finer mesh is within it too.
+    #[serde(default)]
+    pub is_confirmed: bool,
     /// Shortest wall time, s, beside other runs.
     pub seconds: f64,
 }
@@ -256,30 +261,56 @@ impl<'b, 'a> Refined<'b, 'a> {
         self.methods.iter().filter_map(finest).min().unwrap_or_default()
     }
 
-    /// The largest of a method's main errors on that mesh.
-    fn largest_error(&self, path: &Path<'_>) -> Option<f64> {
-        let errors = MAIN.map(|measured| self.error(path, measured, self.finest_cells()));
+    /// The largest of the main errors of a run.
+    fn largest_of(&self, path: &Path<'_>, record: &Record) -> Option<f64> {
+        let errors = MAIN.map(|measured| Some(self.measure(path, measured).error(record)?.value.abs()));
         errors.into_iter().collect::<Option<Vec<f64>>>().and_then(largest).filter(|error| error.is_finite())
     }
 
-    /// The method with the least of the largest errors, where that is at most half that of the chosen one.
-    fn better(&self) -> Option<BetterMethod> {
-        let instead_of = self.largest_error(&self.chosen().1)?;
-        let errors =
-            self.methods.iter().filter_map(|(method, path)| Some((method, self.largest_error(path)?)));
-        let (method, error) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let better =
-            || BetterMethod { method: method.clone(), cells: self.finest_cells(), error, instead_of };
-        (2.0 * error <= instead_of).then(better)
+    /// The largest of a method's main errors on that mesh.
+    fn largest_error(&self, path: &Path<'_>) -> Option<f64> {
+        let cells = self.finest_cells();
+        let record = path.records.iter().find(|record| record.case.cells == cells)?;
+        self.largest_of(path, record)
     }
 
-    /// The coarsest mesh of each method within 1 % of the pressure, the cheapest first; single times are too rough to choose by.
+    /// The runs of a path on the meshes from which on an error stays within a tolerance, and whether a finer one confirms it.
+    fn reaching(
+        &self,
+        path: &Path<'a>,
+        tolerance: f64,
+        error: impl Fn(&Record) -> Option<f64>,
+    ) -> Vec<(&'a Record, bool)> {
+        let runs = path.records.iter().copied();
+        let quoted = QuotedRuns::new(runs.clone(), &self.results.study.case_expectations, error);
+        let reaching = quoted.reaching(tolerance);
+        runs.filter_map(|record| Some((record, *reaching.get(record.hash.as_str())?))).collect()
+    }
+
+    /// The method with the least of the largest errors, where that is at most half that of the chosen one on the same mesh and
+    /// on all finer ones.
+    fn better(&self) -> Option<BetterMethod> {
+        let instead_of = self.largest_error(&self.chosen().1)?;
+        let cells = self.finest_cells();
+        let stays_better = |path: &Path<'a>| {
+            let reaching = self.reaching(path, 0.5 * instead_of, |record| self.largest_of(path, record));
+            reaching.iter().any(|(record, _)| record.case.cells == cells)
+        };
+        let better = self.methods.iter().filter(|(_, path)| stays_better(path));
+        let errors = better.filter_map(|(method, path)| Some((method, self.largest_error(path)?)));
+        let (method, error) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(BetterMethod { method: method.clone(), cells, error, instead_of })
+    }
+
+    /// The coarsest mesh from which on each method's pressure is within 1 %, the cheapest first; single times are too rough to
+    /// choose by.
     fn within(&self) -> Vec<CoarsestWithin> {
         let within = self.methods.iter().filter_map(|(method, path)| {
-            let is_within = |cells| self.error(path, MAIN[0], cells).is_some_and(|error| error <= WITHIN);
-            let run = path.records.iter().find(|record| is_within(record.case.cells))?;
+            let measure = self.measure(path, MAIN[0]);
+            let reaching = self.reaching(path, WITHIN, |record| Some(measure.error(record)?.value));
+            let (run, is_confirmed) = *reaching.first()?;
             let seconds = run.wall.iter().map(|sample| sample.seconds).reduce(f64::min)?;
-            Some(CoarsestWithin { method: method.clone(), cells: run.case.cells, seconds })
+            Some(CoarsestWithin { method: method.clone(), cells: run.case.cells, is_confirmed, seconds })
         });
         let mut within: Vec<CoarsestWithin> = within.collect();
         within.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
@@ -298,7 +329,7 @@ mod tests {
     use super::*;
     use crate::campaign::runner::{records_of, study_of};
     use crate::case::planned::Tier;
-    use crate::record::{Record, WallSample};
+    use crate::record::WallSample;
 
     const STUDY: &str = "title = 't'\nscene = 'terzaghi'\noutput.time_factors = [0.1]\n[[sweep]]\n\
         method = ['GIMP', 'GC-SRI-patch', 'MPM']\nintegrator = ['implicit']\ncells = [5, 10, 20]\n[[sweep]]\n\

@@ -28,8 +28,11 @@ pub struct CostFinding {
 pub struct CheapestRun {
     /// Relative error of the pressure at the points, the largest of all outputs.
     pub tolerance: f64,
-    /// The run; none where no run is within it.
+    /// The run; none where no run reaches it.
     pub run: Option<RunCost>,
+    /// Whether a finer mesh stays within it too.
+    #[serde(default)]
+    pub is_confirmed: bool,
 }
 
 /// A timed run.
@@ -75,7 +78,7 @@ pub struct PeerAhead {
 fn timed_study<'b, 'a>(results: &'b [StudyResults<'a>]) -> Option<(&'b StudyResults<'a>, WorkPrecision<'a>)> {
     study_with_most(results, |one| {
         let reference = one.study.references.first().filter(|_| one.study.timing_repeats > 1)?;
-        let precision = WorkPrecision::of(one.records, reference.name())?;
+        let precision = WorkPrecision::of(one.records, reference.name(), &one.study.case_expectations)?;
         Some((precision.runs.len(), precision))
     })
 }
@@ -86,6 +89,7 @@ impl CostFinding {
         let cheapest = precision.cheapest.iter().map(|cheapest| CheapestRun {
             tolerance: cheapest.tolerance,
             run: cheapest.run.as_ref().map(RunCost::new),
+            is_confirmed: cheapest.is_confirmed,
         });
         let is_shared = peers::solve_their_column(&precision.runs);
         Some(Self {

@@ -3,9 +3,9 @@
 
 use crate::case::quantity::{Quantity, Sample};
 use crate::judge::paths::first_measure;
-use crate::judge::soundness;
 use crate::measure::record_checks;
 use crate::measure::record_checks::RecordCheck;
+use crate::measure::soundness;
 use crate::questions::blocks::number::Number;
 use crate::questions::study_results::StudyResults;
 use crate::record::{MeasureRow, Record, Status};

@@ -47,6 +47,9 @@ pub struct MapMethod {
     pub tried: usize,
     /// Soils on which it comes within the tolerance.
     pub within: usize,
+    /// Soils on which no finer mesh confirms that.
+    #[serde(default)]
+    pub unconfirmed: usize,
     /// Soils on which it is the cheapest.
     pub cheapest: usize,
     /// Its cost over the cheapest, the median.
@@ -60,7 +63,7 @@ pub struct MapMethod {
 /// The soils of a study that varies conductivity and stiffness; empty for others.
 pub(super) fn soils_of(results: &StudyResults<'_>) -> Vec<MappedSoil> {
     let Some(reference) = results.study.references.first() else { return Vec::new() };
-    let soils = mapped_soils(results.records, reference.name());
+    let soils = mapped_soils(results.records, reference.name(), &results.study.case_expectations);
     if soils.len() < LEAST_SOILS { Vec::new() } else { soils }
 }
 
@@ -104,6 +107,7 @@ impl MapMethod {
             name: name.to_owned(),
             tried: count(&|soil| soil.tried.iter().any(|tried| tried == name)),
             within: ways.len(),
+            unconfirmed: ways.iter().filter(|(own, _)| !own.is_confirmed).count(),
             cheapest: count(&|soil| soil.cheapest().is_some_and(|way| way.name == name)),
             cost_over_cheapest: median(&over),
             cells: median(&cells),

@@ -100,8 +100,11 @@ pub struct WallTimeFront {
 pub struct CheapestTimed {
     /// The tolerance.
     pub tolerance: f64,
-    /// The run, where one is within it.
+    /// The run, where one reaches it.
     pub run: Option<TimedRunFinding>,
+    /// Whether a finer mesh stays within it too.
+    #[serde(default)]
+    pub is_confirmed: bool,
 }
 
 /// A timed run.
@@ -189,7 +192,8 @@ impl WallTimeFinding {
     /// The timed runs of a study of several integrators; `None` for others.
     pub fn of_study(results: &StudyResults<'_>) -> Option<Self> {
         let reference = results.study.references.first()?;
-        let precision = WorkPrecision::of(results.records, reference.name())?;
+        let precision =
+            WorkPrecision::of(results.records, reference.name(), &results.study.case_expectations)?;
         let integrators = distinct(precision.runs.iter().map(|run| run.record.case.integrator));
         (integrators.len() > 1).then(|| Self::new(&precision))
     }
@@ -204,6 +208,7 @@ impl WallTimeFinding {
         let cheapest = precision.cheapest.iter().map(|cheapest| CheapestTimed {
             tolerance: cheapest.tolerance,
             run: cheapest.run.as_ref().map(TimedRunFinding::new),
+            is_confirmed: cheapest.is_confirmed,
         });
         Self {
             fronts: fronts.collect(),

@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn peers_stand_beside_their_own_column_only() {
         let column = runs_of("terzaghi", "");
-        let precision = WorkPrecision::of(&column, "terzaghi").expect("timed runs");
+        let precision = WorkPrecision::of(&column, "terzaghi", &[]).expect("timed runs");
         assert!(solve_their_column(&precision.runs));
         let ahead: Vec<_> = compare(&precision.runs)
             .into_iter()
@@ -222,7 +222,7 @@ mod tests {
         }
         // Large strain has no error against Terzaghi's solution, so nothing to hold theirs against.
         let squeezed = runs_of("xie-leo", "[column]\nload = 1e5");
-        let precision = WorkPrecision::of(&squeezed, "large-strain").expect("timed runs");
+        let precision = WorkPrecision::of(&squeezed, "large-strain", &[]).expect("timed runs");
         assert!(!solve_their_column(&precision.runs));
     }
 

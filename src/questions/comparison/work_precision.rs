@@ -4,8 +4,10 @@
 use crate::case::work_estimate::seconds_per_step;
 use crate::case::{IntegratorKind, Quantity, SolverName};
 use crate::judge::paths::{first_error, grouped};
+use crate::judge::reaching::QuotedRuns;
 use crate::measure::statistics::{WallSpread, largest, median, noise_floor, paired_ratio, spread};
 use crate::record::{Record, Status};
+use crate::study::expectation::CaseExpectation;
 use oedometer_convergence::{CostPoint, front};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,8 +30,10 @@ pub struct TimedRun<'a> {
 pub struct Cheapest<'a> {
     /// The tolerance.
     pub tolerance: f64,
-    /// The run with the least wall time whose error is within it, where one is.
+    /// The run with the least wall time of those that reach it, where one does.
     pub run: Option<TimedRun<'a>>,
+    /// Whether a finer mesh stays within it too.
+    pub is_confirmed: bool,
 }
 
 /// Timed runs of one study.
@@ -45,17 +49,20 @@ pub struct WorkPrecision<'a> {
 }
 
 impl<'a> WorkPrecision<'a> {
-    /// Compares the timed runs among records by the error against a reference; `None` where fewer
+    /// Compares the timed runs among records by the error against a reference, with what is expected of their cases; `None` where fewer
     /// than two were timed.
-    pub fn of(records: &'a [Record], reference: &str) -> Option<Self> {
+    pub fn of(records: &'a [Record], reference: &str, expectations: &[CaseExpectation]) -> Option<Self> {
         let mut runs: Vec<_> = records.iter().filter_map(|record| timed(record, reference)).collect();
         if runs.len() < 2 {
             return None;
         }
         runs.sort_by(|a, b| a.wall.median.total_cmp(&b.wall.median));
-        let cheapest = TOLERANCES.map(|tolerance| Cheapest {
-            tolerance,
-            run: runs.iter().find(|run| run.error <= tolerance).cloned(),
+        let quoted = QuotedRuns::new(records, expectations, |record| worst_error(record, reference));
+        let cheapest = TOLERANCES.map(|tolerance| {
+            let reaching = quoted.reaching(tolerance);
+            let run = runs.iter().find(|run| reaching.contains_key(run.record.hash.as_str()));
+            let is_confirmed = run.is_some_and(|run| reaching[run.record.hash.as_str()]);
+            Cheapest { tolerance, run: run.cloned(), is_confirmed }
         });
         Some(Self { cheapest: cheapest.to_vec(), noise_floor: session_noise(&runs), runs })
     }
@@ -165,6 +172,8 @@ pub struct Way {
     pub seconds: f64,
     /// Its error.
     pub error: f64,
+    /// Whether a finer mesh stays within the tolerance too.
+    pub is_confirmed: bool,
 }
 
 /// Method and integrator of a record.
@@ -173,7 +182,11 @@ fn name_of(record: &Record) -> String {
 }
 
 /// The soils of records, by conductivity and stiffness; empty unless both vary.
-pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
+pub fn mapped_soils(
+    records: &[Record],
+    reference: &str,
+    expectations: &[CaseExpectation],
+) -> Vec<MappedSoil> {
     let mut soils: BTreeMap<SoilKey, Vec<&Record>> = BTreeMap::new();
     for record in records {
         let soil = &record.case.material;
@@ -190,7 +203,7 @@ pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
             conductivity: f64::from_bits(conductivity),
             stiffness: f64::from_bits(stiffness),
             tried: names_of(records.iter().copied()),
-            ways: ways(&records, reference),
+            ways: ways(&records, reference, expectations),
             broken: names_of(records.iter().copied().filter(|record| record.status != Status::Ok)),
         })
         .collect()
@@ -198,14 +211,17 @@ pub fn mapped_soils(records: &[Record], reference: &str) -> Vec<MappedSoil> {
 
 /// The cheapest way of every method and integrator to the tolerance, the cheapest of all first; of two with equal cost
 /// the more accurate one.
-fn ways(records: &[&Record], reference: &str) -> Vec<Way> {
+fn ways(records: &[&Record], reference: &str, expectations: &[CaseExpectation]) -> Vec<Way> {
+    let all = records.iter().copied();
+    let quoted = QuotedRuns::new(all, expectations, |record| worst_error(record, reference));
+    let reaching = quoted.reaching(TOLERANCE);
     let way = |record: &&Record| {
-        let error = worst_error(record, reference).filter(|error| *error <= TOLERANCE)?;
+        let is_confirmed = *reaching.get(record.hash.as_str())?;
+        let error = worst_error(record, reference)?;
         let seconds = record.counters.steps as f64 * seconds_per_step(&record.case);
-        Some(Way { name: name_of(record), cells: record.case.cells, seconds, error })
+        Some(Way { name: name_of(record), cells: record.case.cells, seconds, error, is_confirmed })
     };
-    let sound = records.iter().filter(|record| record.status == Status::Ok);
-    let mut ways: Vec<Way> = sound.filter_map(way).collect();
+    let mut ways: Vec<Way> = records.iter().filter_map(way).collect();
     ways.sort_by(|a, b| {
         a.seconds.total_cmp(&b.seconds).then(a.error.total_cmp(&b.error)).then_with(|| a.name.cmp(&b.name))
     });
@@ -226,6 +242,7 @@ mod tests {
     use crate::campaign::runner::records_of;
     use crate::record::WallSample;
     use oedometer_problem::outcome::{Failure, FailureKind};
+    use oedometer_problem::time_step::TimeStepRule;
 
     const STUDY: &str = r#"title = "Costs"
 scene = "terzaghi"
@@ -248,7 +265,7 @@ time_step = [{ growth = 0.005 }]
             let seconds = 1e-9 * record.counters.point_updates as f64;
             record.wall = vec![WallSample { seconds, alone: true, ..WallSample::default() }; 2];
         }
-        let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
+        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs");
         // Within the tightest tolerance that both reach, the cheapest is the method of second order.
         let cheapest = precision.cheapest[1].run.as_ref().expect("within 0.1 %");
         assert!(cheapest.record.case.label().starts_with("GC-SRI-patch"), "{}", cheapest.record.case.label());
@@ -263,7 +280,7 @@ time_step = [{ growth = 0.005 }]
                 .map(|seconds| WallSample { seconds, alone: true, ..WallSample::default() })
                 .to_vec();
         }
-        let noise = WorkPrecision::of(&records, "terzaghi").expect("timed runs").noise_floor;
+        let noise = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs").noise_floor;
         assert!((noise.expect("six rounds") - 0.2).abs() < 1e-12, "{noise:?}");
     }
 
@@ -274,7 +291,7 @@ time_step = [{ growth = 0.005 }]
     #[test]
     fn the_cheapest_within_the_tolerance_is_found_on_every_soil_and_what_failed_is_named() {
         let mut records = records_of(SOILS);
-        let soils = mapped_soils(&records, "terzaghi");
+        let soils = mapped_soils(&records, "terzaghi", &[]);
         assert_eq!(soils.len(), 4);
         for soil in &soils {
             let way = soil.cheapest().expect("ten cells are enough");
@@ -287,11 +304,11 @@ time_step = [{ growth = 0.005 }]
             let kind = FailureKind::Unstable;
             record.status = Status::Failed(Failure { kind, step: 1, time: 1.0, growth: None, reason });
         }
-        let soils = mapped_soils(&records, "terzaghi");
+        let soils = mapped_soils(&records, "terzaghi", &[]);
         let broken: Vec<bool> = soils.iter().map(|soil| soil.cheapest().is_none()).collect();
         assert_eq!(broken, [false, true, false, true]);
         assert_eq!(soils[1].broken, ["GC-SRI-patch implicit"]);
-        assert!(mapped_soils(&records[..1], "terzaghi").is_empty(), "one soil is no map");
+        assert!(mapped_soils(&records[..1], "terzaghi", &[]).is_empty(), "one soil is no map");
     }
 
     #[test]
@@ -334,23 +351,29 @@ time_step = [{ growth = 0.005 }]
             for run in &mut runs {
                 run.wall = vec![WallSample { seconds: 1.0, alone: true, ..WallSample::default() }; 2];
             }
-            let precision = WorkPrecision::of(&runs, "terzaghi").expect("two timed runs");
+            let precision = WorkPrecision::of(&runs, "terzaghi", &[]).expect("two timed runs");
             assert_eq!(precision.runs.len(), 2, "{place}");
             let wide = [Some(9.0), Some(1e-3), Some(1e-3), Some(1e-3)];
             let mut missing = wide;
             missing[place] = None;
-            let found = [wide, missing].map(|errors| ways(&[&with(errors)], "terzaghi").len());
+            let found = [wide, missing].map(|errors| ways(&[&with(errors)], "terzaghi", &[]).len());
             assert_eq!(found, [1, 0], "{place}");
         }
         // Of two at equal cost the more accurate one, and of errors the tolerance itself is within it.
-        let at = |error: f64| with([Some(9.0), Some(error), Some(error), Some(error)]);
+        let at = |error: f64| {
+            let mut record = with([Some(9.0), Some(error), Some(error), Some(error)]);
+            // Steps by a rule of its own, so that none is a part of another's refinement.
+            record.case.time_step = TimeStepRule::Growth(error);
+            record.hash = record.case.hash();
+            record
+        };
         let (good, fair, bad) = (at(2e-3), at(TOLERANCE), at(1.001 * TOLERANCE));
         for records in [[&bad, &good, &fair], [&fair, &good, &bad], [&good, &bad, &fair]] {
-            let found = ways(&records, "terzaghi");
+            let found = ways(&records, "terzaghi", &[]);
             let told: Vec<_> = found.iter().map(|way| (&*way.name, way.cells, way.error)).collect();
             assert_eq!(told, [("MPM implicit", 5, 2e-3)]);
         }
-        assert_eq!([&fair, &bad].map(|one| ways(&[one], "terzaghi").len()), [1, 0]);
+        assert_eq!([&fair, &bad].map(|one| ways(&[one], "terzaghi", &[]).len()), [1, 0]);
     }
 
     #[test]
@@ -365,7 +388,7 @@ time_step = [{ growth = 0.005 }]
             record.wall = times.map(|seconds| sample(seconds, true)).to_vec();
             record.wall.extend(vec![sample(0.1, false); 9]);
         }
-        let precision = WorkPrecision::of(&records, "terzaghi").expect("timed runs");
+        let precision = WorkPrecision::of(&records, "terzaghi", &[]).expect("timed runs");
         let found: Vec<_> = precision.runs.iter().map(|run| (run.wall.median, run.error)).collect();
         assert_eq!(found, [(5.0, 8e-3), (6.0, 8e-4), (10.0, 2e-2)]);
         let fronts = precision.fronts();
@@ -378,6 +401,6 @@ time_step = [{ growth = 0.005 }]
         for record in &mut records[1..] {
             record.wall.retain(|sample| !sample.alone);
         }
-        assert!(WorkPrecision::of(&records, "terzaghi").is_none(), "one run was timed alone");
+        assert!(WorkPrecision::of(&records, "terzaghi", &[]).is_none(), "one run was timed alone");
     }
 }

@@ -1,9 +1,10 @@
 //! What reaches a bound: for each quantity the cheapest choice of method, mesh and step whose error stays within it at every
-//! output, in every problem of the study.
+//! output, in every problem of the study, on this mesh and all finer ones.
 
 use crate::case::grouping::distinct;
 use crate::case::{Case, Quantity, Sample, step_label};
 use crate::judge::paths::grouped;
+use crate::judge::reaching::QuotedRuns;
 use crate::record::calibration::cost_of;
 use crate::record::{ErrorRow, Record};
 use crate::study::check::Study;
@@ -65,6 +66,9 @@ pub struct OtherMethod {
     pub method: String,
     /// Cells over the height.
     pub cells: usize,
+    /// Whether a finer mesh stays within the bound too.
+    #[serde(default)]
+    pub is_confirmed: bool,
 }
 
 /// A method that stays far from the exact solution on its finest mesh.
@@ -106,6 +110,9 @@ pub struct WithinFinding {
     pub largest_step: f64,
     /// Whether no run of the same method on the same mesh took larger steps: the limit may be larger.
     pub is_longest_tried: bool,
+    /// Whether a finer mesh stays within the bound too, in every problem.
+    #[serde(default)]
+    pub is_confirmed: bool,
     /// Largest error.
     pub error: f64,
     /// Time factor of the output that has it.
@@ -126,12 +133,17 @@ pub fn within(study: &Study, records: &[Record]) -> Vec<QuantityWithin> {
         if quantity == Quantity::Displacement && !found.is_empty() {
             continue;
         }
-        found.extend(quantity_within(records, quantity, reference.name()));
+        found.extend(quantity_within(study, records, quantity, reference.name()));
     }
     found
 }
 
-fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> Option<QuantityWithin> {
+fn quantity_within(
+    study: &Study,
+    records: &[Record],
+    quantity: Quantity,
+    reference: &str,
+) -> Option<QuantityWithin> {
     let rows = |record: &Record| {
         let is_of = |row: &&ErrorRow| {
             row.quantity == quantity && row.norm == quantity.first_norm() && row.reference == reference
@@ -141,39 +153,56 @@ fn quantity_within(records: &[Record], quantity: Quantity, reference: &str) -> O
     let main = records.first()?.main_sample();
     let samples: Vec<Sample> = records.iter().flat_map(rows).map(|row| row.sample).collect();
     let sample = samples.iter().copied().find(|sample| *sample == main).or(samples.first().copied())?;
+    // The largest error of a run that has one at every output.
+    let largest = |record: &Record| {
+        let rows: Vec<ErrorRow> = rows(record).into_iter().filter(|row| row.sample == sample).collect();
+        let is_whole = record.status.failure().is_none()
+            && rows.len() == record.case.time_factors.len()
+            && rows.iter().all(|row| row.value.is_finite());
+        rows.into_iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())).filter(|_| is_whole)
+    };
     let problems = grouped(records, |record| problem(&record.case)).len();
-    let choices = grouped(records, |record| choice(&record.case));
-    let choices: Vec<WithinFinding> = choices
+    let choices: Vec<(WithinFinding, Vec<&Record>)> = grouped(records, |record| choice(&record.case))
         .into_iter()
         .filter(|(_, runs)| grouped(runs, |record| problem(&record.case)).len() == problems)
         .filter_map(|(_, runs)| {
-            let largest = runs.into_iter().map(|record| {
-                let rows: Vec<ErrorRow> =
-                    rows(record).into_iter().filter(|row| row.sample == sample).collect();
-                let is_whole = record.status.failure().is_none()
-                    && rows.len() == record.case.time_factors.len()
-                    && rows.iter().all(|row| row.value.is_finite());
-                let largest = rows.into_iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
-                Some((record, largest.filter(|_| is_whole)?))
-            });
-            let all: Vec<(&Record, ErrorRow)> = largest.collect::<Option<_>>()?;
+            let all = runs.iter().map(|record| Some((*record, largest(record)?)));
+            let all: Vec<(&Record, ErrorRow)> = all.collect::<Option<_>>()?;
             let (record, row) = all.into_iter().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()))?;
-            Some(WithinFinding {
-                is_longest_tried: is_longest_tried(record, records),
-                ..WithinFinding::new(record, &row)
-            })
+            let longest = is_longest_tried(record, records);
+            Some((WithinFinding { is_longest_tried: longest, ..WithinFinding::new(record, &row) }, runs))
         })
         .collect();
-    let best = choices.iter().min_by(|a, b| a.error.total_cmp(&b.error))?.clone();
+    let quoted =
+        QuotedRuns::new(records, &study.case_expectations, |record| largest(record).map(|row| row.value));
+    // A choice is within a bound where each of its runs is.
+    let within = |bound: f64| -> Vec<WithinFinding> {
+        let reaching = quoted.reaching(bound);
+        let within = choices.iter().filter_map(|(choice, runs)| {
+            let confirmed = runs.iter().map(|record| reaching.get(record.hash.as_str()).copied());
+            let confirmed: Vec<bool> = confirmed.collect::<Option<_>>()?;
+            let is_confirmed = confirmed.into_iter().all(|is_confirmed| is_confirmed);
+            Some(WithinFinding { is_confirmed, ..choice.clone() })
+        });
+        within.collect()
+    };
+    let is_quoted = |runs: &[&Record]| runs.iter().all(|record| quoted.quotes(record));
+    // Where a check of every run fails, the least error is told all the same: nothing is recommended by it.
+    let best = choices.iter().min_by(|(a, of_a), (b, of_b)| {
+        is_quoted(of_b).cmp(&is_quoted(of_a)).then(a.error.total_cmp(&b.error))
+    });
+    let best = best?.0.clone();
+    let choices: Vec<&WithinFinding> = choices.iter().map(|(choice, _)| choice).collect();
     // Beside another program, whose work is not counted, the coarsest mesh stands first.
     let is_counted = choices.iter().all(|choice| choice.cost > 0.0);
-    let bounds = BOUNDS.map(|bound| bound_within(bound, &choices, is_counted));
+    let integrators = distinct(choices.iter().map(|choice| choice.integrator.as_str()));
+    let bounds = BOUNDS.map(|bound| bound_within(bound, &within(bound), &integrators, is_counted));
     let (reference, far) = (reference.to_owned(), far_methods(&choices));
     Some(QuantityWithin { quantity, sample, reference, problems, bounds: bounds.to_vec(), best, far })
 }
 
 /// The methods that are far off on their finest mesh, the worst first.
-fn far_methods(choices: &[WithinFinding]) -> Vec<FarMethod> {
+fn far_methods(choices: &[&WithinFinding]) -> Vec<FarMethod> {
     let methods = distinct(choices.iter().map(|choice| choice.method.as_str()));
     let mut far: Vec<FarMethod> = methods
         .into_iter()
@@ -189,27 +218,27 @@ fn far_methods(choices: &[WithinFinding]) -> Vec<FarMethod> {
     far
 }
 
-fn bound_within(bound: f64, choices: &[WithinFinding], is_counted: bool) -> BoundWithin {
-    let fits: Vec<&WithinFinding> = choices.iter().filter(|choice| choice.error <= bound).collect();
+fn bound_within(bound: f64, fits: &[WithinFinding], integrators: &[&str], is_counted: bool) -> BoundWithin {
     let cost = |choice: &WithinFinding| if is_counted { choice.cost } else { 0.0 };
     let cheapest_of = |integrator: Option<&str>| {
         let of = fits.iter().filter(|choice| integrator.is_none_or(|name| choice.integrator == name));
-        of.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells))).copied()
+        of.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cells.cmp(&b.cells)))
     };
     let Some(cheapest) = cheapest_of(None) else {
         return BoundWithin { bound, choice: None, others: Vec::new(), integrators: Vec::new() };
     };
     let methods = distinct(fits.iter().map(|choice| choice.method.as_str()));
     let others = methods.into_iter().filter(|method| *method != cheapest.method).filter_map(|method| {
-        let cells = fits.iter().filter(|choice| choice.method == method).map(|choice| choice.cells).min()?;
-        Some(OtherMethod { method: method.to_owned(), cells })
+        let of_method = fits.iter().filter(|choice| choice.method == method);
+        let coarsest = of_method.min_by_key(|choice| (choice.cells, !choice.is_confirmed))?;
+        let WithinFinding { cells, is_confirmed, .. } = *coarsest;
+        Some(OtherMethod { method: method.to_owned(), cells, is_confirmed })
     });
-    let integrators = distinct(choices.iter().map(|choice| choice.integrator.as_str()));
-    let integrators = integrators.into_iter().filter(|name| is_counted && *name != cheapest.integrator);
+    let integrators = integrators.iter().filter(|name| is_counted && **name != cheapest.integrator);
     let integrators = integrators.map(|name| {
         let choice = cheapest_of(Some(name));
         let cost_ratio = choice.map(|choice| choice.cost / cheapest.cost);
-        IntegratorWithin { integrator: name.to_owned(), choice: choice.cloned(), cost_ratio }
+        IntegratorWithin { integrator: (*name).to_owned(), choice: choice.cloned(), cost_ratio }
     });
     BoundWithin {
         bound,
@@ -232,6 +261,7 @@ impl WithinFinding {
             points_per_cell: case.points_per_cell,
             largest_step: if case.counts_work() { record.step_sizes.largest } else { 0.0 },
             is_longest_tried: false,
+            is_confirmed: false,
             error: row.value.abs(),
             time_factor: row.time_factor,
             seconds: row.time_factor * case.seconds_per_time_factor(),
@@ -314,8 +344,26 @@ mod tests {
         // One soil, one time: beyond the bound in one of them is beyond it.
         let of_eight = [2, 3].map(|place| cells(&lay([0.05, 0.008, 0.0009], Some((place, 0.02)))));
         assert!(of_eight.contains(&[Some(16), Some(16)]), "{of_eight:?}");
+        let confirmed = |found: &[QuantityWithin]| {
+            found[0].bounds[0].choice.as_ref().map(|choice| (choice.cells, choice.is_confirmed))
+        };
+        assert_eq!(confirmed(&lay([0.05, 0.008, 0.009], None)), Some((8, true)));
+        assert_eq!(confirmed(&lay([0.0065, 0.12, 0.009], None)), Some((16, false)), "nothing finer");
+        assert_eq!(confirmed(&lay([0.0065, 0.12, 0.25], None)), None, "it diverges");
+        // Coarse and right in both soils, fine and wrong in one of them.
+        assert_eq!(confirmed(&lay([0.005; 3], Some((4, 0.02)))), None);
         let found = lay([0.05, 0.02, 0.011], None);
         assert_eq!((cells(&found), found[0].best.error), ([None, None], 0.011));
+        // An expectation of a case that is not met speaks against its run, and so does a failed check.
+        let mut strict = study.clone();
+        let expectation = "[[expect_case]]\ncells = 4\nwater_drift_below = 1e-30\n";
+        strict.case_expectations = solved("s", &(text.to_owned() + expectation)).0.case_expectations;
+        records.iter_mut().flat_map(|record| &mut record.errors).for_each(|row| row.value = 0.005);
+        let coarsest = |study: &Study, records: &[Record]| cells(&within(study, records))[0];
+        assert_eq!([&study, &strict].map(|study| coarsest(study, &records)), [Some(4), Some(8)]);
+        let mut unsound = records.clone();
+        unsound[5].balance[0].solid_mass_drift = 0.164;
+        assert_eq!(coarsest(&study, &unsound), None);
         for record in &mut records {
             record.status = failed_at(1);
         }
@@ -377,7 +425,10 @@ mod tests {
             record.errors.iter_mut().for_each(|row| row.value = error);
         }
         let answer = &within(&study, &records)[0];
-        assert_eq!(answer.bounds[0].others, [OtherMethod { method: "GIMP".to_owned(), cells: 8 }]);
+        assert_eq!(
+            answer.bounds[0].others,
+            [OtherMethod { method: "GIMP".to_owned(), cells: 8, is_confirmed: true }]
+        );
         assert_eq!(answer.far, [FarMethod { method: "VP".to_owned(), cells: 16, error: 0.3 }]);
     }
 

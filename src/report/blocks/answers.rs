@@ -62,6 +62,7 @@ mod tests {
     #[test]
     fn a_quantity_is_told_with_method_mesh_step_and_time_or_with_the_least_error() {
         let choice = |error: f64, largest_step: f64| WithinFinding {
+            is_confirmed: true,
             method: "GC-SRI-patch".to_owned(),
             integrator: "implicit".to_owned(),
             cells: 10,

@@ -105,6 +105,7 @@ fn methods_table(map: &MapFinding) -> Table {
             Cell::Code(method.name.clone()),
             Cell::Count(method.tried as u64),
             Cell::Count(method.within as u64),
+            Cell::Count(method.unconfirmed as u64),
             Cell::Count(method.cheapest as u64),
             Cell::of(method.cost_over_cheapest, Cell::Number, "never within the tolerance"),
             Cell::of(method.cells, Cell::Number, "never within the tolerance"),
@@ -112,7 +113,7 @@ fn methods_table(map: &MapFinding) -> Table {
         ]
     });
     let header = format!(
-        "method and integrator | > soils tried | > within {} % on | > cheapest on | > its cost over the cheapest, median | > \
+        "method and integrator | > soils tried | > within {} % on | > unconfirmed by a finer mesh on | > cheapest on | > its cost over the cheapest, median | > \
          its cells, median | > a run failed on",
         100.0 * map.tolerance
     );
@@ -177,6 +178,7 @@ mod tests {
             cells,
             seconds,
             error: 0.005,
+            is_confirmed: name.starts_with('A'),
         };
         let soil = |place: (f64, f64), ways: Vec<Way>, broken: &[&str]| MappedSoil {
             conductivity: place.0,
@@ -224,9 +226,9 @@ mod tests {
         let shown: Vec<Vec<String>> =
             table.rows.iter().map(|row| row.iter().map(Cell::show).collect()).collect();
         // Medians of 1, 3, 1 and of 4, 1, 7 times the cheapest; of 8, 10, 8 and of 16, 4, 20 cells.
-        assert_eq!(shown[0], ["A implicit", "4", "3", "2", "1", "8", "1"]);
-        assert_eq!(shown[1], ["B explicit", "3", "3", "1", "4", "16", "1"]);
-        assert_eq!(shown[2], ["C explicit", "3", "0", "0", "–", "–", "2"]);
+        assert_eq!(shown[0], ["A implicit", "4", "3", "0", "2", "1", "8", "1"]);
+        assert_eq!(shown[1], ["B explicit", "3", "3", "3", "1", "4", "16", "1"]);
+        assert_eq!(shown[2], ["C explicit", "3", "0", "0", "0", "–", "–", "2"]);
         assert_eq!(table.notes, ["of 4 soils"]);
     }
 }

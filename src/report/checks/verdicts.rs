@@ -249,15 +249,23 @@ fn headline(check: &StudyCheck) -> String {
             format!("none of {} judged", count_of(check.expected, "expectation", "expectations"))
         }
         0 => "no expectations".to_owned(),
-        all => format!("{} of {all} expectations met", all - unmet),
+        // Those of cases that were not run count as well.
+        judged => {
+            let met = judged - unmet;
+            match check.unjudged {
+                0 => format!("{met} of {judged} expectations met"),
+                left => format!("{met} of {} expectations met, {left} not judged", judged + left),
+            }
+        }
     };
     let golden = match &check.golden {
-        Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
-        Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
-        Err(_) if check.end() == CheckEnd::HeldBack => {
+        _ if check.end() == CheckEnd::HeldBack => {
             let cases = count_of(check.held_back, "case", "cases");
             return format!("{expectations}: {cases} not run, because their programs need --allow-solvers");
         }
+        Ok(_) if !check.compares_golden => "no golden values, as the study says".to_owned(),
+        Ok(differences) if differences.is_empty() => format!("{} golden values agree", check.agreeing),
+        Ok(differences) => format!("{} golden values agree, {} do not", check.agreeing, differences.len()),
         Err(error) => error.to_string(),
     };
     let count = |count: usize, one: &str, several: &str| match count {

@@ -4,6 +4,7 @@ use crate::case::keys::{MOST_CELLS, MOST_POINTS};
 use crate::case::{Case, Norm, PlannedCase, Quantity, Sample, Task, Value};
 use crate::study::Purpose;
 use crate::study::check::Checker;
+use crate::study::diagnostic::Diagnostic;
 use crate::study::expectation::{
     Axis, Bounds, CaseDemand, CaseExpectation, ErrorRange, Measure, NEXT_FINER, NO_REFERENCE, Selection,
     SeriesExpectation,
@@ -108,6 +109,7 @@ impl Checker<'_> {
             },
             reference,
             axis: table.axis,
+            any_places: table.sample.is_none(),
             demand,
             tier: table.tier,
             line: self.line_of(table),
@@ -358,6 +360,13 @@ impl Checker<'_> {
             );
             return None;
         };
+        if below >= 1.0 && level.above.is_none() {
+            self.warn(&Diagnostic::at(
+                level.span(),
+                format!("an error below {below} is one of {} %, which a result of zero has", 100.0 * below),
+                format!("did you mean \"{below} %\"?"),
+            ));
+        }
         Some(ErrorBound { size, below, above: level.above.unwrap_or(0.0) })
     }
 
@@ -380,7 +389,7 @@ impl Checker<'_> {
         let bounds = self.bounds(&table.error)?;
         let reference = reference.name().to_owned();
         let measure = Measure { quantity: table.quantity, sample, norm, reference, time_factor, probe: None };
-        Some(ErrorRange { measure, bounds })
+        Some(ErrorRange { measure, any_places: table.sample.is_none(), bounds })
     }
 
     /// The bounds of a table: 0 where the lower one is left out, and none where the upper one is. A complaint where no

@@ -369,6 +369,43 @@ impl Checker<'_> {
         true
     }
 
+    /// Asks where a number without a unit is likely to be in another one: a stiffness below the load, a load of some pascals, a
+    /// height of hundreds of metres, and a bound of 100 %.
+    pub(super) fn units_are_meant(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
+        let Some(case) = planned.first().map(|planned| &planned.case) else { return };
+        if case.scene.is_manufactured() {
+            return;
+        }
+        let plain = |inputs: &Inputs, key: &str| {
+            let span = inputs.span(key)?;
+            let typed = self.source.text.get(span.clone())?.trim().to_owned();
+            let is_plain = typed.parse::<f64>().is_ok();
+            is_plain.then_some((span, typed))
+        };
+        let load = case.column.load;
+        let questions = [
+            (
+                plain(&file.material.inputs, "youngs_modulus"),
+                2.0 * case.material.youngs_modulus < load,
+                "kPa",
+            ),
+            (plain(&file.column.inputs, "load"), (5.0..1000.0).contains(&load), "kPa"),
+            (plain(&file.column.inputs, "height"), (100.0..=5000.0).contains(&case.column.height), "mm"),
+        ];
+        let asked = questions.into_iter().filter(|(_, is_odd, _)| *is_odd);
+        let asked: Vec<_> = asked.filter_map(|(typed, _, unit)| Some((typed?, unit))).collect();
+        for ((span, typed), unit) in asked {
+            let si = if unit == "mm" { "m" } else { "Pa" };
+            self.warn(&Diagnostic::at(
+                span,
+                format!(
+                    "a number without a unit is in {si}: {typed} {si} is unusual beside the other inputs"
+                ),
+                format!("did you mean \"{typed} {unit}\"? Write \"{typed} {si}\" if not"),
+            ));
+        }
+    }
+
     /// Warns of a load under which a theory of small strain is off by more than a percent.
     pub(super) fn large_for_small_strain(&mut self, file: &StudyFile, planned: &[PlannedCase]) {
         let small = planned.iter().map(|planned| &planned.case).filter(|case| !case.scene.is_large_strain());

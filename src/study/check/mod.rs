@@ -18,7 +18,8 @@ use crate::study::check::outputs::Outputs;
 use crate::study::check::sweeps::{start_of, tell_apart};
 use crate::study::diagnostic::{Diagnostic, StudyError};
 use crate::study::expectation::{CaseExpectation, SeriesExpectation};
-use crate::study::file::{OutputTable, StudyFile, StudySource};
+use crate::study::file::{GoldenRule, OutputTable, StudyFile, StudySource};
+use crate::study::reading::Placed;
 use crate::study::shipped::name_of;
 use crate::study::solver::ExternalSolver;
 use oedometer_exact::reference::ReferenceKind;
@@ -39,6 +40,9 @@ pub enum Purpose {
 
 /// Longest wall time of a case, s, where a study names none.
 const DEFAULT_CASE_SECONDS: f64 = 3600.0;
+
+/// Largest tolerance of golden values: errors are compared, which are of this size themselves.
+pub const MOST_TOLERANCE: f64 = 1e-2;
 
 /// A study that can run.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +73,8 @@ pub struct Study {
     pub has_dates: bool,
     /// Times each case is run alone for its wall time; 0 where it is not timed.
     pub timing_repeats: usize,
+    /// Whether its values are compared with golden ones.
+    pub golden: GoldenRule,
     /// Whether all contenders of the race are among its methods.
     pub is_race: bool,
     /// Contenders that cannot run here, by their names, each with the reason.
@@ -278,6 +284,7 @@ impl Checker<'_> {
         }
         let mut planned = planner.into_cases();
         tell_apart(&mut planned);
+        self.units_are_meant(&file, &planned);
         self.large_for_small_strain(&file, &planned);
         self.unlike_any_soil(&file, &planned);
         self.projection_slows_waves(&file, &planned);
@@ -286,9 +293,11 @@ impl Checker<'_> {
         let height = is_common.then_some(height);
         let plate_width = (scene == SceneKind::Footing).then_some(base.column.footing.width);
         let subject = Subject { scene, references: &references, planned: &planned, height, plate_width };
-        let expectations = file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
-        let case_expectations =
+        let expectations: Vec<SeriesExpectation> =
+            file.expect.iter().filter_map(|table| self.expectation(table, &subject)).collect();
+        let case_expectations: Vec<CaseExpectation> =
             file.expect_case.iter().filter_map(|table| self.case_expectation(table, &subject)).collect();
+        let golden = self.golden_rule(file.golden.as_ref(), &expectations, &case_expectations);
         let timing_repeats = self.count(file.timing.repeats.as_ref(), "timing.repeats", 0..=1000);
         Study {
             name: name_of(&self.source.name),
@@ -304,10 +313,38 @@ impl Checker<'_> {
             may_start_solvers: false,
             has_dates,
             timing_repeats: timing_repeats.unwrap_or(0),
+            golden,
             is_race: self.is_race,
             not_applicable: std::mem::take(&mut self.not_applicable),
             warnings: std::mem::take(&mut self.warnings),
         }
+    }
+
+    /// Whether there are golden values: what expects nothing is judged by them, and a wide tolerance judges nothing.
+    fn golden_rule(
+        &mut self,
+        typed: Option<&Placed<GoldenRule>>,
+        expectations: &[SeriesExpectation],
+        case_expectations: &[CaseExpectation],
+    ) -> GoldenRule {
+        let Some(typed) = typed else { return GoldenRule::default() };
+        let rule = **typed;
+        let expects = !expectations.is_empty() || !case_expectations.is_empty();
+        match rule {
+            // An expectation with a mistake in it has its own complaint.
+            GoldenRule::None if !expects && self.diagnostics.is_empty() => self.complain(
+                typed.span(),
+                "nothing would be judged: the study has neither golden values nor expectations",
+                "add an `[[expect]]`, or leave `golden` out",
+            ),
+            GoldenRule::Within(tolerance) if !(0.0..=MOST_TOLERANCE).contains(&tolerance) => self.complain(
+                typed.span(),
+                format!("a tolerance of {tolerance} of golden values is not between 0 and {MOST_TOLERANCE}"),
+                "values that scatter by more have no golden ones: `golden = \"none\"`, and expectations",
+            ),
+            _ => {}
+        }
+        rule
     }
 
     /// What the tables of the study give its cases.

@@ -409,3 +409,56 @@ mod defaults {
         }
     }
 }
+
+mod questions {
+    use crate::study::check::Study;
+    use crate::study::file::{GoldenRule, StudySource};
+
+    fn checked(head: &str, tables: &str) -> Result<Study, String> {
+        let text = format!(
+            "title = 't'\nscene = 'terzaghi'\n{head}\noutput.time_factors = [0.1]\n{tables}\n[[sweep]]\nmethod = ['MPM']\n\
+             integrator = ['implicit']\ncells = [4, 8]\n"
+        );
+        Study::check(&StudySource { name: "t.toml".to_owned(), text }).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_number_without_a_unit_that_is_likely_in_another_one_is_asked_for() {
+        for (tables, asked) in [
+            ("material.youngs_modulus = 10000\ncolumn.load = '50 kPa'", Some("did you mean \"10000 kPa\"?")),
+            ("material.youngs_modulus = '10 MPa'\ncolumn.load = 50", Some("did you mean \"50 kPa\"?")),
+            ("material.youngs_modulus = '10 MPa'\ncolumn.height = 500", Some("did you mean \"500 mm\"?")),
+            ("material.youngs_modulus = '10 MPa'\ncolumn.load = '50 Pa'\ncolumn.height = '500 m'", None),
+            ("material.youngs_modulus = 1e7\ncolumn.load = 5e4\ncolumn.height = 5", None),
+        ] {
+            let warnings = checked("", tables).expect("sound").warnings.join("\n");
+            let told = warnings.contains("did you mean");
+            assert!(asked.map_or(!told, |words| warnings.contains(words)), "{tables}: {warnings}");
+        }
+        let bound = |below: &str| {
+            let expects = format!("[[expect]]\ntime_factor = 0.1\nat = {{ cells = 8, below = {below} }}");
+            checked("", &expects).expect("sound").warnings.join("\n")
+        };
+        assert!(bound("1").contains("did you mean \"1 %\"?"), "{}", bound("1"));
+        assert_eq!(bound("0.9"), "");
+    }
+
+    #[test]
+    fn golden_values_may_be_left_out_or_given_a_tolerance_and_nothing_else() {
+        let expects = "[[expect_case]]\ntime_factor = 0.1\nerror = { below = 0.5 }";
+        let rule = |head: &str, tables: &str| checked(head, tables).map(|study| study.golden);
+        assert_eq!(rule("", ""), Ok(GoldenRule::Measured));
+        assert_eq!(rule("golden = 'none'", expects), Ok(GoldenRule::None));
+        assert_eq!(rule("golden.tolerance = 1e-6", ""), Ok(GoldenRule::Within(1e-6)));
+        for (head, tables, words) in [
+            ("golden = 'none'", "", "nothing would be judged"),
+            ("golden = 'some'", expects, "no golden is called `some`"),
+            ("golden.tolerance = 0.1", "", "is not between 0 and 0.01"),
+            ("golden.tolerance = -1e-6", "", "is not between 0 and 0.01"),
+            ("golden.bound = 1e-6", "", "bound"),
+        ] {
+            let error = rule(head, tables).expect_err(words);
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}

@@ -158,7 +158,12 @@ impl Checker<'_> {
                 "take a method of this program",
             )
         } else if let Some(why) = method.built_in().and_then(|method| scene.refuses_method(method)) {
-            (why, "take \"GIMP-SRI-patch\", or another method without `TL-`")
+            let help = if method.built_in().is_some_and(|method| method.has_projection()) {
+                "take \"GIMP-SRI-patch\", whose pressure follows from the strains of the cells"
+            } else {
+                "take \"GIMP-SRI-patch\", or another method without `TL-`"
+            };
+            (why, help)
         } else {
             return Some(method);
         };

@@ -18,7 +18,7 @@ use crate::study::overrides::{Asked, Outputs};
 use crate::study::solver::Preset;
 use oedometer_exact::reference::ReferenceKind;
 use oedometer_scenes::SceneKind;
-use oedometer_soil::wording::typed;
+use oedometer_soil::wording::{count_of, typed};
 use std::path::PathBuf;
 
 /// Columns behind those of the errors, for results on several meshes.
@@ -277,7 +277,11 @@ fn judged(
         for failure in errors.iter().filter_map(|finding| finding.failure.as_ref()) {
             say!("fail: {failure}");
         }
+        let judged = errors.len();
         findings.extend(errors);
+        if findings.iter().all(|finding| finding.failure.is_none()) {
+            say!("pass: {} below {bound:e}", count_of(judged, "error is", "errors are"));
+        }
     }
     let passes = findings.iter().all(|finding| finding.failure.is_none());
     Ok((findings, if passes { Exit::Pass } else { Exit::VerdictFailed }))

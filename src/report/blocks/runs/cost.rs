@@ -167,13 +167,13 @@ fn cheapest_table(found: &WallTimeFinding) -> Table {
                 Cell::Number(1e3 * run.deviation),
                 words::counted(run.steps),
                 words::counted(run.point_updates),
+                if cheapest.is_confirmed { "yes" } else { "no" }.into(),
             ]
         }));
-        row.resize(7, Cell::missing("no timed run is within the tolerance"));
+        row.resize(8, Cell::missing("no timed run reaches the tolerance"));
         row
     });
-    let header =
-        "> tolerance | run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates";
+    let header = "> tolerance | run | > error | > wall, median [ms] | > ± deviation [ms] | > steps | > point updates | finer mesh within it";
     Table::of("The cheapest run within a tolerance", columns(header), rows).note(
         "error of the pore pressure at the points, relative L2, the worst of the outputs; wall times of runs that had the \
          machine to themselves, in rounds over all runs",
@@ -255,8 +255,8 @@ mod tests {
         let (best, other) = (run(0, 0.011, 0.0071), run(1, 0.023, 0.0092));
         let precision = WorkPrecision {
             cheapest: vec![
-                Cheapest { tolerance: 1e-2, run: Some(best.clone()) },
-                Cheapest { tolerance: 1e-3, run: None },
+                Cheapest { tolerance: 1e-2, run: Some(best.clone()), is_confirmed: true },
+                Cheapest { tolerance: 1e-3, run: None, is_confirmed: false },
             ],
             runs: vec![best, other],
             noise_floor: Some(0.07),
@@ -272,6 +272,7 @@ mod tests {
             Cell::Number(1.3),
             Cell::Count(counters.steps),
             Cell::Count(counters.point_updates),
+            "yes".into(),
         ];
         assert_eq!(table.rows[0], expected);
         assert!(matches!(table.rows[1][1..], [Cell::Missing(_), ..]), "{:?}", table.rows[1]);
