@@ -37,6 +37,7 @@ pub struct GroupProfiles {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Operator {
     /// Its word.
+    #[expect(clippy::struct_field_names, reason = "a key of findings.json")]
     pub operator: String,
     /// The methods without and with it.
     pub methods: [String; 2],

@@ -307,7 +307,9 @@ mod tests {
     #[test]
     fn meshes_beyond_two_within_the_smallest_tolerance_do_not_count_whoever_ran_them() {
         let (study, mut records) = race();
-        records.iter_mut().for_each(|record| record.errors.iter_mut().for_each(|row| row.value *= 0.1));
+        for row in records.iter_mut().flat_map(|record| &mut record.errors) {
+            row.value *= 0.1;
+        }
         let situation = Situation::from_records(&study, &records).expect("a race");
         let gimp = situation.entry("GIMP").expect("it runs");
         assert_eq!(gimp.levels.iter().map(|one| one.cells).collect::<Vec<_>>(), [2, 4]);

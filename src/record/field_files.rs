@@ -47,9 +47,10 @@ fn meaning_of(case: &Case) -> String {
         (false, true) => &["x", "u_x", "u_y"],
         (false, false) => &["u_y"],
     };
-    let names: String = columns.iter().map(|name| format!("{name} = \"{name}\"\n")).collect();
+    let names = columns.iter().map(|name| format!("{name} = \"{name}\"\n")).collect::<Vec<_>>().concat();
     let sense = |name: &str| if name.ends_with('x') { "right" } else { "up" };
-    let senses: String = columns.iter().map(|name| format!("{name} = \"{}\"\n", sense(name))).collect();
+    let senses =
+        columns.iter().map(|name| format!("{name} = \"{}\"\n", sense(name))).collect::<Vec<_>>().concat();
     format!(
         "# oedometer score fields.pvd --scene {} --mapping mapping.toml\nsample = \"points\"\n\n[columns]\ny = \"y\"\n\
          p = \"p\"\n{names}effective_stress = \"effective_stress\"\nvolume = \"volume\"\n\n[units]\nlength = \"m\"\n\

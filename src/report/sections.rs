@@ -21,7 +21,7 @@ pub fn section(finding: &Finding, place: Place) -> Result<Section, RenderError> 
 pub fn blocks(finding: &Finding, place: Place) -> Result<Vec<Block>, RenderError> {
     let mut sentence = finding.sentence()?;
     if place == Place::Report && !finding.studies.is_empty() {
-        sentence += &format!(" Evidence: {}.", links_to(finding.studies.iter().map(String::as_str)));
+        sentence.extend([" Evidence: ", &links_to(finding.studies.iter().map(String::as_str)), "."]);
     }
     let mut blocks = vec![Block::Paragraph(sentence)];
     blocks.extend(parts_as_blocks(finding, &finding.parts, place)?);

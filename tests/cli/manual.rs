@@ -59,7 +59,7 @@ pub fn blocks(text: &str) -> Vec<Block> {
     while let Some((place, line)) = lines.next() {
         let Some(language) = line.trim_start().strip_prefix("```") else {
             if !line.trim().is_empty() {
-                above = line.to_owned();
+                line.clone_into(&mut above);
             }
             continue;
         };
@@ -110,7 +110,8 @@ fn commands(block: &Block) -> Vec<Shown> {
             all.push(Shown { place, below: place + 1, command: String::new(), output: Vec::new(), code });
         }
         if let Some(shown) = all.last_mut() {
-            shown.command = format!("{} {}", shown.command, part.trim()).trim().to_owned();
+            let joined = format!("{} {}", shown.command, part.trim());
+            joined.trim().clone_into(&mut shown.command);
             shown.below = place + 1;
         }
         is_open = goes_on;

@@ -136,7 +136,9 @@ impl Store {
         let mut numbers = numbers.map_err(|error| named(damaged(&error)))?;
         let packing = Packing::of(set);
         if packing != Packing::default() {
-            numbers.iter_mut().for_each(|number| *number = packing.value(*number));
+            for number in &mut numbers {
+                *number = packing.value(*number);
+            }
         }
         if numbers.len() as u64 != total {
             return Err(named(format!("it holds {} numbers, and {total} are declared", numbers.len())));

@@ -53,7 +53,7 @@ pub struct Arguments {
     time_step: Option<String>,
     #[command(flatten)]
     outputs: Outputs,
-    /// Write the fields at every output for ParaView: VTU of the points, and a PVD that `score` reads back with the
+    /// Write the fields at every output for `ParaView`: VTU of the points, and a PVD that `score` reads back with the
     /// mapping beside it
     #[arg(long, value_name = "DIR")]
     fields: Option<PathBuf>,

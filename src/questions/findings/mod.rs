@@ -55,6 +55,7 @@ pub struct Findings {
     /// The answers to the questions that are files of their own.
     #[serde(default, deserialize_with = "unread")]
     #[schemars(schema_with = "list::schema")]
+    #[expect(clippy::struct_field_names, reason = "a key of findings.json")]
     pub findings: Vec<Finding>,
     /// Expectations that the results meet, as TOML, of a study without any.
     #[serde(default)]

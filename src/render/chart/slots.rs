@@ -48,7 +48,7 @@ pub fn slots(names: &[&str]) -> Vec<usize> {
             let taken = |slot: usize| slots.contains(&Some(slot));
             let worn = |slot: usize| slots.iter().flatten().any(|other| other % COLOURS == slot % COLOURS);
             let new_colour = (0..COLOURS).find(|slot| !worn(*slot));
-            slots[place] = new_colour.or_else(|| (0..).find(|slot| !taken(*slot)));
+            slots[place] = new_colour.or_else(|| (0..=slots.len()).find(|slot| !taken(*slot)));
         }
     }
     slots.into_iter().flatten().collect()

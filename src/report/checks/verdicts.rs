@@ -91,7 +91,7 @@ fn text_of_parts(finding: &Finding, parts: &[Part]) -> Result<String, RenderErro
     for part in parts {
         match part {
             Part::Sentence(template) => text += &plain_paragraphs(&finding.words(template)?),
-            Part::Table(table) => text += &format!("\n{}", table.to_text()?),
+            Part::Table(table) => text.extend(["\n", &table.to_text()?]),
             Part::Views(views) => {
                 let first = views.first().map(|(_, parts)| text_of_parts(finding, parts)).transpose()?;
                 text += &first.unwrap_or_default();

@@ -199,7 +199,9 @@ impl<'a> Course<'a> {
     fn mixed_runs(&self) -> Vec<String> {
         let mut instant_of = vec![usize::MAX; self.rows.len()];
         for (instant, rows) in self.instants.iter().enumerate() {
-            rows.iter().for_each(|at| instant_of[*at] = instant);
+            for at in rows {
+                instant_of[*at] = instant;
+            }
         }
         let mut passes: Vec<Vec<Vec<usize>>> = vec![Vec::new(); self.instants.len()];
         let mut before = None;

@@ -181,7 +181,7 @@ fn regular(text: String, is_comment: &dyn Fn(&str) -> bool) -> (String, Vec<Stri
 pub fn line_of_record(text: &[u8], byte: u64, comment: Option<char>, known: (usize, u64)) -> (usize, u64) {
     let (known, line) = known;
     let mut at = usize::try_from(byte).map_or(text.len(), |byte| byte.clamp(known, text.len()));
-    let mut line = line + text[known..at].iter().filter(|letter| **letter == b'\n').count() as u64;
+    let mut line = line + text[known..at].split(|letter| *letter == b'\n').skip(1).count() as u64;
     let is_skipped = |record: &[u8]| {
         let record = record.trim_ascii();
         record.is_empty()

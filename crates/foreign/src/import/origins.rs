@@ -102,14 +102,14 @@ impl Origins {
 
     /// Two values of a quantity at one place, each with where it was read.
     pub fn two_values(&self, quantity: usize, [one, other]: [&SampleRow; 2]) -> String {
-        let [a, b] = self.values(quantity, [one, other]);
+        let [a, b] = Self::values(quantity, [one, other]);
         let [here, there] = [one, other].map(|row| self.place(row.origin));
         format!("{}: {} is {a} ({here}) and {b} ({there})", self.at(one), self.names[quantity])
     }
 
     /// Two values of a quantity at neighbouring places, each with where it was read.
     pub fn two_places(&self, quantity: usize, [one, other]: [&SampleRow; 2]) -> String {
-        let [a, b] = self.values(quantity, [one, other]);
+        let [a, b] = Self::values(quantity, [one, other]);
         let [here, there] = [one, other].map(|row| self.place(row.origin));
         format!(
             "{} is {a} at {} ({here}) and {b} at {} ({there})",
@@ -130,7 +130,7 @@ impl Origins {
     }
 
     /// Two values with their unit and as many digits as show that they differ.
-    fn values(&self, quantity: usize, rows: [&SampleRow; 2]) -> [String; 2] {
+    fn values(quantity: usize, rows: [&SampleRow; 2]) -> [String; 2] {
         let unit = if quantity < 2 { "Pa" } else { "m" };
         let values = rows.map(|row| row.values()[quantity]);
         let rounded = values.map(short);

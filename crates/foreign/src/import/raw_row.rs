@@ -163,11 +163,7 @@ impl RawRow {
             StressKind::Effective => vertical,
             StressKind::Total => vertical.zip(pore).map(|(total, pore)| total + pore),
         };
-        let at_rest = mapping.hydrostatic.map_or(0.0, |water| {
-            // Water at rest presses by the depth at which a place now lies; its table stays.
-            let present = height + displacement.unwrap_or(0.0);
-            water.unit_weight * (water.surface.unwrap_or(body.height) - present).max(0.0)
-        });
+        let at_rest = hydrostatic_pressure(mapping, body, height + displacement.unwrap_or(0.0));
         let volume = self.volume.unwrap_or(1.0);
         for (number, what) in [(self.time, "the time"), (volume, "the volume")] {
             if number < 0.0 {
@@ -193,6 +189,14 @@ impl RawRow {
 
 fn is_inside(place: f64, extent: f64) -> bool {
     (-RIM * extent..=(1.0 + RIM) * extent).contains(&place)
+}
+
+/// The pressure of water at rest at a present height, Pa, where the mapping says that the file's pressures hold it: the table
+/// stays while the soil settles.
+fn hydrostatic_pressure(mapping: &Mapping, body: SolvedBody, present: f64) -> f64 {
+    mapping
+        .hydrostatic
+        .map_or(0.0, |water| water.unit_weight * (water.surface.unwrap_or(body.height) - present).max(0.0))
 }
 
 #[cfg(test)]

@@ -165,7 +165,7 @@ fn run_of_tables(files: Vec<PathBuf>, mapping: &Mapping, body: SolvedBody) -> Re
     }
     let (states, contradictions) = states_of(&rows, &origins)?;
     let expected = Expected::of_states(&states);
-    let mut run = Run { files, expected, states, unended, notes, doubts, contradictions, ..Run::default() };
+    let mut run = Run { files, states, notes, expected, unended, doubts, contradictions, ..Run::default() };
     if mapping.columns.t.is_none() {
         run.files_are_in_order(mapping)?;
     }
@@ -233,7 +233,7 @@ fn runs_of_arrays(
                         });
                         readings.len() - 1
                     });
-                    readings[place].take(step, frame, listed, &mut origins, mapping, body)?;
+                    readings[place].take(step, frame, listed.as_ref(), &mut origins, mapping, body)?;
                     readings[place].run.notes.append(&mut notes);
                     Ok(())
                 })?;
@@ -443,14 +443,14 @@ impl Reading {
         &mut self,
         step: &Step,
         frame: &Frame,
-        listed: Option<Listed>,
+        listed: Option<&Listed>,
         origins: &mut Origins,
         mapping: &Mapping,
         body: SolvedBody,
     ) -> Result<(), ImportError> {
         let columns = FrameRows::find(frame, &step.file, mapping, body)?;
         let beside = columns.beside()?;
-        let of_list = listed.as_ref().map(|listed| listed.time);
+        let of_list = listed.map(|listed| listed.time);
         let (time, from) = self.time_of(step, frame, of_list, &columns, mapping, body)?;
         if self.steps == 0 {
             let cells =
@@ -477,7 +477,7 @@ impl Reading {
                 self.run.doubts.push(told);
             }
         }
-        let (records, kind) = match &listed {
+        let (records, kind) = match listed {
             Some(Listed { rows, .. }) if !rows.is_empty() => (*rows, PartKind::Records),
             Some(Listed { number, .. }) => (&[][..], PartKind::State(Some(*number))),
             None if matches!(step.kind, Kind::Hdf5 | Kind::Xdmf) => {
@@ -664,11 +664,11 @@ impl Run {
         let file = curve.file;
         let is_told = curve.told.is_ended || self.unended.contains(&file);
         for (own, of_curve) in [(&mut self.notes, curve.told.notes), (&mut self.doubts, curve.told.doubts)] {
-            of_curve.into_iter().for_each(|told| {
+            for told in of_curve {
                 if !own.contains(&told) {
-                    own.push(told)
+                    own.push(told);
                 }
-            });
+            }
         }
         self.expected.settlement = matched > 0;
         self.notes.push(format!(

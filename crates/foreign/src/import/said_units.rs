@@ -81,7 +81,7 @@ mod tests {
             match (SaidUnit::of(column, "a", unit, &mapping), factor) {
                 (SaidUnit::AsMapped, None) => {}
                 (SaidUnit::Factor(found, _), Some(factor)) => {
-                    assert!((found / factor - 1.0).abs() < 1e-12, "{unit}")
+                    assert!((found / factor - 1.0).abs() < 1e-12, "{unit}");
                 }
                 (other, _) => panic!("{unit}: {other:?}"),
             }

@@ -556,8 +556,11 @@ impl Curve {
     }
 }
 
+/// Points of a curve as time (s) and displacement (m), and sentences on what of it contradicts itself.
+type PointsAndContradictions = (Vec<(f64, f64)>, Vec<String>);
+
 /// The times and displacements of a curve, and what of it contradicts itself.
-fn points_of(rows: &[SampleRow], origins: &Origins) -> Result<(Vec<(f64, f64)>, Vec<String>), ImportError> {
+fn points_of(rows: &[SampleRow], origins: &Origins) -> Result<PointsAndContradictions, ImportError> {
     let (states, mut contradictions) = states_of(rows, origins)?;
     let repeated = states.iter().filter_map(|state| {
         let values = state.repeated_at.as_ref()?;

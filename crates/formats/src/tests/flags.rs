@@ -53,8 +53,8 @@ fn ghosts_are_left_out_of_any_part_of_a_state() {
                         String::new()
                     }
                 };
-                let places = (0..3).map(|at| format!("0 {} 0 ", 10 * part + at)).collect::<String>();
-                let values = (0..3).map(|at| format!("{} ", 10 * part + at)).collect::<String>();
+                let places = [0, 1, 2].map(|at| format!("0 {} 0 ", 10 * part + at)).concat();
+                let values = [0, 1, 2].map(|at| format!("{} ", 10 * part + at)).concat();
                 let text = format!(
                     "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" \
                      NumberOfCells=\"3\"><Points>{}</Points><Cells>{}{}{}</Cells><PointData>{}{}</PointData><CellData>{}{}</CellData>\
@@ -70,13 +70,13 @@ fn ghosts_are_left_out_of_any_part_of_a_state() {
                 );
                 std::fs::write(folder.path().join(format!("{part}.vtu")), text).expect("a file");
             }
-            let sources: String = (0..3).map(|part| format!("<Piece Source=\"{part}.vtu\"/>")).collect();
+            let sources = [0, 1, 2].map(|part| format!("<Piece Source=\"{part}.vtu\"/>")).concat();
             let pieces = format!(
                 "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>{sources}</PUnstructuredGrid></VTKFile>"
             );
-            let parts: String = (0..3)
+            let parts = [0, 1, 2]
                 .map(|part| format!("<DataSet timestep=\"1\" part=\"{part}\" file=\"{part}.vtu\"/>"))
-                .collect();
+                .concat();
             let collection =
                 format!("<VTKFile type=\"Collection\"><Collection>{parts}</Collection></VTKFile>");
             for (name, text) in [("a.pvtu", pieces), ("a.pvd", collection)] {
