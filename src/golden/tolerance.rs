@@ -6,6 +6,7 @@ use crate::case::planned::PlannedCase;
 use crate::golden::{GoldenFile, is_counter, parts};
 use crate::study::check::{MOST_TOLERANCE, Study};
 use crate::study::file::GoldenRule;
+use oedometer_soil::elementary;
 use oedometer_soil::wording::words;
 use std::collections::BTreeMap;
 
@@ -196,8 +197,8 @@ impl Jump {
     pub fn needed(&self) -> f64 {
         let size = self.before.abs().max(self.after.abs());
         let needed = 2.0 * (self.after - self.before).abs() / (1.0 + size);
-        let digit = 10.0_f64
-            .powi(format!("{needed:e}").split('e').nth(1).map_or(0, |power| power.parse().unwrap_or(0)));
+        let power = format!("{needed:e}").split('e').nth(1).map_or(0, |power| power.parse().unwrap_or(0));
+        let digit = elementary::powi(10.0, power);
         format!("{:e}", (needed / digit).ceil() * digit).parse().unwrap_or(needed)
     }
 

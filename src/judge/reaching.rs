@@ -35,15 +35,18 @@ impl<'a> QuotedRuns<'a> {
     /// The runs that reach a tolerance by [`reached`], by their hash, and whether a finer mesh confirms it.
     pub fn reaching(&self, tolerance: f64) -> HashMap<&'a str, bool> {
         let refinements = grouped(self.0.iter().copied(), |(record, _)| on_any_mesh(&record.case));
-        refinements.into_iter().flat_map(|(_, runs)| reaching_of(runs, tolerance)).collect()
+        refinements.into_iter().flat_map(|(_, runs)| reaching_of(&runs, tolerance)).collect()
     }
 }
 
+/// A run and its error that may be quoted.
+type RunError<'a> = (&'a Record, Option<f64>);
+
 /// The same of runs that differ in meshes, steps and outputs alone.
-fn reaching_of<'a>(runs: Vec<(&'a Record, Option<f64>)>, tolerance: f64) -> Vec<(&'a str, bool)> {
+fn reaching_of<'a>(runs: &[RunError<'a>], tolerance: f64) -> Vec<(&'a str, bool)> {
     let rules = grouped(runs.iter().copied(), |(record, _)| rule_of(&record.case));
     let meshes: Vec<MeshErrors> = rules.iter().map(|(_, runs)| errors_of_meshes(runs)).collect();
-    let reaching = |(place, (_, runs)): (usize, &(String, Vec<(&'a Record, Option<f64>)>))| {
+    let reaching = |(place, (_, runs)): (usize, &(String, Vec<RunError<'a>>))| {
         // A mesh without a run by this rule, as where mesh and step are refined together, counts by its best one.
         let mut all: MeshErrors = BTreeMap::new();
         for (cells, error) in meshes.iter().flatten() {
@@ -144,7 +147,7 @@ mod tests {
             }
         };
         for change in [(|record| record.status = failed_at(1)) as fn(&mut Record), |record| {
-            record.balance[0].water_imbalance = 0.164
+            record.balance[0].water_imbalance = 0.164;
         }] {
             assert_eq!(reaching(near, on_8(change)), [Vec::<String>::new(), Vec::new()]);
         }
