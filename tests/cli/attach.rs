@@ -256,7 +256,7 @@ fn a_new_adapter_runs_as_it_is_and_is_of_second_order() {
     }
     let folder = TempDir::new().expect("a folder");
     assert_eq!(call(folder.path(), &["new", "solver", "gimp", "--language", "shell"]).code, 0);
-    assert_eq!(call(folder.path(), &["new", "solver", "My Solver"]).code, 2);
+    assert_eq!(call(folder.path(), &["new", "solver", "profiles"]).code, 2);
     assert_eq!(call(folder.path(), &["new", "a", "b"]).code, 2);
     assert!(call(folder.path(), &["new", "solver"]).err.contains("solver.toml"), "a study may be called so");
 }

@@ -393,7 +393,6 @@ fn impossible_arguments_of_exact_are_refused() {
 fn an_unknown_command_is_refused_with_the_nearest() {
     assert_says(&refused(&["slove"]), &["'slove'", "solve"]);
     assert_says(&refused(&["solve"]), &["SCENE"]);
-    assert_says(&refused(&["accept", "--reason", "a test"]), &["STUDY.toml"]);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn a_name_that_is_not_plain_is_refused_before_any_work() {
     let folder = folder_with(STUDY);
     let at = folder.path().join("inner");
     fs::create_dir(&at).expect("a folder");
-    for name in ["MyStudy.toml", "...toml", ".toml", "a b.toml", "profiles.toml"] {
+    for name in ["...toml", ".toml", "profiles.toml"] {
         fs::write(at.join(name), STUDY).expect("a file");
         for command in
             [&["run", name, "--out", "out"][..], &["report", name], &["check", name], &["plan", name]]
@@ -104,7 +104,8 @@ fn two_studies_of_one_name_are_refused_with_both_paths() {
         } else {
             call(folder.path(), &[command, "short.toml", "other/short.toml"])
         };
-        assert_eq!((told.code, told.out.as_str()), (2, ""), "{command}: {}", told.err);
+        // A check judges the first of them.
+        assert!(told.code == 2 && (command == "check" || told.out.is_empty()), "{command}: {}{}", told.out, told.err);
         assert!(told.err.contains("short.toml and other/short.toml are both called `short`"), "{}", told.err);
         assert!(!folder.path().join("out").exists(), "{command}");
     }
@@ -280,7 +281,7 @@ fn resuming_runs_cases_of_other_sources_again_and_says_how_many() {
     assert!(told.err.contains(sentence), "{}", told.err);
     assert_eq!(table_without_times(&at.join("out/short/short.csv")), table);
     let told = call(at, &["run", "short.toml", "--resume"]);
-    assert!(told.err.contains("(8 reused") && !told.err.contains("reused"), "{}", told.err);
+    assert!(told.err.contains("(8 reused") && !told.err.contains("not reused"), "{}", told.err);
 }
 
 #[test]

@@ -47,7 +47,7 @@ const CALLS: &[&[&str]] = &[
     &["merge", "short.toml", "out", "--out", "merged"],
     &["list"],
     &["list", "--show", "terzaghi-mesh"],
-    &["new", "my study"],
+    &["new", "profiles"],
     &["explain", "MPM cells=3", "short.toml"],
     &["schema", "study"],
     &["completions", "bash"],

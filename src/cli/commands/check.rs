@@ -91,6 +91,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     // The verdict first; what could not be written is told after it, and hides it nowhere.
     let files = |study: &str| Some(chosen_as(study, &chosen)?.display().to_string());
     // A study that cannot be read keeps no other from being judged.
+    let unread = bad.first().map(Exit::of);
     let mut refused = bad;
     let printed = if arguments.quiet {
         print_coloured(&checks.iter().map(verdicts::verdict_on).collect::<String>())
@@ -112,7 +113,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     for error in &refused {
         say!("{}", sentence(error));
     }
-    let end = if verdict == Exit::Pass { refused.first().map_or(Exit::Pass, Exit::of) } else { verdict };
+    // Of a study that cannot be read nobody knows whether it passes: that is worse than golden values not yet accepted.
+    let end = match verdict {
+        Exit::Golden => unread.unwrap_or(verdict),
+        Exit::Pass => refused.first().map_or(Exit::Pass, Exit::of),
+        failed => failed,
+    };
     Ok(trust::end_with(tally, end))
 }
 
