@@ -140,7 +140,9 @@ fn the_race_has_a_cell_for_every_contender_in_every_situation_and_says_why_one_c
     let words: Vec<&str> = views.iter().map(|(word, _)| word.as_str()).collect();
     assert_eq!(words, ["Read at the points", "Read as means of cells"]);
     for (word, blocks) in views {
-        let [Block::Figure(_), Block::Table(cheapest)] = blocks.as_slice() else { panic!("{word}: {blocks:?}") };
+        let [Block::Figure(_), Block::Table(cheapest)] = blocks.as_slice() else {
+            panic!("{word}: {blocks:?}")
+        };
         assert_eq!(cheapest.rows.len(), 1, "a row per problem: {cheapest:?}");
     }
     let race = RaceFindings::from_studies([(&RACE.0, RACE.1.as_slice())]).expect("a race");

@@ -105,7 +105,12 @@ fn two_studies_of_one_name_are_refused_with_both_paths() {
             call(folder.path(), &[command, "short.toml", "other/short.toml"])
         };
         // A check judges the first of them.
-        assert!(told.code == 2 && (command == "check" || told.out.is_empty()), "{command}: {}{}", told.out, told.err);
+        assert!(
+            told.code == 2 && (command == "check" || told.out.is_empty()),
+            "{command}: {}{}",
+            told.out,
+            told.err
+        );
         assert!(told.err.contains("short.toml and other/short.toml are both called `short`"), "{}", told.err);
         assert!(!folder.path().join("out").exists(), "{command}");
     }
