@@ -5,7 +5,7 @@ use crate::program::{call, folder_with};
 use oedometer::{
     AllStudies, Answers, Block, Making, Page, RaceFindings, Record, ReportFindings, RunOptions, Study,
     StudyResults, StudySource, Table, Tier, answer_page, matrix_page, render_html, render_markdown,
-    run_study, study_page,
+    run_study,
 };
 use std::fs;
 use std::sync::LazyLock;
